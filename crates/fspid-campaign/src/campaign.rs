@@ -1,7 +1,7 @@
 //! A campaign ready to fly: what run *i* draws, and what comes of it.
 
 use std::path::Path;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use fspid_scenario::dispersion::Drawn;
 use fspid_scenario::file::{Study, Template};
@@ -30,9 +30,19 @@ pub struct Progress {
     flown: AtomicU64,
     found: AtomicU64,
     failed: AtomicU64,
+    stopped: AtomicBool,
 }
 
 impl Progress {
+    /// Asks the campaign to stop: what is flown just now is lost, shards that are written stay.
+    pub fn stop(&self) {
+        self.stopped.store(true, Ordering::Relaxed);
+    }
+
+    fn is_stopped(&self) -> bool {
+        self.stopped.load(Ordering::Relaxed)
+    }
+
     /// Runs flown so far.
     #[must_use]
     pub fn flown(&self) -> u64 {
@@ -132,17 +142,20 @@ impl Campaign {
     /// Flies some runs on all threads of the pool that this is called in.
     ///
     /// # Errors
-    /// None where the runs are of this campaign.
+    /// [`CampaignError::Stopped`] where it was asked to; no other where the runs are of this campaign.
     pub fn fly(&self, range: Range, progress: &Progress) -> Result<ColumnTable, CampaignError> {
         let at_once = engine::at_once(self.template.study()) as u64;
         let groups = (range.end.saturating_sub(range.first)).div_ceil(at_once);
         let fly = |memory: &mut Memory, group: u64| {
+            if progress.is_stopped() {
+                return Err(CampaignError::Stopped);
+            }
             let first = range.first + group * at_once;
             let numbers = first..(first + at_once).min(range.end);
             let drawn = numbers.map(|number| (number, self.drawn(number)));
             let runs = self.fly_with(memory, drawn);
             progress.add(&runs, self.rows.of_run());
-            self.rows.table(&runs)
+            Ok(self.rows.table(&runs)?)
         };
         let tables: Vec<_> = (0..groups).into_par_iter().map_init(Memory::default, fly).collect();
         let mut whole = ColumnTable::new(std::sync::Arc::clone(self.rows.schema()));

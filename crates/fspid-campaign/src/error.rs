@@ -24,6 +24,11 @@ pub enum CampaignError {
     /// An external controller cannot be started.
     #[error(transparent)]
     NotStarted(#[from] fspid_sim::SimError),
+    /// It was asked to stop; shards that were written stay.
+    #[error(
+        "stopped; what is flown stays, and the same campaign in the same folder goes on from there"
+    )]
+    Stopped,
     /// Nothing differs from run to run.
     #[error(
         "{path}: nothing differs from run to run\n    add what shall, for instance:\n\n        [[dispersion]]\n        path = \"controller[0].kp\"\n        distribution = \"uniform\"\n        lower = 0.8\n        upper = 1.2\n        relative = true\n"

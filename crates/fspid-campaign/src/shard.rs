@@ -55,6 +55,40 @@ pub fn fly(
     Ok(Done::Flown)
 }
 
+/// Shards whose parts are not there, or not whole.
+#[must_use]
+pub fn missing(folder: &Folder, campaign: &Campaign) -> Vec<u64> {
+    let plan = campaign.plan();
+    let is_there = |number: &u64| {
+        plan.shard(*number)
+            .is_some_and(|range| is_whole(&folder.shard_path(range), campaign, range))
+    };
+    (0..plan.shards()).filter(|number| !is_there(number)).collect()
+}
+
+/// Takes in the part of a shard that was flown elsewhere, if it is what it should be in every cell.
+///
+/// # Errors
+/// No such shard, another one, or one of another campaign; a part that cannot be written.
+pub fn put(
+    folder: &Folder,
+    campaign: &Campaign,
+    number: u64,
+    part: &[u8],
+) -> Result<(), CampaignError> {
+    let plan = campaign.plan();
+    let most = plan.shards().saturating_sub(1);
+    let range = plan.shard(number).ok_or(CampaignError::NoShard { found: number, most })?;
+    let path = folder.shard_path(range);
+    output::write(&path, part).map_err(|error| CampaignError::from(error).of_writing(&path))?;
+    if is_whole(&path, campaign, range) {
+        return Ok(());
+    }
+    let _ = std::fs::remove_file(&path);
+    let reason = format!("what a worker answered is not shard {number} of this campaign");
+    Err(CampaignError::Foreign { path, reason })
+}
+
 /// True for a part that holds what it should, in every cell.
 fn is_whole(path: &Path, campaign: &Campaign, range: Range) -> bool {
     let Ok(part) = Part::open(path) else {

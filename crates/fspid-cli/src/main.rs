@@ -56,7 +56,6 @@ enum Command {
 
 fn main() -> ExitCode {
     commands::interrupt::listen();
-    commands::external_controller::host();
     let done = match line::parsed::<Arguments>() {
         Ok(arguments) => run(arguments.command),
         Err(end) => end.map_or(Ok(()), Err),
@@ -71,6 +70,7 @@ fn main() -> ExitCode {
 }
 
 fn run(command: Command) -> Result<(), Failure> {
+    commands::external_controller::host(matches!(command, Command::Fly(_)));
     match command {
         Command::Reproduce(arguments) => commands::reproduce::run(&arguments),
         Command::Init(arguments) => commands::init::run(&arguments),

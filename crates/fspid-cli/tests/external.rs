@@ -19,8 +19,8 @@ use serde_json::Value;
 use crate::common::{code, fspid, json, text};
 use crate::repository::repository;
 
-/// A proportional controller that does something else at its sample 123.
-const STRANGE: &str = r#"
+/// A proportional controller that does something else at its sample 123, or another.
+pub(crate) const STRANGE: &str = r#"
 #include "fspid_external.h"
 #include <math.h>
 #include <stdio.h>
@@ -28,6 +28,9 @@ const STRANGE: &str = r#"
 #include <unistd.h>
 #ifndef VERSION
 #define VERSION FSPID_EXTERNAL_VERSION
+#endif
+#ifndef AT
+#define AT 123
 #endif
 #ifndef PERIOD
 #define PERIOD 0.0
@@ -41,7 +44,7 @@ void fspid_external_step(void *state, const fspid_external_sample *sample, fspid
 {
     int *k = state;
     *k += 1;
-    if (*k == 124) {
+    if (*k == AT + 1) {
         STRANGE;
     }
     kept += 1e-4;
@@ -57,7 +60,7 @@ fn folder() -> tempfile::TempDir {
 }
 
 /// Builds a library of C.
-fn library(folder: &Path, name: &str, sources: &[PathBuf], defined: &[&str]) {
+pub(crate) fn library(folder: &Path, name: &str, sources: &[PathBuf], defined: &[&str]) {
     let built = Command::new("cc")
         .args(["-shared", "-fPIC", "-O1", "-ffp-contract=off", "-I", "."])
         .args(sources)
@@ -272,7 +275,7 @@ fn what_needs_equations_is_refused_by_name_and_flights_are_judged() {
     let folder = folder();
     strange(folder.path(), "", &[]);
     let entry = "controller[]={ name = \"X\", kind = \"external\", library = \"x.so\" }";
-    for command in [&["certify"][..], &["export", "--to", "c", "--out", "code"], &["fly"]] {
+    for command in [&["certify"][..], &["export", "--to", "c", "--out", "code"]] {
         let asked = [command, &["pitch.toml", "--set", entry, "--controller", "X"]].concat();
         let output = fspid(&asked, folder.path());
         assert_eq!(code(&output), 2, "{command:?}");
@@ -326,7 +329,7 @@ fn flown(controller: &Controller, folder: &Path) -> Vec<Trace> {
     let mut scenario = Scenario::new("drawn", plant.expect("a plant"), timing, setpoint)
         .with_controller("original", *controller);
     let source = ExternalSource::Library(folder.join("drawn.so"));
-    let external = External { source, answer_limit_s: 60.0, dt_s };
+    let external = External { source, answer_limit_s: 60.0, dt_s, renamed: Vec::new() };
     scenario.externals.push(NamedExternal { name: "export".to_owned(), external });
     simulate(&scenario).expect("flies").traces
 }

@@ -508,9 +508,10 @@ fn what_of_a_system_cannot_be_exported_is_refused_with_what_would_make_it_possib
             ["input `service`, term `good`: the membership function `bell`", "gaussian"],
         ),
         (
-            "tip.toml --to fmu2",
-            ["fmu2 is not written of fuzzy systems", "possible are c, lua and st"],
+            "tip.toml --to rust",
+            ["rust is not written of fuzzy systems", "possible are c, lua, st, fmu2 and fmu3"],
         ),
+        ("tip.toml --to matlab", ["a .fis, which `fspid convert SYSTEM OUT.fis`", "--lossy"]),
         ("tip.toml --to c --angles degrees", ["--angles", "units of its file"]),
     ] {
         let mut all = vec!["export"];

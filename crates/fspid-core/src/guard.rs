@@ -53,6 +53,12 @@ impl Faults {
         self.0 & other.0 == other.0
     }
 
+    /// These but for those of `other`.
+    #[must_use]
+    pub const fn without(self, other: Self) -> Self {
+        Self(self.0 & !other.0)
+    }
+
     /// True if there is none.
     #[must_use]
     pub const fn is_empty(self) -> bool {

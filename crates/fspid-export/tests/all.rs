@@ -5,6 +5,7 @@ mod c;
 mod common;
 mod evidence;
 mod fmu;
+mod fmu_system;
 mod lua;
 mod lua_interpreter;
 mod moved;

@@ -8,12 +8,22 @@ const MOST_BYTES: usize = 64 << 20;
 /// Longest end of an archive: its fixed part and a comment.
 const LONGEST_END: usize = 22 + u16::MAX as usize;
 
+/// The bytes of an archive, which is no larger than what is in it may be.
+pub(crate) fn archive(path: &Path) -> io::Result<Vec<u8>> {
+    let size = std::fs::metadata(path)?.len();
+    if size > MOST_BYTES as u64 {
+        return Err(bad("it is larger than 64 MiB"));
+    }
+    std::fs::read(path)
+}
+
 /// Writes the files of an archive into a folder.
 pub(crate) fn unpack(archive: &[u8], folder: &Path) -> io::Result<()> {
     let mut left = MOST_BYTES;
     for entry in entries(archive).ok_or_else(|| bad("it is no zip archive"))? {
         let Entry { name, bytes } = entry?;
-        left = left.checked_sub(bytes.len()).ok_or_else(|| bad("its files are too large"))?;
+        left =
+            left.checked_sub(bytes.len()).ok_or_else(|| bad("its files are larger than 64 MiB"))?;
         let path = Path::new(&name);
         if !path.components().all(|part| matches!(part, Component::Normal(_))) {
             return Err(bad("a name in it leads out of the folder"));
@@ -94,5 +104,32 @@ mod tests {
         let mut end = b"PK\x05\x06".to_vec();
         end.extend([0, 0, 0, 0, 1, 0, 1, 0, 9, 0, 0, 0, 200, 0, 0, 0, 0, 0]);
         assert!(unpack(&end, &folder).is_err());
+    }
+
+    /// An archive of one file that is packed.
+    fn packed(name: &str, bytes: &[u8], said: u32) -> Vec<u8> {
+        let packed = miniz_oxide::deflate::compress_to_vec(bytes, 9);
+        let sizes = [packed.len() as u32, said].map(u32::to_le_bytes).concat();
+        let name_size = (name.len() as u16).to_le_bytes();
+        let common =
+            [&[20, 0, 0, 0, 8, 0, 0, 0, 0, 0, 0, 0, 0, 0][..], &sizes, &name_size, &[0, 0]];
+        let common = common.concat();
+        let file = [b"PK\x03\x04", &common[..], name.as_bytes(), &packed].concat();
+        let entry = [b"PK\x01\x02\x14\0", &common[..], &[0; 14], name.as_bytes()].concat();
+        let places = [entry.len() as u32, file.len() as u32].map(u32::to_le_bytes).concat();
+        let end = [b"PK\x05\x06\0\0\0\0\x01\0\x01\0", &places[..], &[0, 0]].concat();
+        [file, entry, end].concat()
+    }
+
+    #[test]
+    fn a_bomb_is_refused_whatever_it_says_of_its_size() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let bomb = vec![0; MOST_BYTES + 1];
+        for said in [bomb.len() as u32, 9, u32::MAX] {
+            assert!(unpack(&packed("bomb", &bomb, said), folder.path()).is_err(), "{said}");
+            assert!(!folder.path().join("bomb").exists());
+        }
+        unpack(&packed("small", b"not one", 7), folder.path()).expect("unpacked");
+        assert_eq!(std::fs::read(folder.path().join("small")).expect("a file"), b"not one");
     }
 }

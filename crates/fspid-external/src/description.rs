@@ -1,23 +1,16 @@
 //! What an FMU says of itself, as far as a controller is concerned.
 
+use fspid_sim::external::{Place, Renamed};
 use roxmltree::{Document, Node};
 
 use crate::library::Refusal;
+use crate::variables::{Kind, Variable, Variables, child};
 
 /// The version of the standard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Version {
     Two,
     Three,
-}
-
-/// A variable that is set or asked.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Variable {
-    /// Its value reference.
-    pub(crate) reference: u32,
-    /// One of it in radians, seconds.
-    pub(crate) unit: f64,
 }
 
 /// What is needed of `modelDescription.xml`.
@@ -36,12 +29,11 @@ pub(crate) struct Description {
     pub(crate) faults: Option<Variable>,
 }
 
-const DEGREE: f64 = std::f64::consts::PI / 180.0;
 const ALLOWED: &str = "an FMU for co-simulation with inputs setpoint_rad and measurement_rad and an output command_rad, or all in degrees, as `fspid export --to fmu2` writes it";
 
 impl Description {
-    /// Reads it.
-    pub(crate) fn read(text: &str) -> Result<Self, Refusal> {
+    /// Reads it; variables that have other names than ours are named.
+    pub(crate) fn read(text: &str, renamed: &[Renamed]) -> Result<Self, Refusal> {
         let refused = |reason: String| (reason, ALLOWED.to_owned());
         let document = Document::parse(text)
             .map_err(|error| refused(format!("its modelDescription.xml is no XML: {error}")))?;
@@ -51,30 +43,62 @@ impl Description {
             found if found.starts_with("3.") => (Version::Three, "instantiationToken"),
             found => return Err(refused(format!("is of FMI version {found:?}"))),
         };
-        let child = |name: &str| root.children().find(|node| node.has_tag_name(name));
-        let interface = child("CoSimulation");
+        let interface = child(root, "CoSimulation");
         let identifier = interface.and_then(|node| node.attribute("modelIdentifier"));
         let identifier =
             identifier.ok_or_else(|| refused("is none for co-simulation".to_owned()))?;
         if identifier.contains(['/', '\\']) || identifier.starts_with('.') {
             return Err(refused(format!("its model identifier {identifier:?} is no name")));
         }
-        let variables = Variables(child("ModelVariables"));
-        let needed = |name: &str| {
-            let found = variables.angle(name, "Float64");
-            found.ok_or_else(|| refused(format!("has no variable {name}_rad")))
-        };
+        let variables = Variables::of(root);
+        let needed = |place| needed(&variables, place, renamed);
+        let gain = |name| variables.read_if_there(name, Kind::Float64);
+        let inputs = [
+            Some(needed(Place::Setpoint)?),
+            Some(needed(Place::Measurement)?),
+            variables.at(Place::Rate, renamed)?,
+        ];
         Ok(Self {
-            inputs: [Some(needed("setpoint")?), Some(needed("measurement")?), variables.rate()],
-            command: needed("command")?,
-            gains: ["kp", "ki", "kd"].map(|name| variables.named(name, "Float64")),
-            saturated: variables.named("saturated", "Boolean"),
-            faults: variables.named("faults", "Int32"),
+            inputs: each_once(inputs)?,
+            command: needed(Place::Command)?,
+            gains: ["kp", "ki", "kd"].map(gain),
+            saturated: variables.read_if_there("saturated", Kind::Boolean),
+            faults: variables.read_if_there("faults", Kind::Int32),
             token: root.attribute(token).unwrap_or_default().to_owned(),
             identifier: identifier.to_owned(),
-            period_s: period_s(&root, child("DefaultExperiment")),
+            period_s: period_s(&root, child(root, "DefaultExperiment")),
             version,
         })
+    }
+}
+
+/// A variable without which there is no controller.
+fn needed(
+    variables: &Variables<'_, '_>,
+    place: Place,
+    renamed: &[Renamed],
+) -> Result<Variable, Refusal> {
+    variables.at(place, renamed)?.ok_or_else(|| {
+        let (key, offered) = (place.key(false), variables.offered(place));
+        let (option, kind) = match place {
+            Place::Command => ("--output", "outputs"),
+            _ => ("--input", "inputs"),
+        };
+        let way = format!("or {option} {key}=NAME with one of its {kind}: {offered}");
+        (format!("has no variable {key}"), format!("{ALLOWED}; {way}"))
+    })
+}
+
+/// Refuses one variable in two places.
+fn each_once(inputs: [Option<Variable>; 3]) -> Result<[Option<Variable>; 3], Refusal> {
+    let [setpoint, measurement, rate] = inputs.map(|input| input.map(|it| it.reference));
+    let is_twice = setpoint == measurement || rate == setpoint || rate == measurement;
+    match is_twice {
+        false => Ok(inputs),
+        true => {
+            let reason = "one of its variables stands for two inputs".to_owned();
+            Err((reason, "a variable for each input".to_owned()))
+        }
     }
 }
 
@@ -85,47 +109,89 @@ fn period_s(root: &Node<'_, '_>, experiment: Option<Node<'_, '_>>) -> f64 {
     step.filter(|_| is_ours).unwrap_or(0.0)
 }
 
-struct Variables<'a, 'b>(Option<Node<'a, 'b>>);
-
-impl Variables<'_, '_> {
-    /// The variable of that name, if it is of that type, in the words of FMI 3.0.
-    fn named(&self, name: &str, kind: &str) -> Option<Variable> {
-        let all = self.0.iter().flat_map(|node| node.children()).filter(Node::is_element);
-        let mut mine = all.filter(|node| node.attribute("name") == Some(name));
-        let node = mine.next()?;
-        let of_two = match kind {
-            "Float64" => "Real",
-            "Int32" => "Integer",
-            same => same,
-        };
-        let is_kind =
-            node.has_tag_name(kind) || node.children().any(|node| node.has_tag_name(of_two));
-        let reference = node.attribute("valueReference")?.parse().ok()?;
-        is_kind.then_some(Variable { reference, unit: 1.0 })
-    }
-
-    /// An angle, in radians or in degrees.
-    fn angle(&self, name: &str, kind: &str) -> Option<Variable> {
-        let in_degrees = || {
-            let found = self.named(&format!("{name}_deg"), kind)?;
-            Some(Variable { unit: DEGREE, ..found })
-        };
-        self.named(&format!("{name}_rad"), kind).or_else(in_degrees)
-    }
-
-    /// The pitch rate, which not every controller has.
-    fn rate(&self) -> Option<Variable> {
-        let in_degrees = || {
-            let found = self.named("rate_deg_s", "Float64")?;
-            Some(Variable { unit: DEGREE, ..found })
-        };
-        self.named("rate_rad_s", "Float64").or_else(in_degrees)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    const DEGREE: f64 = std::f64::consts::PI / 180.0;
+
+    /// Of FMI 3.0, as another tool might write it.
+    const FOREIGN: &str = "<fmiModelDescription fmiVersion='3.0' instantiationToken='t'><CoSimulation modelIdentifier='m'/>\
+        <UnitDefinitions><Unit name='deg'><BaseUnit rad='1' factor='0.0174532925199433'/></Unit>\
+        <Unit name='deg/s'><BaseUnit rad='1' s='-1' factor='0.0174532925199433'/></Unit>\
+        <Unit name='m'><BaseUnit m='1'/></Unit><Unit name='mrad'><BaseUnit rad='1' factor='0.001'/></Unit></UnitDefinitions>\
+        <TypeDefinitions><Float64Type name='Angle' unit='rad'/></TypeDefinitions><ModelVariables>\
+        <Float64 name='theta_ref' causality='input' valueReference='1' unit='deg'/>\
+        <Float64 name='theta' causality='input' valueReference='2' declaredType='Angle'/>\
+        <Float64 name='q' causality='input' valueReference='3' unit='deg/s'/>\
+        <Float64 name='height' causality='input' valueReference='4' unit='m'/>\
+        <Float64 name='fine' causality='input' valueReference='5' unit='mrad'/>\
+        <Float64 name='many' causality='input' valueReference='6'><Dimension start='3'/></Float64>\
+        <Float64 name='delta_e' causality='output' valueReference='7'/>\
+        <Int32 name='mode' causality='output' valueReference='8'/>\
+        </ModelVariables></fmiModelDescription>";
+
+    fn foreign(names: &[&str]) -> Result<Description, Refusal> {
+        let renamed = |text: &&str| {
+            let (key, name) = text.split_once('=').expect("a name");
+            let (place, in_degrees) = Place::of_key(key).expect("a place");
+            Renamed { place, in_degrees, name: name.to_owned() }
+        };
+        Description::read(FOREIGN, &names.iter().map(renamed).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn variables_of_other_names_are_found_with_their_units_and_signs() {
+        let found =
+            foreign(&["setpoint_deg=theta_ref", "measurement_rad=theta", "command_rad=-delta_e"]);
+        let found = found.expect("an FMU");
+        let [setpoint, measurement, rate] = found.inputs;
+        assert_eq!(setpoint, Some(Variable { reference: 1, unit: DEGREE }));
+        assert_eq!(measurement, Some(Variable { reference: 2, unit: 1.0 }));
+        assert_eq!((rate, found.command), (None, Variable { reference: 7, unit: -1.0 }));
+    }
+
+    #[test]
+    fn a_name_that_does_not_fit_is_refused_with_those_that_do() {
+        let (input, output) = ("theta_ref, theta, q, height, fine", "delta_e");
+        let base = ["setpoint_deg=theta_ref", "measurement_rad=theta", "command_rad=delta_e"];
+        for (at, name, said, offered) in [
+            (
+                0,
+                "setpoint_deg=thetaref",
+                "has no input `thetaref`, did you mean `theta_ref`",
+                input,
+            ),
+            (0, "setpoint_deg=zzz", "has no input `zzz`", input),
+            (0, "setpoint_deg=delta_e", "its variable `delta_e` is no input but output", input),
+            (0, "setpoint_deg=many", "its variable `many` is an array and no number", input),
+            (2, "command_rad=mode", "its variable `mode` is Int32 and no number of 64", output),
+            (2, "command_rad=\u{1b}[2J", "has no output `\\u{1b}[2J`", output),
+            (
+                0,
+                "setpoint_rad=theta_ref",
+                "is in deg, not as setpoint_rad says",
+                "setpoint_deg=theta_ref",
+            ),
+            (0, "setpoint_deg=q", "its variable `q` is in deg/s", "rad or deg"),
+            (0, "setpoint_deg=height", "its variable `height` is in m", "rad or deg"),
+            (0, "setpoint_rad=fine", "its variable `fine` is in mrad, not as", "rad or deg"),
+            (
+                0,
+                "setpoint_rad=theta",
+                "one of its variables stands for two inputs",
+                "a variable for",
+            ),
+        ] {
+            let mut names = base;
+            names[at] = name;
+            let (reason, allowed) = foreign(&names).expect_err(name);
+            assert!(
+                reason.contains(said) && allowed.contains(offered),
+                "{name}: {reason}; {allowed}"
+            );
+        }
+    }
 
     #[test]
     fn both_versions_are_read_and_what_is_missing_is_named() {
@@ -133,18 +199,21 @@ mod tests {
             format!(
                 "<fmiModelDescription fmiVersion='2.0' guid='g' generationTool='fspid 1'><CoSimulation modelIdentifier='m'/>\
                  <DefaultExperiment stepSize='0.5'/><ModelVariables>\
-                 <ScalarVariable name='setpoint_deg' valueReference='1'><Real/></ScalarVariable>\
-                 <ScalarVariable name='measurement_deg' valueReference='2'><Real/></ScalarVariable>\
-                 <ScalarVariable name='{command}' valueReference='3'><Real/></ScalarVariable>\
+                 <ScalarVariable name='setpoint_deg' causality='input' valueReference='1'><Real/></ScalarVariable>\
+                 <ScalarVariable name='measurement_deg' causality='input' valueReference='2'><Real/></ScalarVariable>\
+                 <ScalarVariable name='{command}' causality='output' valueReference='3'><Real/></ScalarVariable>\
                  </ModelVariables></fmiModelDescription>"
             )
         };
-        let found = Description::read(&two("command_deg")).expect("an FMU");
+        let found = Description::read(&two("command_deg"), &[]).expect("an FMU");
         assert_eq!((found.version, found.period_s), (Version::Two, 0.5));
         assert_eq!(found.command, Variable { reference: 3, unit: DEGREE });
         assert_eq!(found.inputs[2], None);
-        let (reason, _) = Description::read(&two("something")).expect_err("no command");
+        let (reason, allowed) = Description::read(&two("something"), &[]).expect_err("no command");
         assert_eq!(reason, "has no variable command_rad");
-        assert!(Description::read("<x fmiVersion='1.0'/>").is_err());
+        assert!(
+            allowed.ends_with("or --output command_rad=NAME with one of its outputs: something")
+        );
+        assert!(Description::read("<x fmiVersion='1.0'/>", &[]).is_err());
     }
 }

@@ -16,6 +16,12 @@ impl ProcessHost {
     pub fn new(_: PathBuf, _: &[&str]) -> Self {
         Self
     }
+
+    /// Prints nothing here.
+    #[must_use]
+    pub fn printing_at_most(self, _: u64) -> Self {
+        self
+    }
 }
 
 impl Host for ProcessHost {
@@ -31,6 +37,6 @@ impl Host for ProcessHost {
 
 /// Serves nothing here.
 #[must_use]
-pub fn serve(_: &str, _: &Path, _: f64) -> ExitCode {
+pub fn serve(_: &str, _: &Path, _: f64, _: &[String]) -> ExitCode {
     ExitCode::FAILURE
 }

@@ -3,10 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use fspid_sim::core::{Faults, Gains, Sample, Step};
+use fspid_sim::external::Renamed;
 
-use crate::description::{Description, Variable, Version};
+use crate::description::{Description, Version};
 use crate::fmi::{Failure, Fmu};
 use crate::library::Refusal;
+use crate::variables::Variable;
 
 /// A controller of an FMU.
 pub(crate) struct FmuController {
@@ -19,12 +21,12 @@ pub(crate) struct FmuController {
 
 impl FmuController {
     /// Of an FMU that is unpacked in a folder, asked once in each period.
-    pub(crate) fn load(folder: &Path, dt_s: f64) -> Result<Self, Refusal> {
+    pub(crate) fn load(folder: &Path, dt_s: f64, renamed: &[Renamed]) -> Result<Self, Refusal> {
         let text =
             std::fs::read_to_string(folder.join("modelDescription.xml")).map_err(|error| {
                 (format!("its modelDescription.xml cannot be read: {error}"), "an FMU".to_owned())
             })?;
-        let description = Description::read(&text)?;
+        let description = Description::read(&text, renamed)?;
         let library = library(folder, &description)?;
         let fmu = Fmu::load(&library, &description, folder)?;
         Ok(Self { description, fmu, dt_s, sample: 0 })

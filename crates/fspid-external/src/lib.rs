@@ -20,6 +20,8 @@ mod library;
 mod process;
 #[cfg(unix)]
 mod serve;
+#[cfg(unix)]
+mod variables;
 
 #[cfg(unix)]
 pub use process::ProcessHost;

@@ -1,21 +1,24 @@
 //! The simulator's side: a process for each flight.
 
 use std::ffi::OsString;
-use std::io;
+use std::io::{self, PipeReader, Read as _, Write as _};
 use std::net::Shutdown;
 use std::os::fd::OwnedFd;
 use std::os::unix::net::UnixStream;
 use std::os::unix::process::{CommandExt as _, ExitStatusExt as _};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
 use fspid_sim::core::{Sample, Step};
-use fspid_sim::external::{Answers, Host};
+use fspid_sim::external::{Answers, Host, Renamed};
 use fspid_sim::{ControllerLoss, External, ExternalSource, SimError};
 use tempfile::TempDir;
 
-use crate::archive::unpack;
+use crate::archive::{archive, unpack};
 use crate::frame::{Start, read_answer, write_sample};
 
 /// The longest time for loading a controller: no library of a controller takes as many seconds, however busy a machine is.
@@ -35,7 +38,7 @@ pub(crate) const FMU: &str = "fmu";
 /// The folder of an unpacked FMU.
 fn unpacked(path: &Path) -> io::Result<TempDir> {
     let folder = tempfile::tempdir()?;
-    unpack(&std::fs::read(path)?, folder.path())?;
+    unpack(&archive(path)?, folder.path())?;
     Ok(folder)
 }
 
@@ -44,14 +47,38 @@ fn unpacked(path: &Path) -> io::Result<TempDir> {
 pub struct ProcessHost {
     program: PathBuf,
     arguments: Vec<OsString>,
+    /// What is still passed on of what controllers print, bytes; nothing where all is.
+    prints: Option<Arc<AtomicU64>>,
 }
 
 impl ProcessHost {
-    /// The program, and the arguments with which it calls [`serve`](crate::serve) with the kind, the period and the path
-    /// that follow them.
+    /// The program, and the arguments with which it calls [`serve`](crate::serve) with the kind, the period, the path
+    /// and the names that follow them.
     #[must_use]
     pub fn new(program: PathBuf, arguments: &[&str]) -> Self {
-        Self { program, arguments: arguments.iter().map(OsString::from).collect() }
+        Self { program, arguments: arguments.iter().map(OsString::from).collect(), prints: None }
+    }
+
+    /// The same that passes on so many bytes of what all controllers print, and drops the rest: whoever does not read our
+    /// standard error stops neither them nor us.
+    #[must_use]
+    pub fn printing_at_most(self, bytes: u64) -> Self {
+        Self { prints: Some(Arc::new(AtomicU64::new(bytes))), ..self }
+    }
+
+    /// Where a controller prints, and what says that it has ended. Standard output holds our own answers.
+    fn prints(&self) -> io::Result<(Printer, [Stdio; 2])> {
+        let Some(left) = self.prints.clone() else {
+            return Ok((Printer(None), [Stdio::from(io::stderr()), Stdio::inherit()]));
+        };
+        let (reader, writer) = io::pipe()?;
+        let both = [Stdio::from(writer.try_clone()?), Stdio::from(writer)];
+        let (ended, wait) = channel();
+        std::thread::spawn(move || {
+            pass_on(reader, &left);
+            let _ = ended.send(());
+        });
+        Ok((Printer(Some(wait)), both))
     }
 
     fn spawn(&self, external: &External) -> io::Result<Process> {
@@ -61,13 +88,15 @@ impl ProcessHost {
             ExternalSource::Fmu(path) => (FMU, Some(unpacked(path)?)),
         };
         let path = folder.as_ref().map_or(external.source.path(), TempDir::path);
+        let (printer, [output, errors]) = self.prints()?;
         let child = Command::new(&self.program)
             .args(&self.arguments)
             .args([kind, &format!("{:?}", external.dt_s)])
             .arg(path)
+            .args(external.renamed.iter().map(written))
             .stdin(Stdio::from(OwnedFd::from(theirs)))
-            // Standard output holds our own answers.
-            .stdout(Stdio::from(io::stderr()))
+            .stdout(output)
+            .stderr(errors)
             // Ctrl-C is for us: a flight that was begun is no crash of its controller.
             .process_group(0)
             .spawn()?;
@@ -77,8 +106,29 @@ impl ProcessHost {
             sample: 0,
             limit_s: external.answer_limit_s,
             is_lost: false,
+            printer,
             _folder: folder,
         })
+    }
+}
+
+/// A name of an FMU's variable, as [`serve`](crate::serve) reads it.
+fn written(renamed: &Renamed) -> String {
+    format!("{}={}", renamed.place.key(renamed.in_degrees), renamed.name)
+}
+
+/// What hears that all was passed on that a controller printed; nothing where it prints itself.
+#[derive(Debug)]
+struct Printer(Option<Receiver<()>>);
+
+/// Passes on what is left to be passed on, and reads the rest, so that nobody waits.
+fn pass_on(mut reader: PipeReader, left: &AtomicU64) {
+    let mut bytes = [0; 1024];
+    while let Ok(read @ 1..) = reader.read(&mut bytes) {
+        let taken = |left: u64| Some(left.saturating_sub(read as u64));
+        let before = left.fetch_update(Relaxed, Relaxed, taken).unwrap_or_default();
+        let most = usize::try_from(before).unwrap_or(read).min(read);
+        let _ = io::stderr().write_all(bytes.get(..most).unwrap_or_default());
     }
 }
 
@@ -122,6 +172,7 @@ fn is_period(period_s: f64, dt_s: f64) -> bool {
 }
 
 /// A controller in flight.
+#[derive(Debug)]
 struct Process {
     child: Child,
     stream: UnixStream,
@@ -130,6 +181,7 @@ struct Process {
     limit_s: f64,
     /// True once there is nothing more to wait for.
     is_lost: bool,
+    printer: Printer,
     /// What an FMU was unpacked into, removed behind it.
     _folder: Option<TempDir>,
 }
@@ -206,5 +258,9 @@ impl Drop for Process {
         }
         let _ = self.child.kill();
         let _ = self.child.wait();
+        // Its last words, unless a process that it has left behind still holds the pipe.
+        if let Some(ended) = &self.printer.0 {
+            let _ = ended.recv_timeout(END_LIMIT);
+        }
     }
 }

@@ -7,6 +7,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use fspid_sim::core::{Sample, Step};
+use fspid_sim::external::{Place, Renamed};
 
 use crate::fmu::FmuController;
 use crate::frame::{Start, read_sample, write_answer, write_refusal};
@@ -14,20 +15,21 @@ use crate::library::{LibraryController, Refusal};
 use crate::process::{FMU, LIBRARY};
 
 /// Loads a controller of this kind, `library` or `fmu` (its folder), and answers what comes each `dt_s` over standard
-/// input, which [`ProcessHost`](crate::ProcessHost) has made a socket. What the controller prints is passed on to
+/// input, which [`ProcessHost`](crate::ProcessHost) has made a socket. `renamed` are names of an FMU's variables, such as
+/// `setpoint_rad=theta_ref`. What the controller prints is passed on to
 /// standard error.
 #[must_use]
-pub fn serve(kind: &str, path: &Path, dt_s: f64) -> ExitCode {
+pub fn serve(kind: &str, path: &Path, dt_s: f64, renamed: &[String]) -> ExitCode {
     // Nobody is left to be told what is wrong with the conversation.
-    match converse(kind, path, dt_s) {
+    match converse(kind, path, dt_s, renamed) {
         Ok(()) => ExitCode::SUCCESS,
         Err(_) => ExitCode::FAILURE,
     }
 }
 
-fn converse(kind: &str, path: &Path, dt_s: f64) -> io::Result<()> {
+fn converse(kind: &str, path: &Path, dt_s: f64, renamed: &[String]) -> io::Result<()> {
     let mut stream = UnixStream::from(io::stdin().as_fd().try_clone_to_owned()?);
-    let mut controller = match Controller::load(kind, path, dt_s) {
+    let mut controller = match Controller::load(kind, path, dt_s, renamed) {
         Ok(controller) => controller,
         Err((reason, allowed)) => return Start::Refused { reason, allowed }.write(&mut stream),
     };
@@ -42,16 +44,24 @@ fn converse(kind: &str, path: &Path, dt_s: f64) -> io::Result<()> {
     Ok(())
 }
 
+/// Reads what the simulator's side wrote.
+fn read(text: &str) -> Option<Renamed> {
+    let (key, name) = text.split_once('=')?;
+    let (place, in_degrees) = Place::of_key(key)?;
+    Some(Renamed { place, in_degrees, name: name.to_owned() })
+}
+
 enum Controller {
     Library(LibraryController),
     Fmu(Box<FmuController>),
 }
 
 impl Controller {
-    fn load(kind: &str, path: &Path, dt_s: f64) -> Result<Self, Refusal> {
+    fn load(kind: &str, path: &Path, dt_s: f64, renamed: &[String]) -> Result<Self, Refusal> {
+        let renamed: Vec<Renamed> = renamed.iter().filter_map(|text| read(text)).collect();
         match kind {
             LIBRARY => LibraryController::load(path).map(Self::Library),
-            FMU => FmuController::load(path, dt_s).map(|fmu| Self::Fmu(Box::new(fmu))),
+            FMU => FmuController::load(path, dt_s, &renamed).map(|fmu| Self::Fmu(Box::new(fmu))),
             other => Err((format!("is called {other}"), format!("{LIBRARY} or {FMU}"))),
         }
     }

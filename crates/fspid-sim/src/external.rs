@@ -20,6 +20,59 @@ pub struct External {
     pub answer_limit_s: f64,
     /// Time from sample to sample of the scenario, s.
     pub dt_s: f64,
+    /// Variables of an FMU that have other names than those of exports.
+    pub renamed: Vec<Renamed>,
+}
+
+/// A variable of an FMU in the place of one that exports have.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Renamed {
+    /// Its place.
+    pub place: Place,
+    /// True if it is in degrees, or degrees per second.
+    pub in_degrees: bool,
+    /// Its name in the FMU; a minus in front of it turns its sign.
+    pub name: String,
+}
+
+/// What a controller takes and answers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// The commanded pitch.
+    Setpoint,
+    /// The measured pitch.
+    Measurement,
+    /// The measured pitch rate.
+    Rate,
+    /// The command, nose up positive.
+    Command,
+}
+
+impl Place {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Setpoint, Self::Measurement, Self::Rate, Self::Command];
+
+    /// How exports call it, with its unit.
+    #[must_use]
+    pub const fn key(self, in_degrees: bool) -> &'static str {
+        match (self, in_degrees) {
+            (Self::Setpoint, false) => "setpoint_rad",
+            (Self::Setpoint, true) => "setpoint_deg",
+            (Self::Measurement, false) => "measurement_rad",
+            (Self::Measurement, true) => "measurement_deg",
+            (Self::Rate, false) => "rate_rad_s",
+            (Self::Rate, true) => "rate_deg_s",
+            (Self::Command, false) => "command_rad",
+            (Self::Command, true) => "command_deg",
+        }
+    }
+
+    /// The place of that name, and whether it is in degrees.
+    #[must_use]
+    pub fn of_key(key: &str) -> Option<(Self, bool)> {
+        let all = Self::ALL.into_iter().flat_map(|place| [(place, false), (place, true)]);
+        all.into_iter().find(|(place, in_degrees)| place.key(*in_degrees) == key)
+    }
 }
 
 /// The file of an external controller.
@@ -124,7 +177,7 @@ impl fmt::Display for ControllerLoss {
 }
 
 /// One flight of an external controller, from rest.
-pub trait Answers {
+pub trait Answers: fmt::Debug {
     /// The answer to the next sample.
     ///
     /// # Errors
@@ -165,7 +218,7 @@ mod tests {
     #[test]
     fn without_a_host_an_external_controller_is_refused_and_says_why() {
         let source = ExternalSource::Library(PathBuf::from("controller.so"));
-        let external = External { source, answer_limit_s: 1.0, dt_s: 0.01 };
+        let external = External { source, answer_limit_s: 1.0, dt_s: 0.01, renamed: Vec::new() };
         let refused = external.start().err().map(|error| error.to_string());
         assert!(refused.is_some_and(|text| text.contains("external controllers")));
     }

@@ -2,6 +2,23 @@
 
 use serde_json::{Map, Value, json};
 
+/// The key of the version of an answer's shape.
+const SCHEMA: &str = "schema";
+
+/// Pretty JSON with a line end. Every answer says the version of its shape, the first one where it has none of its own.
+#[must_use]
+pub fn answer_text(answer: &Value) -> String {
+    match answer.as_object() {
+        Some(keys) if !keys.contains_key(SCHEMA) => {
+            let first = (SCHEMA.to_owned(), json!(1));
+            let rest = keys.iter().map(|(key, value)| (key.clone(), value.clone()));
+            let whole: Map<_, _> = std::iter::once(first).chain(rest).collect();
+            format!("{:#}\n", Value::Object(whole))
+        }
+        _ => format!("{answer:#}\n"),
+    }
+}
+
 /// A number, or in words which of the numbers that JSON does not have.
 pub(crate) fn finite(value: f64) -> Value {
     if value.is_finite() { json!(value) } else { json!(format!("{value}")) }

@@ -17,7 +17,7 @@ pub mod certify;
 pub mod fly;
 pub mod fuzzy_system;
 pub mod inference;
-mod json;
+pub mod json;
 pub mod judgement;
 pub mod metrics;
 pub mod output;

@@ -204,6 +204,13 @@ pub fn make_folder(path: &Path) -> Result<(), OutputError> {
     fs::create_dir_all(path).map_err(|reason| OutputError { path: path.to_owned(), reason })
 }
 
+/// A name that every file system takes.
+#[must_use]
+pub fn file_name(name: &str) -> String {
+    let fits = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
+    name.chars().map(|c| if fits(c) { c } else { '_' }).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

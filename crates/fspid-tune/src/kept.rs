@@ -58,6 +58,24 @@ impl Kept {
         Self { path, unfit }
     }
 
+    /// Kept beside a design that is written, where a state of another search is refused; beside the scenario where no
+    /// design is, for the controller of that name, where what is there stays.
+    #[must_use]
+    pub fn beside(design: Option<&Path>, scenario: Option<&Path>, controller: &str) -> Self {
+        let with = |path: &Path, ending: &str| {
+            let mut name = path.as_os_str().to_owned();
+            name.push(ending);
+            PathBuf::from(name)
+        };
+        match design {
+            Some(design) => Self::at(Some(with(design, ".state.json")), Unfit::Refused),
+            None => {
+                let ending = format!(".{}.state.json", output::file_name(controller));
+                Self::at(scenario.map(|scenario| with(scenario, &ending)), Unfit::Left)
+            }
+        }
+    }
+
     /// The search where it was, or from the start.
     ///
     /// # Errors

@@ -2,7 +2,7 @@
 
 use crate::argument::{Drawings, is_standard};
 use crate::exit::{Failure, wrote};
-use fspid_study::output;
+use fspid_study::output::{self, file_name};
 
 /// One drawing into its file; several into a folder, or beside each other if `path` is a file's.
 pub(super) fn write(path: &Drawings, figures: Vec<(&str, &str)>) -> Result<(), Failure> {
@@ -40,10 +40,4 @@ fn several_on_one(figures: &[(&str, &str)]) -> Failure {
         figures.len(),
         names.join(", ")
     ))
-}
-
-/// A name that every file system takes.
-pub(super) fn file_name(name: &str) -> String {
-    let fits = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
-    name.chars().map(|c| if fits(c) { c } else { '_' }).collect()
 }

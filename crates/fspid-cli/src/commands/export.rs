@@ -29,7 +29,7 @@ use fspid_sim::NamedController;
     after_help = "Examples:\n  fspid export pitch.toml --controller FSPID --to c --out flight\n  fspid export tip.toml --to c --out tip\n  cc -std=c99 -O2 -ffp-contract=off flight/*.c -o check && ./check"
 )]
 pub(crate) struct Arguments {
-    /// The scenario or design, or a fuzzy system (.toml, .fis, .fcl, .fll, .xml), which c, lua and st can say.
+    /// The scenario or design, or a fuzzy system (.toml, .fis, .fcl, .fll, .xml), which c, lua, st, fmu2 and fmu3 can say.
     file: InFile,
     /// The controller; may be left out where there is only one.
     #[arg(long, value_name = "NAME")]

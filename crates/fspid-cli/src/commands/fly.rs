@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 use std::io::{self, IsTerminal as _};
 
 use super::Format;
+use super::external_controller::Beside;
 use crate::argument::NamedFile;
 use crate::exit::{Failure, note, stream};
 use fspid_scenario::file;
@@ -20,6 +21,10 @@ use fspid_study::fly::{self, Pilot, StreamError, Summary};
 /// A line that cannot be used is answered too: the last command is held, and standard error says
 /// why. The controller computes with its own period; samples that say otherwise are counted. The
 /// end of the input is the end.
+///
+/// A library or an FMU flies in a process of its own. If it crashes, hangs or answers NaN, standard
+/// error says so with the time of the sample, its last command is held until a `reset`, and the
+/// exit code is 1.
 #[derive(Debug, Args)]
 #[command(
     after_help = "In degrees:   5 4.2 0.01 0.8   is set-point 5 deg, pitch 4.2 deg, 0.01 s, 0.8 deg/s.\nA simulator in Python to begin with: examples/fly/aircraft.py"
@@ -28,12 +33,14 @@ pub(crate) struct Arguments {
     /// The scenario file; its aircraft, servo and disturbances are not used. It has to have a name, since samples come on
     /// standard input.
     file: NamedFile,
-    /// Which of its controllers flies, if there are several.
+    /// Which controller flies, if there are several; without it the only one of `--library` and `--fmu` does.
     #[arg(long, value_name = "NAME")]
     controller: Option<String>,
     /// Set a value before flying, e.g. `--set loop.sample_period_s=0.02`.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
+    #[command(flatten)]
+    beside: Beside,
     /// The unit of all angles, in and out.
     #[arg(long, value_enum, default_value_t = Angles::Degrees)]
     angles: Angles,
@@ -77,20 +84,25 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     finish(&pilot, arguments, done)
 }
 
-fn summary_json(summary: &Summary) -> Value {
-    json!({
+fn summary_json(summary: &Summary, is_external: bool) -> Value {
+    let mut found = json!({
         "schema": 1, "commands": summary.commands, "slips": summary.slips, "held": summary.held,
         "other_faults": summary.faults, "resets": summary.resets,
-    })
+    });
+    if is_external {
+        found["controller_lost"] = summary.lost.into();
+    }
+    found
 }
 
 fn pilot(arguments: &Arguments) -> Result<Pilot, Failure> {
-    let study = file::load(&arguments.file, &arguments.overrides).map_err(Failure::load)?;
+    let overrides = arguments.beside.overrides(&arguments.overrides)?;
+    let study = file::load(&arguments.file, &overrides).map_err(Failure::load)?;
     for warning in &study.warnings {
         note(format_args!("warning: {warning}"));
     }
-    let name = arguments.controller.as_deref();
-    Pilot::new(&study.scenario, name, arguments.angles.into())
+    let name = arguments.controller.clone().or_else(|| arguments.beside.only());
+    Pilot::new(&study.scenario, name.as_deref(), arguments.angles.into())
         .map_err(|problem| Failure::input(format_args!("{}: {problem}", arguments.file.display())))
 }
 
@@ -102,7 +114,7 @@ fn finish(
 ) -> Result<(), Failure> {
     let summary = pilot.summary();
     match arguments.format {
-        Format::Json => note(summary_json(&summary)),
+        Format::Json => note(summary_json(&summary, pilot.is_external())),
         Format::Text if !summary.is_clean() => note(summary),
         Format::Text => {}
     }
@@ -112,6 +124,9 @@ fn finish(
         Err(StreamError::Reading(error)) => {
             return Err(Failure::input(format_args!("standard input cannot be read: {error}")));
         }
+    }
+    if summary.lost > 0 {
+        return Err(Failure::not_met("the controller was lost"));
     }
     match arguments.strict && !summary.is_clean() {
         true => Err(Failure::not_met("not every sample came in time and could be used")),

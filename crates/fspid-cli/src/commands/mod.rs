@@ -26,13 +26,12 @@ pub(crate) mod surface;
 pub(crate) mod tune;
 pub(crate) mod verify;
 
-use clap::{Args, ValueEnum};
-use serde_json::json;
-
 use crate::argument::Source;
 use crate::exit::{Failure, note, print};
+use clap::{Args, ValueEnum};
 use fspid_scenario::fuzzy_system;
 use fspid_scenario::fuzzy_system::{Dialect, Options, System};
+pub(crate) use fspid_study::json::answer_text as json_text;
 
 /// How a fuzzy system answers, where its file shall not decide.
 #[derive(Debug, Args)]
@@ -177,9 +176,6 @@ impl Loading {
     }
 }
 
-/// The key of the version of an answer's shape.
-const SCHEMA: &str = "schema";
-
 /// How an answer is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Format {
@@ -200,18 +196,5 @@ impl Format {
             Self::Text => print(&text()),
             Self::Json => print(&json_text(&json())),
         }
-    }
-}
-
-/// Pretty JSON with a line end. Every answer says the version of its shape, the first one where it has none of its own.
-pub(crate) fn json_text(answer: &serde_json::Value) -> String {
-    match answer.as_object() {
-        Some(keys) if !keys.contains_key(SCHEMA) => {
-            let first = (SCHEMA.to_owned(), json!(1));
-            let rest = keys.iter().map(|(key, value)| (key.clone(), value.clone()));
-            let whole: serde_json::Map<_, _> = std::iter::once(first).chain(rest).collect();
-            format!("{:#}\n", serde_json::Value::Object(whole))
-        }
-        _ => format!("{answer:#}\n"),
     }
 }

@@ -7,7 +7,7 @@ use clap::Args;
 use serde_json::json;
 
 use super::progress::{Telling, answer_after, duration, tell};
-use super::{Format, drawings, interrupt, json_text};
+use super::{Format, interrupt, json_text};
 use crate::argument::{InFile, OutFile, count, is_standard, written};
 use crate::exit::{Failure, note, print, wrote};
 use fspid_campaign::local;
@@ -17,8 +17,7 @@ use fspid_study::output;
 use fspid_tune::baseline::Baseline;
 use fspid_tune::rule::{Form, Options, Rule, Verdict};
 use fspid_tune::{
-    Beginning, Effort, Kept, Search, Source, Then, TuneError, Tuned, TuningProblem, Unfit, design,
-    history,
+    Beginning, Effort, Kept, Search, Source, Then, TuneError, Tuned, TuningProblem, design, history,
 };
 
 /// How often the state of a search is saved.
@@ -160,7 +159,7 @@ fn design_file(arguments: &Arguments, out: &Path, controller: &str) -> PathBuf {
         return out.to_owned();
     }
     let stem = out.file_stem().unwrap_or_default().to_string_lossy();
-    out.with_file_name(format!("{stem}-{}.toml", drawings::file_name(controller)))
+    out.with_file_name(format!("{stem}-{}.toml", output::file_name(controller)))
 }
 
 /// The gains of a classical rule.
@@ -282,17 +281,9 @@ fn search(
 
 /// Where the state is kept: beside the design; beside the scenario where none is written.
 fn kept(arguments: &Arguments, out: Option<&Path>, controller: &str) -> Kept {
-    let beside = |path: &Path, ending: &str| {
-        let mut name = path.as_os_str().to_owned();
-        name.push(ending);
-        PathBuf::from(name)
-    };
-    if let Some(out) = out.filter(|out| !is_standard(out)) {
-        return Kept::at(Some(beside(out, ".state.json")), Unfit::Refused);
-    }
-    let scenario = Some(&*arguments.scenario).filter(|path| !is_standard(path));
-    let ending = format!(".{}.state.json", drawings::file_name(controller));
-    Kept::at(scenario.map(|path| beside(path, &ending)), Unfit::Left)
+    let file = |path: &&Path| !is_standard(path);
+    let scenario: &Path = &arguments.scenario;
+    Kept::beside(out.filter(file), Some(scenario).filter(file), controller)
 }
 
 /// When a search went on, and how many candidates it had flown by then.

@@ -6,10 +6,10 @@ use fspid_numeric::Real;
 use super::vectors::{difference, single_vectors};
 use super::{SystemProgram, SystemRefusal, system_program, system_vectors};
 use crate::export::{Export, identifier, renamed, written};
-use crate::program::Precision;
+use crate::program::{Precision, Program};
 use crate::targets::{Source, Target};
 use crate::vectors::Vector;
-use crate::write::Heading;
+use crate::write::{Heading, decimal};
 
 /// What is asked for.
 #[derive(Clone, Debug)]
@@ -37,7 +37,7 @@ pub fn export_system(
     system: &System,
     request: &SystemRequest<'_>,
 ) -> Result<Export, SystemRefusal> {
-    if !matches!(request.target, Target::C | Target::Lua | Target::StructuredText) {
+    if !WRITTEN_TO.contains(&request.target) {
         return Err(SystemRefusal {
             place: "the target".to_owned(),
             problem: format!("{} is not written of fuzzy systems", request.target.name()),
@@ -78,8 +78,10 @@ fn exported<R: Real>(
         precision: request.precision,
         angles: None,
     };
+    let ranged = matches!(request.target, Target::Fmu2 | Target::Fmu3)
+        .then(|| with_ranges(&program.program, system));
     let source = Source {
-        program: &program.program,
+        program: ranged.as_ref().unwrap_or(&program.program),
         prefix: &prefix,
         heading: &heading,
         vectors,
@@ -94,7 +96,25 @@ fn exported<R: Real>(
     Ok(Export { prefix, files: written.files, evidence: Vec::new(), notes })
 }
 
-const WRITTEN: &str = "possible are c, lua and st";
+const WRITTEN_TO: [Target; 5] =
+    [Target::C, Target::Lua, Target::StructuredText, Target::Fmu2, Target::Fmu3];
+const WRITTEN: &str = "possible are c, lua, st, fmu2 and fmu3, and for MATLAB a .fis, which `fspid convert SYSTEM OUT.fis` writes and \
+                       `--lossy` tells the loss of";
+
+/// The program with what an importer of an FMU reads of a variable and no compiler asks: its range.
+fn with_ranges(program: &Program, system: &System) -> Program {
+    let mut program = program.clone();
+    let parts = system.parts();
+    let inputs = program.sample.iter_mut().zip(parts.inputs.iter().map(|it| it.universe));
+    let outputs = program.answer.iter_mut().zip(parts.outputs.iter().map(|it| it.universe));
+    for (member, universe) in inputs.chain(outputs) {
+        if let Some(universe) = universe {
+            let [lower, upper] = [universe.lower, universe.upper].map(|it| decimal(it, false));
+            member.doc.push_str(&format!(" Its range is {lower} to {upper}."));
+        }
+    }
+    program
+}
 
 /// What 32 bits make of the answers.
 fn measured(system: &System, vectors: &[Vector<f32>]) -> Vec<String> {

@@ -10,13 +10,14 @@ use crate::zip::archive;
 
 /// The archive; what was left out of it is told.
 pub(super) fn files<R: Real>(source: &Source<'_, R>, version: Version) -> Result<Written, Refusal> {
-    if source.flown.is_none() {
-        return Err(Refusal::NoController);
-    }
-    let Source { program, prefix, heading, .. } = source;
-    let program = observed((*program).clone());
+    let Source { program, prefix, heading, flown, .. } = source;
+    let is_system = flown.is_none();
+    let program = match is_system {
+        true => (*program).clone(),
+        false => observed((*program).clone()),
+    };
     let Parts { mut texts, to_compile, sources } =
-        parts(&Fmu { program: &program, prefix, heading, version });
+        parts(&Fmu { program: &program, prefix, heading, version, is_system });
     let note = match library(&to_compile, &sources, version) {
         Ok((platform, bytes)) => {
             let ending = std::env::consts::DLL_SUFFIX;

@@ -88,7 +88,7 @@ fn wrapped(text: &str, width: usize) -> Vec<String> {
 }
 
 /// A real as the shortest decimal number that reads back as itself, with a point and perhaps an exponent.
-fn decimal(value: f64, is_single: bool) -> String {
+pub(crate) fn decimal(value: f64, is_single: bool) -> String {
     let mut text = String::new();
     put::decimal(&mut text, value, is_single);
     text

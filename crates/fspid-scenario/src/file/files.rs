@@ -26,6 +26,8 @@ pub(crate) struct Files<'a> {
     changes: Vec<(Change, bool)>,
     /// What files say that were changed, before the changes, by the path of the key that names them.
     written: Vec<(String, Item)>,
+    /// Files that were read, as the scenario names them, each once.
+    names: Vec<String>,
     /// What was read, by the path of the key that names it; kept if asked for.
     documents: Option<Vec<(String, Item)>>,
 }
@@ -40,6 +42,7 @@ impl<'a> Files<'a> {
             filled: Vec::new(),
             changes: Vec::new(),
             written: Vec::new(),
+            names: Vec::new(),
             documents: None,
         }
     }
@@ -120,6 +123,17 @@ impl<'a> Files<'a> {
         self.digest_bytes(text.as_bytes());
     }
 
+    fn name(&mut self, path: &str) {
+        if !self.names.iter().any(|name| name == path) {
+            self.names.push(path.to_owned());
+        }
+    }
+
+    /// Files that were read, as the scenario names them.
+    pub(crate) fn names(&self) -> &[String] {
+        &self.names
+    }
+
     /// The digest in hexadecimal digits.
     pub(crate) fn finish(self) -> String {
         let bytes = self.hasher.finalize();
@@ -136,6 +150,7 @@ impl<'a> Files<'a> {
     pub(crate) fn program(&mut self, path: &str) -> Result<PathBuf, String> {
         let folder = self.folder.ok_or(NO_FOLDER)?;
         let bytes = read_regular(&folder.join(path))?;
+        self.name(path);
         self.digest_bytes(&bytes);
         folder.join(path).canonicalize().map_err(|error| unread_in_words(&error))
     }
@@ -144,6 +159,7 @@ impl<'a> Files<'a> {
     pub(crate) fn read(&mut self, path: &str) -> Result<String, String> {
         let folder = self.folder.ok_or(NO_FOLDER)?;
         let bytes = read_regular(&folder.join(path))?;
+        self.name(path);
         String::from_utf8(bytes).map_err(|error| {
             let position = error.utf8_error().valid_up_to();
             format!("not UTF-8 from byte {position} on")

@@ -92,6 +92,8 @@ pub struct Study {
     pub range_rule: RangeRule,
     /// Everything that is set, in the order of the specification.
     pub settings: Vec<Setting>,
+    /// Files that it refers to, as it names them.
+    pub files: Vec<String>,
     /// SHA-256 of the text, the overrides and everything they refer to, in hexadecimal digits.
     pub digest: String,
     /// What is allowed and probably not meant.
@@ -151,6 +153,7 @@ impl Study {
             contest,
             range_rule,
             settings: Vec::new(),
+            files: Vec::new(),
             digest: String::new(),
             warnings: Vec::new(),
         }
@@ -253,8 +256,16 @@ pub fn parse_with(
     // Without a problem there is a study; the other case would be a mistake in this module.
     let (built, settings, tunable_parameters) =
         study.ok_or_else(|| Problems::new(name, Vec::new(), 0))?;
+    let named = files.names().to_vec();
     let digest = files.finish();
-    Ok(Study { settings, digest, warnings, tunable_parameters, ..Study::without_text(built) })
+    Ok(Study {
+        settings,
+        files: named,
+        digest,
+        warnings,
+        tunable_parameters,
+        ..Study::without_text(built)
+    })
 }
 
 fn read(

@@ -190,6 +190,8 @@ pub const COVERAGE: &[KeyCoverage] = &[
     ),
     row("controller.library", NoPart, "a program has no equations and is left out, by name"),
     row("controller.fmu", NoPart, "as `library`"),
+    row("controller.inputs.*", NoPart, "of a program"),
+    row("controller.outputs.*", NoPart, "of a program"),
     row("controller.answer_limit_s", NoPart, "of a program"),
     row("controller.rate_gain", Covered, "the inner loop of pitch rate"),
     row(

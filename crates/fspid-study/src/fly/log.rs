@@ -8,6 +8,9 @@ use fspid_core::Faults;
 /// holds, so that a client that never reads them is not stopped.
 const MOST_TOLD: u64 = 16;
 
+/// Most characters of why a controller was lost: one that cannot be started says why at any length.
+const MOST_OF_A_LOSS: usize = 200;
+
 /// What happened on a line, in numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Summary {
@@ -19,6 +22,8 @@ pub struct Summary {
     pub held: u64,
     /// Of these, those at which the controller met another fault.
     pub faults: u64,
+    /// Flights in which the controller, a program, was lost.
+    pub lost: u64,
     /// New starts.
     pub resets: u64,
 }
@@ -27,14 +32,17 @@ impl Summary {
     /// True if every sample came in time and could be used.
     #[must_use]
     pub fn is_clean(&self) -> bool {
-        self.slips + self.held + self.faults == 0
+        self.slips + self.held + self.faults + self.lost == 0
     }
 }
 
 impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { commands, slips, held, faults, resets } = self;
+        let Self { commands, slips, held, faults, lost, resets } = self;
         write!(f, "commands {commands}, slips {slips}, held {held}, other faults {faults}")?;
+        if *lost > 0 {
+            write!(f, ", controller lost {lost}")?;
+        }
         write!(f, ", resets {resets}")
     }
 }
@@ -71,6 +79,17 @@ impl Log {
     pub(super) fn held(&mut self, reason: &str) {
         self.summary.held += 1;
         self.tell(&format!("{reason}; the command was held"));
+    }
+
+    /// The first is told whatever was told before it.
+    pub(super) fn lost(&mut self, what: &str) {
+        const HOW: &str = "its last command is held until a reset starts it anew";
+        let text: String = what.chars().take(MOST_OF_A_LOSS).collect();
+        self.summary.lost += 1;
+        match self.summary.lost {
+            1 => self.note(&format!("{text}; {HOW}")),
+            _ => self.tell(&text),
+        }
     }
 
     pub(super) fn fault(&mut self, fault: Faults) {
@@ -116,6 +135,7 @@ mod tests {
             log.estimated_rate(f64::MIN_POSITIVE);
             log.held(&longest);
             log.fault(Faults::OUT_OF_RANGE);
+            log.lost(&"\u{10ffff}".repeat(9999));
         }
         let told = log.take();
         assert_eq!(told.len(), 2 + 16 + 1);

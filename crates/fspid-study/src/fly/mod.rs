@@ -23,6 +23,9 @@
 //!   a flight there is none before, and `dt_s` has only to be a finite number.
 //! - Where the controller needs a pitch rate and the line has none, it is estimated from the
 //!   measurement by a filter over two periods (in `rate.rs`).
+//! - An external controller is asked what equations would answer. Lines without a sample are kept from it; where it is
+//!   lost (a crash, silence, NaN) that is told with the time of the sample, and its last command is held until a `reset`
+//!   starts it anew.
 //! - Whoever does not read what is told to people is not stopped by it: it is bounded.
 //!
 //! In radians the commands are those of a flight in `simulate`, bit for bit. In degrees they are
@@ -31,6 +34,7 @@
 //! Not here: servo, delays, sensors and air. They belong to the aircraft, and here that is the
 //! client. Nor a clock: the client says when a sample is.
 
+mod flyer;
 mod line;
 mod log;
 mod pilot;

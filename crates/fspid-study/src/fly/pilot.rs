@@ -2,24 +2,23 @@
 
 use std::fmt;
 
-use fspid_core::{Faults, Sample, State};
-use fspid_sim::{Controller, NamedController, Scenario};
+use fspid_core::{Faults, Sample};
+use fspid_sim::{Flyer as Named, Scenario, SimError};
 
+use super::flyer::Flyer;
 use super::line::{Angles, Line, Request};
 use super::log::{Log, Summary};
 use super::rate::RateFilter;
+use crate::metrics::short;
 use fspid_diagnostics::known_words;
 
 /// Of the period: how far `dt_s` may lie beside it and still be kept. As for events in a scenario.
 const SAME_PERIOD: f64 = 1e-6;
-/// What no controller believes.
-const NO_SAMPLE: Sample<f64> =
-    Sample { setpoint_rad: f64::NAN, measurement_rad: f64::NAN, rate_rad_s: f64::NAN };
 /// Faults at which a controller holds its command.
 const HOLDING: [Faults; 3] = [Faults::NOT_FINITE, Faults::IMPLAUSIBLE, Faults::OVERFLOW];
 
 /// Why no controller was chosen.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ChoiceError {
     /// There are several, and none was named.
     #[error("several controllers; choose one with --controller: {}", known.join(", "))]
@@ -27,14 +26,9 @@ pub enum ChoiceError {
         /// Their names.
         known: Vec<String>,
     },
-    /// It is a program that has a socket of its own.
-    #[error(
-        "`{name}` is an external controller, which flies in simulate, verify, analyse --fly, campaign and contest alone; choose one with equations"
-    )]
-    External {
-        /// Its name.
-        name: String,
-    },
+    /// It is a program that cannot be started.
+    #[error(transparent)]
+    NotStarted(#[from] SimError),
     /// There is none of that name.
     #[error("there is no controller `{name}`{}", known_words(name, &names(known)))]
     Unknown {
@@ -69,11 +63,12 @@ impl fmt::Display for Answer {
 }
 
 /// A controller that answers lines.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Pilot {
-    controller: Controller,
+    flyer: Flyer,
     angles: Angles,
-    state: State<f64>,
+    /// Number of the next sample of this flight.
+    sample: u64,
     rate: RateFilter,
     log: Log,
 }
@@ -83,25 +78,30 @@ impl Pilot {
     ///
     /// # Errors
     /// [`ChoiceError`] where the name is none of the scenario's, or none is given and there are
-    /// several.
+    /// several; where it is a program that cannot be started.
     pub fn new(
         scenario: &Scenario,
         name: Option<&str>,
         angles: Angles,
     ) -> Result<Self, ChoiceError> {
-        let is_external = |name: &&str| scenario.externals.iter().any(|it| it.name == *name);
-        if let Some(name) = name.filter(is_external) {
-            return Err(ChoiceError::External { name: name.to_owned() });
-        }
-        let controller = chosen(&scenario.controllers, name)?.controller;
-        let rate = RateFilter::new(controller.config().dt_s);
-        Ok(Self { controller, angles, state: State::new(), rate, log: Log::default() })
+        let flyer = match chosen(scenario, name)? {
+            Named::Own(named) => Flyer::own(named.controller),
+            Named::External(named) => Flyer::external(named.external.clone())?,
+        };
+        let rate = RateFilter::new(flyer.period_s());
+        Ok(Self { flyer, angles, sample: 0, rate, log: Log::default() })
     }
 
     /// The controller's sample period, s.
     #[must_use]
     pub fn period_s(&self) -> f64 {
-        self.controller.config().dt_s
+        self.flyer.period_s()
+    }
+
+    /// True where the controller is a program, which can be lost.
+    #[must_use]
+    pub fn is_external(&self) -> bool {
+        self.flyer.is_external()
     }
 
     /// Answers a line; there is no answer to an empty one and to a comment.
@@ -127,7 +127,10 @@ impl Pilot {
     }
 
     fn reset(&mut self) -> Answer {
-        self.state = State::new();
+        if let Err(error) = self.flyer.reset() {
+            self.log.lost(&error.to_string());
+        }
+        self.sample = 0;
         self.rate = RateFilter::new(self.period_s());
         self.log.summary.resets += 1;
         Answer::Ready
@@ -137,31 +140,51 @@ impl Pilot {
         if let Err(problem) = self.judge_period(request.dt_s) {
             return self.hold(&problem);
         }
+        if self.flyer.is_lost() {
+            self.log.summary.held += 1;
+            return self.repeated();
+        }
         let Request { setpoint_rad, measurement_rad, .. } = request;
         let rate_rad_s = self.rate_rad_s(&request);
-        let (answer, fault) = self.step(Sample { setpoint_rad, measurement_rad, rate_rad_s });
+        let time_s = self.sample as f64 * self.period_s();
+        let stepped = self.flyer.step(Sample { setpoint_rad, measurement_rad, rate_rad_s });
+        let (answer, fault) = (self.command(stepped.command_rad), stepped.fault);
+        if let Some(loss) = stepped.loss {
+            let what = format!("the controller {loss} at t = {} s", short(time_s));
+            self.log.lost(&what);
+            self.log.summary.held += 1;
+            return answer;
+        }
         if HOLDING.iter().any(|&holding| fault.contains(holding)) {
             self.log.held(&fault.to_string());
             return answer;
         }
-        self.rate.remember(measurement_rad, rate_rad_s);
+        // One that is not finite was not used.
+        let known = rate_rad_s.is_finite();
+        let remembered = if known { rate_rad_s } else { self.rate.estimate_rad_s(measurement_rad) };
+        self.rate.remember(measurement_rad, remembered);
         if !fault.is_empty() {
             self.log.fault(fault);
         }
         answer
     }
 
-    /// The last command once more.
+    /// The last command once more, and why.
     fn hold(&mut self, problem: &str) -> Answer {
         self.log.held(problem);
-        self.step(NO_SAMPLE).0
+        self.repeated()
     }
 
-    fn step(&mut self, sample: Sample<f64>) -> (Answer, Faults) {
-        let step = self.controller.step(&mut self.state, sample);
+    fn repeated(&mut self) -> Answer {
+        let command_rad = self.flyer.hold();
+        self.command(command_rad)
+    }
+
+    /// Of a sample, which every command is.
+    fn command(&mut self, command_rad: f64) -> Answer {
+        self.sample += 1;
         self.log.summary.commands += 1;
-        let command = self.angles.of_radians(step.command_rad);
-        (Answer::Command(command), self.state.take_faults())
+        Answer::Command(self.angles.of_radians(command_rad))
     }
 
     /// Counts a slip; an error where no time can have passed.
@@ -188,24 +211,21 @@ impl Pilot {
             return rate_rad_s;
         }
         let estimate_rad_s = self.rate.estimate_rad_s(request.measurement_rad);
-        if self.controller.uses_rate() {
+        if self.flyer.uses_rate() {
             self.log.estimated_rate(self.rate.time_constant_s());
         }
         estimate_rad_s
     }
 }
 
-fn chosen<'a>(
-    controllers: &'a [NamedController],
-    name: Option<&str>,
-) -> Result<&'a NamedController, ChoiceError> {
-    let known = || controllers.iter().map(|named| named.name.clone()).collect();
-    match (name, controllers) {
-        (None, [only]) => Ok(only),
+fn chosen<'a>(scenario: &'a Scenario, name: Option<&str>) -> Result<Named<'a>, ChoiceError> {
+    let mut all = scenario.flyers();
+    let known = || scenario.flyers().map(|named| named.name().to_owned()).collect();
+    match (name, scenario.flyers().count()) {
+        (None, 1) => all.next().ok_or_else(|| ChoiceError::Several { known: known() }),
         (None, _) => Err(ChoiceError::Several { known: known() }),
-        (Some(name), _) => controllers
-            .iter()
-            .find(|named| named.name == name)
+        (Some(name), _) => all
+            .find(|named| named.name() == name)
             .ok_or_else(|| ChoiceError::Unknown { name: name.to_owned(), known: known() }),
     }
 }

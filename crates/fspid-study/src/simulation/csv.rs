@@ -1,5 +1,6 @@
 //! The trace as columns: angles in degrees, shortest digits that read back as the same number.
 
+use fspid_core::Gains;
 use fspid_sim::{Column, Trace};
 
 use super::{ControllerResult, Simulation};
@@ -41,6 +42,33 @@ impl Simulation {
             text.push('\n');
         }
         text
+    }
+}
+
+impl ControllerResult {
+    /// The flight as columns, each with a name that ends in its unit: time, set-point, and what
+    /// [`Simulation::csv`] has of this controller. Angles in degrees.
+    #[must_use]
+    pub fn columns(&self) -> Vec<(String, Vec<f64>)> {
+        let trace = &self.trace;
+        let angle = |values: &[f64]| values.iter().map(|value| degrees(*value)).collect::<Vec<_>>();
+        let gain = |of: fn(&Gains<f64>) -> f64| trace.gains.iter().map(of).collect();
+        let own = [
+            angle(&trace.theta_rad),
+            angle(&trace.q_rad_s),
+            angle(&trace.command_rad),
+            angle(&trace.elevator_rad),
+            gain(|gains| gains.kp),
+            gain(|gains| gains.ki),
+            gain(|gains| gains.kd),
+        ];
+        let more = trace.columns.iter();
+        let more = more.map(|it| it.values.iter().map(|value| in_degrees(it, *value)).collect());
+        let first = [
+            ("time_s".to_owned(), trace.time_s.clone()),
+            ("setpoint_deg".to_owned(), angle(&trace.setpoint_rad)),
+        ];
+        first.into_iter().chain(columns(trace).zip(own.into_iter().chain(more))).collect()
     }
 }
 

@@ -1,5 +1,6 @@
 //! `fspid campaign`: many flights of a dispersed scenario, one file a subcommand.
 
+mod engine;
 mod merge;
 mod plan;
 mod progress;
@@ -44,7 +45,7 @@ const HELP: &str = "Examples:
   fspid campaign report robust/campaign.parquet --out robust.html
   fspid campaign replay robust --run 137 --trace run-137.csv
   fspid campaign search pitch.toml --measure overshoot_pct --controller FSPID
-On a cluster: plan once, fly each shard anywhere, merge:
+On a cluster: --engine ray, dask, slurm or command; or by hand: plan once, fly each shard anywhere, merge:
   fspid campaign plan pitch.toml --runs 1000000 --out robust
   fspid campaign shard 0 --out robust
   fspid campaign merge --out robust

@@ -1,18 +1,20 @@
 //! `fspid campaign run`: fly all of it here.
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use serde_json::json;
 
 use super::super::progress::Telling;
 use super::super::{Format, interrupt};
+use super::engine::{Asked, Cluster, Engine};
 use super::progress::told;
 use super::{Planned, PlannedFolder, failure, planned};
 use crate::argument::InFile;
 use crate::exit::Failure;
-use fspid_campaign::local;
+use fspid_campaign::table::{Digest, Reader};
+use fspid_campaign::{Folder, local};
 use fspid_study::shell;
 
-/// Plan, fly and merge a campaign on this machine; again after an interruption, it goes on.
+/// Plan, fly and merge a campaign, on this machine or on a cluster; again after an interruption, it goes on.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The scenario file; left out, the campaign that is planned in the folder goes on.
@@ -21,9 +23,8 @@ pub(super) struct Arguments {
     planned: Planned,
     #[command(flatten)]
     place: PlannedFolder,
-    /// Who flies. On a cluster: `campaign plan`, `campaign shard` and `campaign merge`.
-    #[arg(long, value_enum, default_value_t = Engine::Local)]
-    engine: Engine,
+    #[command(flatten)]
+    cluster: Cluster,
     /// How many threads; 0 for as many as the machine has. The result is the same.
     #[arg(long, default_value_t = 0)]
     threads: usize,
@@ -33,13 +34,6 @@ pub(super) struct Arguments {
     /// How the answer is written.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
-}
-
-/// Who flies a campaign.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Engine {
-    /// This machine, on its threads.
-    Local,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -55,18 +49,24 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             }
         },
     };
-    let Engine::Local = arguments.engine;
     let telling = if arguments.quiet { Telling::Nothing } else { Telling::for_standard_error() };
     let runs = campaign.plan().runs;
     interrupt::ends_with(format!(
         "interrupted; what is flown stays, and this goes on: fspid campaign run --out {}",
         shell::word(&folder.path().display().to_string())
     ));
-    let flown =
-        told(telling, runs, |progress| local::run(&folder, &campaign, arguments.threads, progress));
-    let flown = flown.map_err(failure)?;
+    let digest = match arguments.cluster.engine {
+        Engine::Local => {
+            let fly = |progress: &_| local::run(&folder, &campaign, arguments.threads, progress);
+            told(telling, runs, fly).map_err(failure)?.digest
+        }
+        _ => match arguments.cluster.ask(&folder, &campaign)? {
+            Asked::Given(text, json) => return arguments.format.print(|| text, || json),
+            Asked::Merged => merged_digest(&folder)?,
+        },
+    };
     let (merged, rows) = (folder.merged_path(), runs * campaign.rows().of_run() as u64);
-    let (merged, digest) = (merged.display(), &flown.digest);
+    let merged = merged.display();
     arguments.format.print(
         || format!("{merged}: {runs} runs, {rows} rows\ndigest {digest}\n"),
         || {
@@ -76,4 +76,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             })
         },
     )
+}
+
+/// Digest of all rows that were merged.
+fn merged_digest(folder: &Folder) -> Result<Digest, Failure> {
+    let reader = Reader::open(folder.merged_path()).map_err(Failure::input)?;
+    reader.verify().map_err(Failure::input)
 }

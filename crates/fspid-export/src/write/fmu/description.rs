@@ -3,6 +3,7 @@
 use super::super::decimal;
 use super::variable::{Holds, Role, Unit, Variable};
 use super::{Fmu, Version, period_s};
+use crate::write::Heading;
 
 const HEAD: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
 const GENERATED: &str = concat!("fspid ", env!("CARGO_PKG_VERSION"));
@@ -30,6 +31,10 @@ fn attributes(pairs: &[(&str, String)]) -> String {
 }
 
 fn summary(fmu: &Fmu<'_>) -> String {
+    if fmu.is_system {
+        let Heading { name, digest, .. } = fmu.heading;
+        return format!("Fuzzy system {name}, asked once in each step; from the file {digest}");
+    }
     format!(
         "Controller {}, sampled every {} s; from the scenario {}",
         fmu.heading.name,
@@ -54,10 +59,11 @@ pub(super) fn model_description(fmu: &Fmu<'_>, variables: &[Variable], token: &s
         ("generationTool", GENERATED.to_owned()),
         ("variableNamingConvention", "flat".to_owned()),
     ]);
-    let experiment = attributes(&[
-        ("startTime", "0".to_owned()),
-        ("stepSize", decimal(period_s(fmu.program), false)),
-    ]);
+    let mut experiment = vec![("startTime", "0".to_owned())];
+    if !fmu.is_system {
+        experiment.push(("stepSize", decimal(period_s(fmu.program), false)));
+    }
+    let experiment = attributes(&experiment);
     let body = [
         interface(fmu),
         units(variables),
@@ -241,18 +247,31 @@ pub(super) fn build_description(fmu: &Fmu<'_>) -> String {
 pub(super) fn page(fmu: &Fmu<'_>) -> String {
     let name = escaped(fmu.heading.name);
     let lines: Vec<String> = fmu.heading.lines().iter().map(|line| escaped(line)).collect();
-    let period = decimal(period_s(fmu.program), false);
+    let told = if fmu.is_system { ASKED.to_owned() } else { sampled(fmu) };
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>{name}</title></head>\n<body>\n\
          <h1>{name}</h1>\n<p>{}</p>\n\
-         <p>A sample is taken at each multiple of {period} s after the start that lies in a communication step, its end \
+         {told}</body>\n</html>\n",
+        lines.join(" ")
+    )
+}
+
+/// What there is to know of a fuzzy system.
+const ASKED: &str = "<p>Every communication step asks the system once, with the inputs that were set before it, however long it is; \
+the outputs show the answer until the next. Inputs outside of their ranges are answered as the file says. Faults and sources of values are \
+described with their variables; without a value the output is 0. A call that is not allowed in the present state ends the run; reset or an \
+older state begins again.</p>\n";
+
+/// What there is to know of a controller.
+fn sampled(fmu: &Fmu<'_>) -> String {
+    let period = decimal(period_s(fmu.program), false);
+    format!(
+        "<p>A sample is taken at each multiple of {period} s after the start that lies in a communication step, its end \
          excluded; between samples the command is held. An output shows the last sample before the end of the step.</p>\n\
          <p>Angles and commands: nose up is positive. A sample that is not finite or beyond the guard holds the command and \
          latches a fault. Parameters may be changed at any communication point; a value outside of its range, or limits in \
          the wrong order, are refused with a message and change nothing. A call that is not allowed in the present state \
          ends the run; reset or an older state begins again.</p>\n\
-         <p>Whether the loop is good is not asked here: fspid verify and certify judge the design with its own parameters.</p>\n\
-         </body>\n</html>\n",
-        lines.join(" ")
+         <p>Whether the loop is good is not asked here: fspid verify and certify judge the design with its own parameters.</p>\n"
     )
 }

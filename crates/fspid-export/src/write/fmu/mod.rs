@@ -33,6 +33,8 @@ pub(crate) struct Fmu<'a> {
     pub(crate) prefix: &'a str,
     pub(crate) heading: &'a Heading<'a>,
     pub(crate) version: Version,
+    /// True for a fuzzy system, which has no period and no parameters and is asked once in each step.
+    pub(crate) is_system: bool,
 }
 
 /// The parts of an FMU but for its library.
@@ -102,8 +104,8 @@ fn period_s(program: &Program) -> f64 {
 
 /// Everything but the library.
 pub(crate) fn parts(fmu: &Fmu<'_>) -> Parts {
-    let Fmu { program, prefix, heading, version } = fmu;
-    let variables = variable::variables(program);
+    let Fmu { program, prefix, heading, version, is_system } = fmu;
+    let variables = variable::variables(program, *is_system);
     let code = c(program, prefix, heading);
     let (name, text) = version.source();
     let mut texts = vec![

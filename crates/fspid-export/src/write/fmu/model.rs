@@ -25,12 +25,9 @@ pub(super) fn model(fmu: &Fmu<'_>, variables: &[Variable], token: &str, mark: &[
          #define FMI{number}_FUNCTION_PREFIX {prefix}_\n\n\
          typedef {real} real;\n"
     );
-    for name in ["design", "reset", "hold", "step"] {
-        text.push_str(&format!("#define model_{name} {prefix}_{name}\n"));
-    }
-    for part in [Part::Configuration, Part::State, Part::Sample, Part::Answer] {
-        let part = part_name(part);
-        text.push_str(&format!("typedef {prefix}_{part} model_{part};\n"));
+    match fmu.is_system {
+        true => text.push_str(&system(program, prefix)),
+        false => text.push_str(&controller(prefix)),
     }
     text.push_str(MEMORY);
     text.push_str(&format!("static const char model_token[] = \"{token}\";\n"));
@@ -41,6 +38,47 @@ pub(super) fn model(fmu: &Fmu<'_>, variables: &[Variable], token: &str, mark: &[
     text.push_str(&order_table(variables));
     text.push_str("\n#endif\n");
     text
+}
+
+/// What a controller is called.
+fn controller(prefix: &str) -> String {
+    let mut text = String::new();
+    for name in ["design", "reset", "hold", "step"] {
+        text.push_str(&format!("#define model_{name} {prefix}_{name}\n"));
+    }
+    for part in [Part::Configuration, Part::State, Part::Sample, Part::Answer] {
+        let part = part_name(part);
+        text.push_str(&format!("typedef {prefix}_{part} model_{part};\n"));
+    }
+    text
+}
+
+/// A fuzzy system in the place of a controller: nothing to configure, perhaps nothing to remember, nothing to hold.
+fn system(program: &Program, prefix: &str) -> String {
+    let remembers = !program.state.is_empty();
+    let configured = !program.configuration.is_empty() || remembers;
+    let state = match remembers {
+        true => format!("typedef {prefix}_state model_state;"),
+        false => "typedef struct { uint8_t nothing; } model_state;".to_owned(),
+    };
+    let reset = match remembers {
+        true => format!("{prefix}_reset(state);"),
+        false => "(void)state;".to_owned(),
+    };
+    let configuration = if configured { format!("&{prefix}_design, ") } else { String::new() };
+    let asked = if remembers { "state, " } else { "" };
+    let unused = if remembers { "" } else { " (void)state;" };
+    format!(
+        "/* It has no period: a step asks it once. */\n#define MODEL_IS_ASKED_EACH_STEP 1\n\
+         typedef struct {{ uint8_t nothing; }} model_configuration;\n{state}\n\
+         typedef {prefix}_sample model_sample;\ntypedef {prefix}_answer model_answer;\n\
+         static const model_configuration model_design = {{ 0U }};\n\
+         static void model_reset(const model_configuration *design, model_state *state)\n{{\n    (void)design;\n    {reset}\n}}\n\
+         static void model_hold(const model_configuration *design, model_state *state, model_answer *answer, uint8_t fault)\n\
+         {{\n    (void)design;\n    (void)state;\n    (void)answer;\n    (void)fault;\n}}\n\
+         static void model_step(const model_configuration *design, model_state *state, const model_sample *sample, model_answer *answer)\n\
+         {{\n    (void)design;{unused}\n    {prefix}_infer({configuration}{asked}sample, answer);\n}}\n"
+    )
 }
 
 const MEMORY: &str = "
@@ -107,6 +145,11 @@ fn remembered(program: &Program) -> String {
     let members: Vec<Variable> =
         program.state.iter().filter_map(|member| plain(member, Part::State)).collect();
     let mut text = format!("#define REMEMBERED_COUNT {}U\n", members.len());
+    if members.is_empty() {
+        // C has no empty array.
+        text.push_str("static const struct place remembered[] = {\n    { type_whole, 0U },\n");
+        return text + "};\n\n";
+    }
     text.push_str("static const struct place remembered[REMEMBERED_COUNT] = {\n");
     for member in &members {
         let holds = type_name(member.holds);

@@ -99,8 +99,15 @@ impl Unit {
     }
 }
 
-/// All variables, the time first.
-pub(super) fn variables(program: &Program) -> Vec<Variable> {
+/// All variables, the time first. Those of a fuzzy system have the units of its file, which are not known.
+pub(super) fn variables(program: &Program, is_system: bool) -> Vec<Variable> {
+    let plain = |member, part| {
+        let found = plain(member, part)?;
+        Some(match is_system {
+            true => Variable { doc: member.doc.clone(), unit: None, ..found },
+            false => found,
+        })
+    };
     let time = Variable {
         name: "time".to_owned(),
         doc: "Time.".to_owned(),

@@ -2,11 +2,12 @@
 
 use std::path::PathBuf;
 
+use fspid_sim::external::{Place, Renamed};
 use fspid_sim::{External, ExternalSource, NamedExternal};
 
 use crate::file::files::Files;
 use crate::file::spec::controller as keys;
-use crate::keyed::Section;
+use crate::keyed::{Key, Section};
 use fspid_diagnostics::Report;
 
 /// The external controller of a sound section.
@@ -31,6 +32,36 @@ pub(super) fn external(
         }
     };
     let answer_limit_s = section.get(keys::ANSWER_LIMIT_S)?;
-    let external = External { source: of(path), answer_limit_s, dt_s };
+    let inputs = section.get(keys::INPUTS).map(|inputs| (inputs, &keys::FMU_INPUTS[..]));
+    let outputs = section.get(keys::OUTPUTS).map(|outputs| (outputs, OUTPUTS));
+    let mut renamed = Vec::new();
+    for (section, rows) in inputs.into_iter().chain(outputs) {
+        for keys in rows {
+            renamed.extend(called(report, section, keys)?);
+        }
+    }
+    let external = External { source: of(path), answer_limit_s, dt_s, renamed };
     Some(NamedExternal { name, external })
+}
+
+const OUTPUTS: &[[Key<str>; 2]] = &[keys::FMU_OUTPUTS];
+
+/// The variable in a place, in radians or in degrees; nothing where both are given, which is a problem.
+fn called(
+    report: &mut Report,
+    section: &Section,
+    [in_radians, in_degrees]: &[Key<str>; 2],
+) -> Option<Option<Renamed>> {
+    let given = [in_radians, in_degrees].map(|key| section.get(*key).map(|name| (key, name)));
+    let (key, name) = match given {
+        [None, None] => return Some(None),
+        [Some(_), Some(_)] => {
+            let message = format!("is given beside {}", in_radians.name.as_str());
+            section.wrong(report, *in_degrees, message, "one of both");
+            return None;
+        }
+        [Some(found), None] | [None, Some(found)] => found,
+    };
+    let (place, in_degrees) = Place::of_key(key.name.as_str())?;
+    Some(Some(Renamed { place, in_degrees, name: name.to_owned() }))
 }

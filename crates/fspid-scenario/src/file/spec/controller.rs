@@ -119,8 +119,13 @@ pub(super) static CONTROLLER_TABLE: Table = of_kinds(
             ControllerKind::External.name(),
             choosing(
                 "A program that answers samples: an export, or one of your own. It runs as you do.",
-                &[&[&LIBRARY, &FMU, &ANSWER_LIMIT_S]],
-                &[one_of!(LIBRARY, FMU)],
+                &[&[&LIBRARY, &FMU, &INPUTS, &OUTPUTS, &ANSWER_LIMIT_S]],
+                &[Choice {
+                    ways: &[
+                        Way { required: &[LIBRARY.name], optional: &[] },
+                        Way { required: &[FMU.name], optional: &[INPUTS.name, OUTPUTS.name] },
+                    ],
+                }],
             ),
         ),
     ],
@@ -134,7 +139,17 @@ pub(crate) const LIBRARY: Key<str> = optional(
 pub(crate) const FMU: Key<str> = optional(
     "fmu",
     FILE_PATH,
-    "An FMU for co-simulation (FMI 2.0 or 3.0) with the variables of `fspid export --to fmu2`, relative to this file.",
+    "An FMU for co-simulation (FMI 2.0 or 3.0), relative to this file; `inputs` and `outputs` say how its variables are called where they are not those of `fspid export --to fmu2`.",
+);
+pub(crate) const INPUTS: Key<Section> = optional(
+    "inputs",
+    table(&INPUTS_TABLE),
+    "How the FMU calls its inputs; the unit is that of the key.",
+);
+pub(crate) const OUTPUTS: Key<Section> = optional(
+    "outputs",
+    table(&OUTPUTS_TABLE),
+    "How the FMU calls its command; the unit is that of the key.",
 );
 pub(crate) const ANSWER_LIMIT_S: Key<f64> = defaulted(
     "answer_limit_s",
@@ -157,6 +172,44 @@ pub(crate) const NOMINAL_KD: Key<f64> = defaulted("kd", finite("s"), 0.0, "Deriv
 
 static PARALLEL_TABLE: Table =
     plain("Gains in parallel form.", &[&[&NOMINAL_KP, &NOMINAL_KI, &NOMINAL_KD]]);
+
+const fn called(name: &'static str, doc: &'static str) -> Key<str> {
+    optional(name, TEXT, doc)
+}
+
+/// Names of an FMU's inputs, of each place one in radians and one in degrees.
+pub(crate) const FMU_INPUTS: [[Key<str>; 2]; 3] = [
+    [
+        called("setpoint_rad", "The input for the commanded pitch, in radians."),
+        called("setpoint_deg", "The same in degrees."),
+    ],
+    [
+        called("measurement_rad", "The input for the measured pitch, in radians."),
+        called("measurement_deg", "The same in degrees."),
+    ],
+    [
+        called("rate_rad_s", "The input for the pitch rate, in radians per second."),
+        called("rate_deg_s", "The same in degrees per second."),
+    ],
+];
+/// The same of its command.
+pub(crate) const FMU_OUTPUTS: [Key<str>; 2] = [
+    called(
+        "command_rad",
+        "The output that is the command, in radians; `-name` turns the sign of one that is nose down positive.",
+    ),
+    called("command_deg", "The same in degrees."),
+];
+static INPUTS_TABLE: Table = plain(
+    "Inputs of an FMU by their names there; `-name` turns a sign.",
+    &[
+        &[&FMU_INPUTS[0][0], &FMU_INPUTS[0][1]],
+        &[&FMU_INPUTS[1][0], &FMU_INPUTS[1][1]],
+        &[&FMU_INPUTS[2][0], &FMU_INPUTS[2][1]],
+    ],
+);
+static OUTPUTS_TABLE: Table =
+    plain("Outputs of an FMU by their names there.", &[&[&FMU_OUTPUTS[0], &FMU_OUTPUTS[1]]]);
 
 pub(crate) const GAIN: Key<f64> = required("gain", finite(""), "K, command per error.");
 pub(crate) const TI_S: Key<f64> =

@@ -252,9 +252,14 @@ static enum status stepped(struct instance *it, double from_s, double step_s)
 {
     char message[120];
     struct memory *now = &it->now;
-    double period_s = (double)now->configuration.dt_s;
     double end_s = from_s + step_s;
+#ifdef MODEL_IS_ASKED_EACH_STEP
+    double period_s = step_s;
+    double due = (double)now->samples + 1.0;
+#else
+    double period_s = (double)now->configuration.dt_s;
     double due = (end_s - now->start_s) / period_s - ON_IT;
+#endif
     uint64_t count;
     uint8_t before = now->answer.faults;
     if (!(step_s > 0.0) || !is_finite(end_s)) { return failed(it, "a step must be longer than 0, and finite"); }

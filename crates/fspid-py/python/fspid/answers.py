@@ -1,0 +1,317 @@
+"""What was found out: sentences, numbers, columns, drawings."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from . import _core
+
+if TYPE_CHECKING:
+    from os import PathLike
+
+    from matplotlib.axes import Axes
+
+    from .scenario import Scenario
+
+
+class Absent(NamedTuple):
+    """A measure that there is not, and why: never NaN, and false in a condition.
+
+    Attributes
+    ----------
+    reason : str
+        Why there is none, such as ``not settled within 3 s``.
+    """
+
+    reason: str
+
+    def __bool__(self) -> bool:
+        return False
+
+    def __repr__(self) -> str:
+        return f"Absent({self.reason!r})"
+
+
+def _with_absent(values: Mapping[str, Any], reasons: Mapping[str, str]) -> dict[str, Any]:
+    """Measures, each a number or an :class:`Absent`."""
+    return {
+        name: Absent(reasons.get(name, "not asked")) if value is None else value for name, value in values.items()
+    }
+
+
+def _as_html(text: str) -> str:
+    import html
+
+    return f"<pre>{html.escape(text)}</pre>"
+
+
+class Answer:
+    """An answer of fspid.
+
+    ``print(answer)`` shows what the program prints, ``answer.to_dict()`` is what it prints as JSON.
+    """
+
+    def __init__(self, core: _core.Answer | _core.Flight) -> None:
+        self._native = core
+        self._dict: dict[str, Any] | None = None
+
+    @property
+    def good(self) -> bool:
+        """True where the program would end with exit code 0: nothing fails, everything asked is met or proved."""
+        return self._native.good
+
+    def to_dict(self) -> dict[str, Any]:
+        """What the program prints with ``--format json``, as a dictionary."""
+        import json
+
+        if self._dict is None:
+            self._dict = json.loads(self._native.json)
+        return self._dict
+
+    def __bool__(self) -> bool:
+        return self.good
+
+    def __str__(self) -> str:
+        return self._native.text
+
+    def __repr__(self) -> str:
+        return self._native.text.rstrip()
+
+    def _repr_html_(self) -> str:
+        return _as_html(self._native.text)
+
+
+class _Paged(Answer):
+    """An answer with a page that opens offline."""
+
+    _native: _core.Answer
+
+    def save(self, path: str | PathLike[str]) -> Path:
+        """Write the report, one HTML file that opens offline.
+
+        Parameters
+        ----------
+        path : path-like
+            Where to.
+
+        Returns
+        -------
+        pathlib.Path
+            The file.
+        """
+        target = Path(path)
+        target.write_text(self._native.page or "", encoding="utf-8")
+        return target
+
+
+class Trace(Mapping[str, "_core.Column"]):
+    """One controller's flight: columns by name, measures, verdict.
+
+    Columns are sequences of numbers of 64 bits, one a sample. ``numpy.asarray(trace["theta_deg"])`` takes no copy.
+    Their names end in their units; angles are in degrees, nose up is positive.
+    """
+
+    def __init__(self, name: str, columns: list[_core.Column], facts: dict[str, Any]) -> None:
+        self._columns = {column.name: column for column in columns}
+        self._facts = facts
+        self.name = name
+
+    @property
+    def verdict(self) -> str:
+        """What the flight comes to, in words: ``settled``, ``not settled within 20 s``, ``diverged …``."""
+        return str(self._facts["verdict"])
+
+    @property
+    def failed(self) -> bool:
+        """True where the flight fails whatever is required of it."""
+        return bool(self._facts["failed"])
+
+    @property
+    def measures(self) -> dict[str, float | Absent]:
+        """Measures of the first step and of the whole flight; what there is not is :class:`Absent` with its reason."""
+        return _with_absent(self._facts["metrics"], self._facts.get("absent", {}))
+
+    def to_dict(self) -> dict[str, Any]:
+        """All that is known of the flight but its columns."""
+        return self._facts
+
+    def __getitem__(self, column: str) -> _core.Column:
+        try:
+            return self._columns[column]
+        except KeyError:
+            raise KeyError(f"no column {column!r}; there are {', '.join(self._columns)}") from None
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._columns)
+
+    def __len__(self) -> int:
+        return len(self._columns)
+
+    def __repr__(self) -> str:
+        rows = len(self._columns["time_s"])
+        return f"<Trace {self.name}: {self.verdict}; {rows} samples of {', '.join(self._columns)}>"
+
+
+class Flight(Answer, Mapping[str, Trace]):
+    """A scenario that was flown: a :class:`Trace` for each controller."""
+
+    _native: _core.Flight
+
+    def __init__(self, core: _core.Flight) -> None:
+        super().__init__(core)
+        self._traces: dict[str, Trace] = {}
+
+    def __getitem__(self, controller: str) -> Trace:
+        if controller not in self._traces:
+            columns = self._native.columns(controller)
+            if columns is None:
+                raise KeyError(f"no controller {controller!r}; there are {', '.join(self._native.controllers)}")
+            facts = next(it for it in self.to_dict()["controllers"] if it["name"] == controller)
+            self._traces[controller] = Trace(controller, columns, facts)
+        return self._traces[controller]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._native.controllers)
+
+    def __len__(self) -> int:
+        return len(self._native.controllers)
+
+    def __bool__(self) -> bool:
+        return self.good
+
+    def to_csv(self, path: str | PathLike[str] | None = None) -> str:
+        """All traces as CSV, as ``fspid simulate --trace`` writes them.
+
+        Parameters
+        ----------
+        path : path-like, optional
+            A file to write as well.
+        """
+        text = self._native.csv()
+        if path is not None:
+            Path(path).write_text(text, encoding="utf-8")
+        return text
+
+    def svg(self) -> str:
+        """The time response as a drawing."""
+        return self._native.svg()
+
+    def save(self, path: str | PathLike[str]) -> Path:
+        """Write the report, one HTML file that opens offline.
+
+        Parameters
+        ----------
+        path : path-like
+            Where to.
+
+        Returns
+        -------
+        pathlib.Path
+            The file.
+        """
+        target = Path(path)
+        target.write_text(self._native.page(), encoding="utf-8")
+        return target
+
+    def plot(self, ax: Axes | None = None, column: str = "theta_deg") -> Axes:
+        """Draw a column of every controller over time with matplotlib.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to; new axes if left out.
+        column : str
+            Which column.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+        """
+        from .plot import axes
+
+        ax = axes(ax)
+        for name, trace in self.items():
+            ax.plot(list(trace["time_s"]), list(trace[column]), label=name)
+        if column == "theta_deg" and len(self) > 0:
+            first = next(iter(self.values()))
+            ax.plot(list(first["time_s"]), list(first["setpoint_deg"]), "k--", linewidth=0.8, label="set-point")
+        ax.set_xlabel("time (s)")
+        ax.set_ylabel(column)
+        ax.legend()
+        return ax
+
+    def _repr_html_(self) -> str:
+        return self._native.svg() + _as_html(self._native.text)
+
+
+class Analysis(_Paged):
+    """Margins, poles and sensitivity of every controller's loop."""
+
+    def __getitem__(self, controller: str) -> dict[str, Any]:
+        """What is known of a controller's loop; a margin that there is not is :class:`Absent` with its reason."""
+        return _by_name(self.to_dict()["controllers"], controller)
+
+
+class Verification(Answer):
+    """Requirements, each judged by its worst case."""
+
+    _native: _core.Answer
+
+    @property
+    def replays(self) -> dict[str, str]:
+        """A scenario for each requirement that is not met, by file name: it flies what fails."""
+        return dict(self._native.files)
+
+
+class Certification(Answer):
+    """Proofs that loops stay stable while their gains move, or why there is none."""
+
+    _native: _core.Answer
+
+    @property
+    def certificates(self) -> dict[str, str]:
+        """Certificates by file name: ``fspid certify --check`` verifies them without trust in who wrote them."""
+        return dict(self._native.files)
+
+    def save(self, folder: str | PathLike[str]) -> list[Path]:
+        """Write the certificates into a folder, which is made if it is not there."""
+        target = Path(folder)
+        target.mkdir(parents=True, exist_ok=True)
+        paths = []
+        for name, text in self._native.files:
+            (target / name).write_text(text, encoding="utf-8")
+            paths.append(target / name)
+        return paths
+
+
+class Design(Answer):
+    """Numbers that were chosen, and the scenario that flies them."""
+
+    _native: _core.Answer
+
+    def __init__(self, core: _core.Answer, origin: Scenario) -> None:
+        super().__init__(core)
+        self._origin = origin
+
+    @property
+    def toml(self) -> str:
+        """The scenario with what was found in place of its marks."""
+        return self._native.files[0][1]
+
+    @property
+    def scenario(self) -> Scenario:
+        """The scenario that flies the design."""
+        return self._origin._beside(self.toml)
+
+
+class Contest(_Paged):
+    """Controllers tuned alike and judged on what none of them was tuned on."""
+
+
+def _by_name(facts: list[dict[str, Any]], name: str) -> dict[str, Any]:
+    for each in facts:
+        if each["name"] == name:
+            return _with_absent(each, each.get("reasons", {}))
+    raise KeyError(f"no controller {name!r}; there are {', '.join(each['name'] for each in facts)}")

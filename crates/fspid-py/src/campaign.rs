@@ -1,0 +1,206 @@
+//! Many flights of a dispersed scenario: planned, flown in parts, merged.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use fspid::campaign::report;
+use fspid::campaign::sample::Sampling;
+use fspid::campaign::shard::{self, Done};
+use fspid::campaign::summary::{self, Summary, SummaryError, SummarySettings};
+use fspid::campaign::{self, CampaignError, Folder, Progress, Question, local, merge};
+use pyo3::prelude::*;
+
+use crate::answer::Answer;
+use crate::scenario::Scenario;
+use crate::{error, interrupt};
+
+/// A campaign that is planned in a folder.
+#[pyclass(frozen, module = "fspid._core")]
+pub(crate) struct Campaign {
+    folder: Folder,
+    campaign: Arc<campaign::Campaign>,
+    progress: Arc<Progress>,
+}
+
+impl Campaign {
+    fn new(folder: Folder, campaign: campaign::Campaign) -> Self {
+        Self { folder, campaign: Arc::new(campaign), progress: Arc::default() }
+    }
+}
+
+fn sampling(py: Python<'_>, name: &str) -> PyResult<Sampling> {
+    match name {
+        "random" => Ok(Sampling::Random),
+        "latin-hypercube" => Ok(Sampling::LatinHypercube),
+        "sobol" => Ok(Sampling::Sobol),
+        _ => {
+            let allowed = "random, latin-hypercube or sobol";
+            Err(error::input(py, format_args!("sampling is `{name}`; allowed is {allowed}")))
+        }
+    }
+}
+
+#[pymethods]
+impl Campaign {
+    /// Plans a campaign in a folder, or finds it there.
+    #[staticmethod]
+    fn plan(
+        py: Python<'_>,
+        scenario: &Scenario,
+        out: PathBuf,
+        runs: u64,
+        seed: u64,
+        sampling: &str,
+        shard_runs: Option<u64>,
+    ) -> PyResult<Self> {
+        let (path, sampling) = (scenario.file(py)?, self::sampling(py, sampling)?);
+        let overrides = scenario.overrides();
+        let folder = Folder::new(&out);
+        let question = Question { scenario: &path, overrides, runs, seed, sampling, shard_runs };
+        let planned = py.detach(|| {
+            let planned = campaign::plan(&question, &folder)?;
+            folder.put_plan(planned.plan())?;
+            Ok(planned)
+        });
+        let planned = planned.map_err(|found: CampaignError| error::campaign(py, &found))?;
+        Ok(Self::new(folder, planned))
+    }
+
+    /// The campaign that is planned in a folder.
+    #[staticmethod]
+    fn planned(py: Python<'_>, out: PathBuf) -> PyResult<Self> {
+        let folder = Folder::new(&out);
+        let planned = py.detach(|| campaign::Campaign::new(folder.plan()?, folder.path()));
+        let planned = planned.map_err(|found| error::campaign(py, &found))?;
+        Ok(Self::new(folder, planned))
+    }
+
+    /// How many runs it has.
+    #[getter]
+    fn runs(&self) -> u64 {
+        self.campaign.plan().runs
+    }
+
+    /// How many shards it has.
+    #[getter]
+    fn shards(&self) -> u64 {
+        self.campaign.plan().shards()
+    }
+
+    /// What tells it from every other campaign.
+    #[getter]
+    fn id(&self) -> String {
+        self.campaign.plan().id()
+    }
+
+    /// Runs that are flown, that were there, and flights that failed, so far.
+    #[getter]
+    fn progress(&self) -> (u64, u64, u64) {
+        (self.progress.flown(), self.progress.found(), self.progress.failed())
+    }
+
+    /// Where the rows of all runs lie once it is merged.
+    #[getter]
+    fn file(&self) -> PathBuf {
+        self.folder.merged_path()
+    }
+
+    /// Flies what is missing and merges it; the digest of all rows.
+    fn run(&self, py: Python<'_>, threads: usize) -> PyResult<String> {
+        let (folder, campaign) = (self.folder.clone(), Arc::clone(&self.campaign));
+        let progress = Arc::clone(&self.progress);
+        let flown = interrupt::run_until(
+            py,
+            || self.progress.stop(),
+            move || local::run(&folder, &campaign, threads, &progress),
+        )?;
+        let flown = flown.map_err(|found| error::campaign(py, &found))?;
+        Ok(flown.digest.to_string())
+    }
+
+    /// Flies one shard unless it is there; true where it was flown now.
+    fn shard(&self, py: Python<'_>, number: u64, threads: usize) -> PyResult<bool> {
+        let (folder, campaign) = (self.folder.clone(), Arc::clone(&self.campaign));
+        let progress = Arc::clone(&self.progress);
+        let done = interrupt::run_until(
+            py,
+            || self.progress.stop(),
+            move || {
+                let plan = campaign.plan();
+                let most = plan.shards().saturating_sub(1);
+                let range =
+                    plan.shard(number).ok_or(CampaignError::NoShard { found: number, most })?;
+                let _shared = folder.lock(false)?;
+                let _alone = folder.lock_shard(range)?;
+                local::in_threads(threads, || shard::fly(&folder, &campaign, number, &progress))?
+            },
+        )?;
+        let done: Result<Done, CampaignError> = done;
+        done.map(|done| done == Done::Flown).map_err(|found| error::campaign(py, &found))
+    }
+
+    /// Shards whose parts are not there, or not whole.
+    fn missing(&self, py: Python<'_>) -> PyResult<Vec<u64>> {
+        let (folder, campaign) = (self.folder.clone(), Arc::clone(&self.campaign));
+        interrupt::run(py, move || shard::missing(&folder, &campaign))
+    }
+
+    /// Takes in the part of a shard that was flown elsewhere.
+    fn put(&self, py: Python<'_>, number: u64, part: &[u8]) -> PyResult<()> {
+        let put = py.detach(|| {
+            let _lock = self.folder.lock(false)?;
+            shard::put(&self.folder, &self.campaign, number, part)
+        });
+        put.map_err(|found: CampaignError| error::campaign(py, &found))
+    }
+
+    /// Where the part of a shard lies once it is flown.
+    fn part(&self, py: Python<'_>, number: u64) -> PyResult<PathBuf> {
+        let plan = self.campaign.plan();
+        let most = plan.shards().saturating_sub(1);
+        let none = || error::campaign(py, &CampaignError::NoShard { found: number, most });
+        plan.shard(number).map(|range| self.folder.shard_path(range)).ok_or_else(none)
+    }
+
+    /// The plan, as its file has it.
+    #[getter]
+    fn plan_text(&self) -> String {
+        format!("{:#}\n", self.campaign.plan().json())
+    }
+
+    /// From where the scenario names files.
+    #[getter]
+    fn scenario_folder(&self) -> PathBuf {
+        self.folder.path().join(&self.campaign.plan().scenario_folder)
+    }
+
+    /// Files that the scenario names, as it names them.
+    #[getter]
+    fn files(&self) -> Vec<String> {
+        self.campaign.template().study().files.clone()
+    }
+
+    /// Merges all shards; the digest of all rows.
+    fn merge(&self, py: Python<'_>) -> PyResult<String> {
+        let (folder, campaign) = (self.folder.clone(), Arc::clone(&self.campaign));
+        let digest = interrupt::run(py, move || {
+            let _lock = folder.lock(true)?;
+            merge(&folder, &campaign, &folder.merged_path())
+        })?;
+        digest.map(|digest| digest.to_string()).map_err(|found| error::campaign(py, &found))
+    }
+
+    /// How often it failed, and by how much, with a report.
+    fn summary(&self, py: Python<'_>, confidence: f64) -> PyResult<Answer> {
+        let path = self.folder.merged_path();
+        let answer = interrupt::run(py, move || {
+            let summary = Summary::of(&path, SummarySettings { confidence })?;
+            let folder = path.parent().map(|folder| folder.display().to_string());
+            let settings = report::Settings { summary: SummarySettings { confidence }, folder };
+            let page = report::page_of(&path, &summary, &settings)?;
+            let answer = Answer::new(summary::text(&summary), &summary::json(&summary), true);
+            Ok::<_, SummaryError>(answer.with_page(page))
+        })?;
+        answer.map_err(|found| error::input(py, found))
+    }
+}

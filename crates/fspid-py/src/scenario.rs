@@ -1,0 +1,261 @@
+//! A scenario: its text with changes, checked, and what can be asked of it.
+
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, OnceLock};
+
+use fspid::scenario::file::{self, STARTERS, Study, starter_named};
+use fspid::study::analysis::{Analysis, BreakPoint, Question};
+use fspid::study::certify::{self, Certification, Effort};
+use fspid::study::report;
+use fspid::study::simulation::Simulation;
+use fspid::study::verify;
+use fspid::tune::Source;
+use pyo3::prelude::*;
+use tempfile::TempDir;
+
+use crate::answer::{Answer, Flight};
+use crate::{error, interrupt};
+
+/// A scenario without a mistake.
+#[pyclass(frozen, module = "fspid._core")]
+pub(crate) struct Scenario {
+    text: String,
+    /// Its file; none for one that was made in memory.
+    path: Option<PathBuf>,
+    /// From where it names files; none for a scenario that can name none.
+    folder: Option<PathBuf>,
+    overrides: Vec<String>,
+    study: Arc<Study>,
+    /// Where one that was made in memory is written for what reads files.
+    written: OnceLock<TempDir>,
+}
+
+impl Scenario {
+    fn new(
+        py: Python<'_>,
+        text: String,
+        path: Option<PathBuf>,
+        folder: Option<PathBuf>,
+        overrides: Vec<String>,
+    ) -> PyResult<Self> {
+        let name = path.as_ref().map_or_else(|| NAME.to_owned(), |path| path.display().to_string());
+        let study = py.detach(|| file::parse(&text, &name, folder.as_deref(), &overrides));
+        let study = Arc::new(study.map_err(|found| error::problems(py, &found))?);
+        Ok(Self { text, path, folder, overrides, study, written: OnceLock::new() })
+    }
+
+    pub(crate) fn study(&self) -> &Study {
+        &self.study
+    }
+
+    /// What tunings and contests read.
+    pub(crate) fn source(&self, py: Python<'_>) -> PyResult<Source> {
+        Ok(Source { path: self.file(py)?, overrides: self.overrides.clone() })
+    }
+
+    /// Its own file, beside which a search without a design keeps its state.
+    pub(crate) fn kept_beside(&self) -> Option<PathBuf> {
+        self.path.clone()
+    }
+
+    pub(crate) fn overrides(&self) -> &[String] {
+        &self.overrides
+    }
+
+    /// A file with its text.
+    pub(crate) fn file(&self, py: Python<'_>) -> PyResult<PathBuf> {
+        if let Some(path) = &self.path {
+            let now = file::read_text(path).map_err(|found| error::load(py, &found))?;
+            if now == self.text {
+                return Ok(path.clone());
+            }
+            let path = path.display();
+            return Err(error::input(
+                py,
+                format_args!("{path} has changed since it was read; read it again"),
+            ));
+        }
+        if let Some(folder) = self.written.get() {
+            return Ok(folder.path().join(NAME));
+        }
+        let folder = tempfile::tempdir()?;
+        std::fs::write(folder.path().join(NAME), &self.text)?;
+        Ok(self.written.get_or_init(|| folder).path().join(NAME))
+    }
+}
+
+/// What a scenario without a file is called in messages.
+const NAME: &str = "scenario.toml";
+
+#[pymethods]
+impl Scenario {
+    /// Reads a file.
+    #[staticmethod]
+    fn read(py: Python<'_>, path: PathBuf, overrides: Vec<String>) -> PyResult<Self> {
+        let text = file::read_text(&path).map_err(|found| error::load(py, &found))?;
+        let folder = path.parent().map(Path::to_owned);
+        Self::new(py, text, Some(path), folder, overrides)
+    }
+
+    /// Reads a text.
+    #[staticmethod]
+    fn parse(py: Python<'_>, text: String, overrides: Vec<String>) -> PyResult<Self> {
+        Self::new(py, text, None, None, overrides)
+    }
+
+    /// The same with more changes.
+    fn changed(&self, py: Python<'_>, overrides: Vec<String>) -> PyResult<Self> {
+        let all = self.overrides.iter().cloned().chain(overrides).collect();
+        Self::new(py, self.text.clone(), self.path.clone(), self.folder.clone(), all)
+    }
+
+    /// Another scenario, which names files from where this one does: a design of it.
+    fn beside(&self, py: Python<'_>, text: String) -> PyResult<Self> {
+        Self::new(py, text, None, self.folder.clone(), Vec::new())
+    }
+
+    /// Its text, without its changes.
+    #[getter]
+    fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// Its changes, as `--set` takes them.
+    #[getter(overrides)]
+    fn given_overrides(&self) -> Vec<String> {
+        self.overrides.clone()
+    }
+
+    /// Its name; empty for none.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.study.scenario.name
+    }
+
+    /// SHA-256 of everything that it says.
+    #[getter]
+    fn digest(&self) -> &str {
+        &self.study.digest
+    }
+
+    /// What is allowed and probably not meant.
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.study.warnings.clone()
+    }
+
+    /// Names of its controllers, in their order.
+    #[getter]
+    fn controllers(&self) -> Vec<String> {
+        self.study.scenario.flyers().map(|flyer| flyer.name().to_owned()).collect()
+    }
+
+    /// Every place that can be changed, as `fspid check --paths` prints it.
+    fn paths(&self, py: Python<'_>) -> PyResult<Answer> {
+        let rows = file::paths(&self.file(py)?, &self.overrides);
+        let rows = rows.map_err(|found| error::load(py, &found))?;
+        Ok(Answer::new(file::paths_text(&rows), &file::paths_json(&rows), true))
+    }
+
+    /// Flies it.
+    fn simulate(&self, py: Python<'_>) -> PyResult<Flight> {
+        let study = Arc::clone(&self.study);
+        let flown = interrupt::run(py, move || Simulation::of(&study))?;
+        let simulation = flown.map_err(|found| error::input(py, found))?;
+        Ok(Flight::new(Arc::clone(&self.study), simulation))
+    }
+
+    /// Margins of its loops.
+    fn analyse(
+        &self,
+        py: Python<'_>,
+        broken_at: &str,
+        map_points: usize,
+        fly: bool,
+    ) -> PyResult<Answer> {
+        let point = match broken_at {
+            "command" => BreakPoint::Command,
+            "pitch" => BreakPoint::Pitch,
+            "rate" => BreakPoint::Rate,
+            _ => {
+                let message =
+                    format!("broken_at is `{broken_at}`; allowed is command, pitch or rate");
+                return Err(error::input(py, message));
+            }
+        };
+        let study = Arc::clone(&self.study);
+        let question = Question { point, map_points, fly, ..Question::default() };
+        let answer = interrupt::run(py, move || {
+            let analysis = Analysis::of(&study, question)?;
+            let page = report::of_analysis(&study, &analysis)?;
+            let answer = Answer::new(analysis.text(), &analysis.json(), analysis.all_held());
+            Ok::<_, fspid::sim::SimError>(answer.with_page(page))
+        })?;
+        answer.map_err(|found| error::input(py, found))
+    }
+
+    /// Proofs that its loops stay stable while gains move; the files are certificates.
+    fn certify(&self, py: Python<'_>, controller: Option<String>) -> PyResult<Answer> {
+        let names = self.controllers();
+        if let Some(name) = controller.as_ref().filter(|name| !names.contains(name)) {
+            let known: Vec<&str> = names.iter().map(String::as_str).collect();
+            let known = file::known_words(name, &known);
+            return Err(error::input(py, format_args!("there is no controller `{name}`{known}")));
+        }
+        let study = Arc::clone(&self.study);
+        let answer = interrupt::run(py, move || {
+            let found = Certification::of(&study, controller.as_deref(), &Effort::default())?;
+            let files = found.results.iter().filter_map(|it| {
+                Some((it.file_name(), certify::to_text(it.certificate()?, &it.origin)))
+            });
+            let files = files.collect();
+            let answer = Answer::new(found.text(), &found.json(), found.all_proved());
+            Ok::<_, fspid::sim::SimError>(answer.with_files(files))
+        })?;
+        answer.map_err(|found| error::input(py, found))
+    }
+
+    /// Judges its requirements, those of ready sets and of files; the files replay what is not met.
+    fn verify(
+        &self,
+        py: Python<'_>,
+        sets: Vec<String>,
+        requirement_files: Vec<PathBuf>,
+        replays: PathBuf,
+    ) -> PyResult<Answer> {
+        let path = self.file(py)?;
+        let settings: Vec<String> = self.overrides.iter().cloned().chain(sets).collect();
+        let answer = interrupt::run(py, move || {
+            let requirement_files: Vec<&Path> =
+                requirement_files.iter().map(AsRef::as_ref).collect();
+            let question = verify::Question {
+                path: &path,
+                settings: &settings,
+                requirement_files: &requirement_files,
+            };
+            let found = verify::verify(&question)?;
+            let good = found.unmet() == 0 && found.failed_flights.is_empty();
+            let files = found.replays(&replays).into_iter().map(|it| (it.name, it.text)).collect();
+            let answer = Answer::new(found.text(None), &found.json(None), good);
+            Ok::<_, verify::VerifyError>(answer.with_files(files))
+        })?;
+        answer.map_err(|found| error::verify(py, &found))
+    }
+}
+
+/// A commented scenario to begin with.
+#[pyfunction]
+pub(crate) fn starter(py: Python<'_>, name: &str) -> PyResult<&'static str> {
+    starter_named(name).map(|starter| starter.text).ok_or_else(|| {
+        let names: Vec<&str> = STARTERS.iter().map(|starter| starter.name).collect();
+        let known = file::known_words(name, &names);
+        error::input(py, format_args!("there is no scenario `{name}`{known}"))
+    })
+}
+
+/// Names of all scenarios to begin with, each with what it is about; rule tables and fuzzy systems are none.
+#[pyfunction]
+pub(crate) fn starters() -> Vec<(&'static str, &'static str)> {
+    let scenarios = STARTERS.iter().filter(|it| file::parse(it.text, it.name, None, &[]).is_ok());
+    scenarios.map(|starter| (starter.name, starter.about)).collect()
+}

@@ -1,0 +1,51 @@
+"""What tests share: scenarios, and the program beside which answers are compared."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+import fspid
+
+ROOT = Path(__file__).resolve().parents[3]
+
+STEP = {
+    "schema": 1,
+    "name": "five degrees",
+    "plant": {"preset": "b747-paper"},
+    "loop": {"sample_period_s": 0.01, "duration_s": 20.0},
+    "setpoint": {"kind": "step", "amplitude_deg": 5.0},
+    "controller": [{"name": "PID", "kind": "pid", "kp": 2.0, "ki": 0.5, "kd": 1.0}],
+}
+
+
+@pytest.fixture
+def step() -> fspid.Scenario:
+    """A step of five degrees, flown by a PID."""
+    return fspid.Scenario.from_dict(STEP)
+
+
+def program() -> str | None:
+    """The program ``fspid`` of the same sources, if it is built."""
+    named = os.environ.get("FSPID_PROGRAM")
+    built = [ROOT / "target" / profile / "fspid" for profile in ("release", "debug")]
+    found = [named] if named else [str(path) for path in built if path.exists()]
+    return found[0] if found else shutil.which("fspid")
+
+
+@pytest.fixture
+def cli(tmp_path: Path):  # type: ignore[no-untyped-def]
+    """Runs the program in a folder of its own; its standard output, whatever its exit code."""
+    found = program()
+    if found is None:
+        pytest.skip("the program is not built: cargo build --release, or FSPID_PROGRAM=path")
+
+    def run(*arguments: object) -> str:
+        words = [found, *(str(argument) for argument in arguments)]
+        return subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False).stdout
+
+    return run

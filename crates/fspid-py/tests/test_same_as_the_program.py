@@ -1,0 +1,102 @@
+"""Python and the program answer with the same bits, for every command."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+import fspid
+
+from conftest import ROOT
+
+PRESETS = ["pitch-hold", "requirements"]
+
+
+def written(scenario: fspid.Scenario, folder: Path) -> Path:
+    path = folder / "scenario.toml"
+    path.write_text(scenario.toml, encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize("name", list(fspid.Scenario.presets()))
+def test_a_flight_has_the_bits_of_the_program(name, cli, tmp_path):
+    scenario = fspid.Scenario.preset(name)
+    path = written(scenario, tmp_path)
+    flight = scenario.simulate()
+    assert flight.to_dict() == json.loads(cli("simulate", path, "--format", "json", "--trace", "trace.csv"))
+    assert flight.to_csv() == (tmp_path / "trace.csv").read_text()
+    assert str(flight) == cli("simulate", path)
+
+
+def test_columns_are_those_of_the_trace(step, tmp_path):
+    lines = step.simulate().to_csv().splitlines()
+    trace = step.simulate()["PID"]
+    assert lines[0].split(",") == list(trace)
+    for line, *values in zip(lines[1:], *(trace[name] for name in trace), strict=True):
+        assert [float(text) for text in line.split(",")] == values
+
+
+def test_changes_are_those_of_set(cli, tmp_path):
+    scenario = fspid.Scenario.preset("pitch-hold")
+    path = written(scenario, tmp_path)
+    changed = scenario.with_(controller={"PID": {"kp": 1.5}}, loop={"duration_s": 12.0})
+    asked = [word for change in changed.changes for word in ("--set", change)]
+    assert changed.simulate().to_dict() == json.loads(cli("simulate", path, *asked, "--format", "json"))
+    assert changed.simulate().to_dict() != scenario.simulate().to_dict()
+
+
+@pytest.mark.parametrize("broken_at", ["command", "pitch"])
+def test_margins_are_those_of_the_program(broken_at, cli, tmp_path):
+    scenario = fspid.Scenario.preset("pitch-hold")
+    path = written(scenario, tmp_path)
+    answer = scenario.analyse(broken_at=broken_at)
+    assert answer.to_dict() == json.loads(cli("analyse", path, "--broken-at", broken_at, "--format", "json"))
+
+
+def test_verdicts_of_requirements_are_those_of_the_program(cli, tmp_path):
+    scenario = fspid.Scenario.preset("requirements")
+    path = written(scenario, tmp_path)
+    ours, theirs = scenario.verify(["ctms"]).to_dict(), json.loads(cli("verify", path, "--set", "ctms", "--format", "json"))
+    # Where the scenario lies is all that may differ.
+    assert json.dumps(ours).replace(str(Path(ours["file"])), "") == json.dumps(theirs).replace(str(path), "")
+
+
+def test_certificates_are_those_of_the_program(step, cli, tmp_path):
+    path = written(step, tmp_path)
+    answer = step.certify()
+    assert answer.to_dict() == json.loads(cli("certify", path, "--out", "certificates", "--format", "json"))
+    for name, text in answer.certificates.items():
+        assert (tmp_path / "certificates" / name).read_text() == text
+
+
+def test_a_tuned_design_is_that_of_the_program(cli, tmp_path):
+    path = ROOT / "scenarios" / "gallery" / "tune-navion.toml"
+    design = fspid.Scenario.from_file(path).tune(budget=40, out=tmp_path / "ours.toml")
+    answer = json.loads(cli("tune", path, "--budget", 40, "--quiet", "--out", "theirs.toml", "--format", "json"))
+    assert design.to_dict() == answer
+    ours, theirs = (tmp_path / "ours.toml").read_text(), (tmp_path / "theirs.toml").read_text()
+    assert ours == theirs == design.toml
+
+
+def test_a_rule_gives_the_gains_of_the_program(cli):
+    path = ROOT / "scenarios" / "gallery" / "tune-navion.toml"
+    design = fspid.Scenario.from_file(path).tune_by_rule("amigo")
+    assert design.to_dict() == json.loads(cli("tune", path, "--rule", "amigo", "--format", "json"))
+
+
+def test_a_campaign_leaves_the_file_of_the_program(cli, tmp_path):
+    path = ROOT / "scenarios" / "campaign.toml"
+    campaign = fspid.Scenario.from_file(path).campaign(tmp_path / "ours", runs=60, seed=7, shard_runs=25)
+    cli("campaign", "run", path, "--runs", 60, "--seed", 7, "--shard-runs", 25, "--quiet", "--out", "theirs")
+    assert campaign.file.read_bytes() == (tmp_path / "theirs" / "campaign.parquet").read_bytes()
+    report = json.loads(cli("campaign", "report", tmp_path / "ours" / "campaign.parquet", "--format", "json"))
+    assert campaign.summary().to_dict() == report
+
+
+def test_a_contest_answers_as_the_program(cli, tmp_path):
+    path = ROOT / "scenarios" / "contest" / "light.toml"
+    ours = fspid.Scenario.from_file(path).contest(tmp_path / "contest", budget=4, seeds=1).to_dict()
+    theirs = cli("contest", path, "--budget", 4, "--seeds", 1, "--quiet", "--out", "theirs/contest", "--format", "json")
+    assert ours == json.loads(theirs)

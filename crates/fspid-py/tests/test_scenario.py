@@ -1,0 +1,164 @@
+"""Scenarios in Python: made, changed, refused."""
+
+from __future__ import annotations
+
+import math
+import pickle
+import subprocess
+import sys
+import threading
+import time
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import fspid
+from fspid._toml import value_of
+
+from conftest import ROOT, STEP
+
+
+def test_a_scenario_says_what_it_is(step):
+    assert repr(step) == "<Scenario 'five degrees': PID>"
+    assert step.controllers == ["PID"]
+    assert step.check() == []
+
+
+def test_everything_that_is_wrong_is_told_at_once():
+    wrong = {**STEP, "loop": {"sample_period_s": -1.0, "duratio_s": 20.0}}
+    with pytest.raises(fspid.ScenarioError) as told:
+        fspid.Scenario.from_dict(wrong)
+    problems = {problem.path: problem for problem in told.value.problems}
+    assert set(problems) >= {"loop.sample_period_s", "loop.duratio_s"}
+    assert problems["loop.sample_period_s"].found == "-1.0"
+    assert problems["loop.sample_period_s"].allowed
+    assert "did you mean `duration_s`" in problems["loop.duratio_s"].message
+    assert isinstance(told.value, fspid.InputError) and isinstance(told.value, ValueError)
+
+
+def test_an_unknown_preset_is_answered_with_those_that_there_are():
+    with pytest.raises(fspid.InputError, match="pitch-hold"):
+        fspid.Scenario.preset("pitch-hol")
+
+
+def test_a_file_that_is_not_there_is_told_by_name(tmp_path):
+    with pytest.raises(fspid.FileError, match="nothing.toml"):
+        fspid.Scenario.from_file(tmp_path / "nothing.toml")
+
+
+def test_a_file_that_changed_since_it_was_read_is_not_flown_as_another(tmp_path):
+    path = tmp_path / "pitch.toml"
+    path.write_text(fspid.Scenario.preset("requirements").toml)
+    scenario = fspid.Scenario.from_file(path)
+    path.write_text(path.read_text() + "\n# more\n")
+    with pytest.raises(fspid.InputError, match="has changed since it was read"):
+        scenario.verify()
+
+
+def test_a_measure_that_there_is_not_says_why_and_is_no_number(step):
+    slow = step.with_(controller={"PID": {"kp": 0.05, "ki": 0.0, "kd": 0.0}}, loop={"duration_s": 1.0})
+    found = slow.simulate()["PID"].measures["settling_time_s"]
+    assert isinstance(found, fspid.Absent)
+    assert not found and "not settled" in found.reason
+
+
+def test_an_unstable_loop_is_an_answer_and_not_good(step):
+    flight = step.with_({"controller.PID.kp": -20.0}).simulate()
+    assert not flight.good and not flight
+    assert flight["PID"].failed
+
+
+def test_a_controller_that_there_is_not_is_answered_with_those_that_there_are(step):
+    with pytest.raises(KeyError, match="there are PID"):
+        step.simulate()["FSPID"]
+    with pytest.raises(KeyError, match="theta_deg"):
+        step.simulate()["PID"]["theta"]
+
+
+values = st.recursive(
+    st.booleans() | st.integers(-(2**63), 2**63 - 1) | st.floats(allow_nan=False, allow_infinity=False) | st.text(),
+    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(), inner, max_size=4),
+    max_leaves=12,
+)
+
+
+@given(values)
+def test_every_value_is_written_as_toml_reads_it(value):
+    tomllib = pytest.importorskip("tomllib")
+    try:
+        read = tomllib.loads(f"it = {value_of(value)}")["it"]
+    except UnicodeEncodeError:
+        return
+    assert read == value
+
+
+@pytest.mark.parametrize("wrong", [None, object(), {1: 2}, {"plant": None}, {"plant": {1, 2}}, b"bytes"])
+def test_what_is_no_scenario_is_refused_in_words(wrong):
+    with pytest.raises(fspid.Error):
+        fspid.Scenario.from_dict(wrong)
+
+
+def test_flights_do_not_hold_the_interpreter(step):
+    counted, stop = [0], threading.Event()
+
+    def count():
+        while not stop.is_set():
+            counted[0] += 1
+            time.sleep(0.001)
+
+    slow = fspid.Scenario.from_file(ROOT / "scenarios" / "gallery" / "tune-navion.toml")
+    beside = threading.Thread(target=count)
+    beside.start()
+    slow.tune(budget=60)
+    stop.set()
+    beside.join()
+    assert counted[0] > 5
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="sends a signal as a terminal does")
+def test_ctrl_c_leaves_a_campaign_that_goes_on(tmp_path):
+    import signal
+
+    work = f"""
+import fspid
+scenario = fspid.Scenario.from_file({str(ROOT / "scenarios" / "campaign.toml")!r})
+print("begun", flush=True)
+scenario.campaign({str(tmp_path / "c")!r}, runs=200000, shard_runs=200, threads=1)
+"""
+    flying = subprocess.Popen([sys.executable, "-c", work], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    assert flying.stdout is not None and flying.stdout.readline() == "begun\n"
+    shards = tmp_path / "c" / "shards"
+    while flying.poll() is None and not (shards.exists() and any(shards.glob("*.parquet"))):
+        time.sleep(0.05)
+    flying.send_signal(signal.SIGINT)
+    begun = time.monotonic()
+    _, told = flying.communicate(timeout=30)
+    assert "KeyboardInterrupt" in told
+    # Far above what is promised, on a machine that does other things: it must not wait for the campaign.
+    assert time.monotonic() - begun < 10.0
+    assert fspid.Campaign.from_folder(tmp_path / "c").fly_shard(0) is False
+
+
+def test_numpy_reads_columns_where_they_lie(step):
+    numpy = pytest.importorskip("numpy")
+    column = step.simulate()["PID"]["theta_deg"]
+    array = numpy.asarray(column)
+    assert array.dtype == numpy.float64 and array.shape == (len(column),)
+    assert array.__array_interface__["data"][0] == column.__array_interface__["data"][0]
+    assert not array.flags.writeable
+    assert array.tolist() == column.tolist() == [column[k] for k in range(len(column))]
+    assert math.isclose(column[-1], array[-1])
+    with pytest.raises(IndexError):
+        column[len(column)]
+
+
+def test_import_needs_nothing_and_is_quick():
+    asked = "import sys, fspid; print([m for m in ('numpy', 'matplotlib', 'json') if m in sys.modules])"
+    told = subprocess.run([sys.executable, "-c", asked], capture_output=True, text=True, check=True).stdout
+    assert told.strip() == "[]"
+
+
+def test_errors_travel_between_processes():
+    error = fspid.ScenarioError("wrong", "{}")
+    assert str(pickle.loads(pickle.dumps(error))) == "wrong"
