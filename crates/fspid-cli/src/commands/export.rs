@@ -12,6 +12,7 @@ use super::external_controller::leave_out;
 use super::{Format, json_text};
 use crate::argument::{Folder, InFile};
 use crate::exit::{Failure, note, print};
+use fspid_diagnostics::listed;
 use fspid_export::program::Precision;
 use fspid_export::table::is_sampled;
 use fspid_export::{Angles, Export, File, Request, Target, export_called, prefix, prefixes};
@@ -197,7 +198,7 @@ fn chosen<'a>(study: &'a Study, name: Option<&str>) -> Result<&'a NamedControlle
         (None, [only]) => Ok(only),
         (None, _) => Err(Failure::input(format_args!(
             "--controller NAME is missing; the scenario flies {}",
-            names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
+            listed(&names)
         ))),
         (Some(name), all) => all.iter().find(|named| named.name == name).ok_or_else(|| {
             let known = file::known_words(name, &names);
