@@ -142,7 +142,8 @@ impl Campaign {
     /// Flies some runs on all threads of the pool that this is called in.
     ///
     /// # Errors
-    /// [`CampaignError::Stopped`] where it was asked to; no other where the runs are of this campaign.
+    /// [`CampaignError::Stopped`] where it was asked to, and a machine that cannot start external controllers; no other where
+    /// the runs are of this campaign.
     pub fn fly(&self, range: Range, progress: &Progress) -> Result<ColumnTable, CampaignError> {
         let at_once = engine::at_once(self.template.study()) as u64;
         let groups = (range.end.saturating_sub(range.first)).div_ceil(at_once);
@@ -153,11 +154,12 @@ impl Campaign {
             let first = range.first + group * at_once;
             let numbers = first..(first + at_once).min(range.end);
             let drawn = numbers.map(|number| (number, self.drawn(number)));
-            let runs = self.fly_with(memory, drawn);
+            let runs = self.fly_with(memory, drawn)?;
             progress.add(&runs, self.rows.of_run());
             Ok(self.rows.table(&runs)?)
         };
-        let tables: Vec<_> = (0..groups).into_par_iter().map_init(Memory::default, fly).collect();
+        let tables: Vec<Result<ColumnTable, CampaignError>> =
+            (0..groups).into_par_iter().map_init(Memory::default, fly).collect();
         let mut whole = ColumnTable::new(std::sync::Arc::clone(self.rows.schema()));
         for table in tables {
             whole.append(&table?)?;
@@ -166,7 +168,13 @@ impl Campaign {
     }
 
     /// Flies a few runs side by side.
-    pub fn fly_together(&self, drawn: impl Iterator<Item = (u64, Vec<Drawn>)>) -> Vec<Run> {
+    ///
+    /// # Errors
+    /// A machine that cannot start external controllers: that is no row of theirs.
+    pub fn fly_together(
+        &self,
+        drawn: impl Iterator<Item = (u64, Vec<Drawn>)>,
+    ) -> Result<Vec<Run>, CampaignError> {
         self.fly_with(&mut Memory::default(), drawn)
     }
 
@@ -174,7 +182,7 @@ impl Campaign {
         &self,
         memory: &mut Memory,
         drawn: impl Iterator<Item = (u64, Vec<Drawn>)>,
-    ) -> Vec<Run> {
+    ) -> Result<Vec<Run>, CampaignError> {
         let mut runs = Vec::new();
         let mut studies = Vec::new();
         for (number, drawn) in drawn {
@@ -190,8 +198,11 @@ impl Campaign {
         let flown = engine::fly_with(memory, &studies);
         let waiting = runs.iter_mut().filter(|run| run.flights.is_ok());
         for (run, flights) in waiting.zip(flown) {
-            run.flights = flights.map_err(|error| error.to_string());
+            run.flights = match flights {
+                Err(error) if error.is_of_host() => return Err(error.into()),
+                flights => flights.map_err(|error| error.to_string()),
+            };
         }
-        runs
+        Ok(runs)
     }
 }

@@ -128,7 +128,7 @@ const MEASURES: [MeasureColumn; 22] = [
     measure(("elevator_travel_deg", "deg"), HIGH, |f| of_whole(f, |f| degrees(f.elevator.variation_rad)), "way of the elevator: sum of the sizes of its changes"),
     measure(("largest_elevator_deg", "deg"), HIGH, |f| of_whole(f, |f| degrees(f.elevator.largest_rad)), "largest size of the elevator deflection"),
     measure(("elevator_rate_deg_s", "deg/s"), HIGH, |f| of_whole(f, |f| degrees(f.elevator.fastest_rad_s)), "fastest change of the elevator from sample to sample"),
-    measure(("saturated_pct", "%"), HIGH, |f| of_whole(f, |f| 100.0 * f.saturated_share), "samples whose command was cut by the controller's own limits"),
+    measure(("saturated_pct", "%"), HIGH, |f| f.metrics.effort.ok().and(f.saturated_share).map(|share| 100.0 * share), "samples whose command was cut by the controller's own limits"),
     measure((LEFT_VALIDITY_AT, "s"), LOW, |f| f.exit.map(|exit| exit.at_s), "when an aircraft first left the range of its model; empty if it did not"),
 ];
 

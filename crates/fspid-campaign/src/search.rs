@@ -4,6 +4,8 @@
 //! by a simplex. Distributions without limits are searched within three standard deviations. What is
 //! found is a flight, and so a proof that it is that bad; that nothing is worse is not proved.
 
+use std::sync::OnceLock;
+
 use fspid_optimise::{LShade, NelderMead, Optimiser, Start, minimise};
 use fspid_scenario::dispersion::{Dispersion, Distribution, Drawn, standard_normal};
 use fspid_scenario::file::known_words;
@@ -67,7 +69,7 @@ pub struct Worst {
 /// # Errors
 /// A measure or a controller that there is not, no budget, or a scenario that cannot be flown.
 pub fn search(campaign: &Campaign, question: &Question) -> Result<Worst, CampaignError> {
-    let target = Target::of(campaign, question)?;
+    let mut target = Target::of(campaign, question)?;
     let dimension = campaign.draws().dimensions();
     let polish = question.budget / 5;
     let population = (10 * dimension).clamp(24, 200).min(question.budget.max(4));
@@ -77,6 +79,9 @@ pub fn search(campaign: &Campaign, question: &Question) -> Result<Worst, Campaig
     let (point, cost) = wide.best();
     let mut downhill = NelderMead::new(point, cost);
     flown += target.search(&mut downhill, polish);
+    if let Some(error) = target.failed.take() {
+        return Err(error);
+    }
     let (point, _) = downhill.best();
     let drawn = campaign.draws().drawn_at(&target.inside(point));
     let nominal = target.flight_of(vec![campaign.template().study().clone()]).pop().flatten();
@@ -103,6 +108,8 @@ struct Target<'a> {
     is_requirement: bool,
     /// Share of each coordinate that is left out at its lower and upper end.
     tails: Vec<[f64; 2]>,
+    /// What kept a flight from being flown that is not of the flight.
+    failed: OnceLock<CampaignError>,
 }
 
 impl<'a> Target<'a> {
@@ -139,7 +146,8 @@ impl<'a> Target<'a> {
         }
         let controller = name.to_owned();
         let tails = campaign.draws().in_cube(tails);
-        Ok(Self { campaign, question, controller, place, is_requirement, tails })
+        let failed = OnceLock::new();
+        Ok(Self { campaign, question, controller, place, is_requirement, tails, failed })
     }
 
     /// Makes it as bad as can be found; flights flown.
@@ -153,13 +161,18 @@ impl<'a> Target<'a> {
 
     fn costs(&self, points: &[Vec<f64>]) -> Vec<f64> {
         let drawn = points.iter().map(|point| self.campaign.draws().drawn_at(&self.inside(point)));
-        let runs = self.campaign.fly_together((0..).zip(drawn));
+        let runs = self.campaign.fly_together((0..).zip(drawn)).unwrap_or_else(|error| {
+            let _ = self.failed.set(error);
+            Vec::new()
+        });
         runs.iter()
             .map(|run| match &run.flights {
                 Ok(flights) => flights.get(self.place).map_or(0.0, |flight| self.cost(flight)),
                 // No scenario, no worst case of one.
                 Err(_) => f64::INFINITY,
             })
+            .chain(std::iter::repeat(f64::INFINITY))
+            .take(points.len())
             .collect()
     }
 

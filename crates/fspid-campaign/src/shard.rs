@@ -49,8 +49,11 @@ pub fn fly(
         progress.add_found(range.end - range.first);
         return Ok(Done::Found);
     }
-    campaign.template().study().scenario.start_externals()?;
+    let scenario = &campaign.template().study().scenario;
+    scenario.start_externals()?;
     let table = campaign.fly(range, progress)?;
+    // What flew last was still what the plan names.
+    scenario.start_externals()?;
     write(&path, campaign, range, &table)?;
     Ok(Done::Flown)
 }

@@ -181,6 +181,7 @@ fn a_row_holds_what_was_drawn_and_a_replay_gives_the_same_numbers() {
     let replay = fspid_campaign::replay::replay(&campaign, 13).expect("flown again");
     let table = reader.tables().next().expect("a row group").expect("readable");
     let alone = campaign.fly_together(std::iter::once((13, replay.drawn.clone())));
+    let alone = alone.expect("no external controllers");
     let again = campaign.rows().table(&alone).expect("rows");
     assert_eq!(table.slice(26..28).expect("rows"), again);
     let Values::Float(overshoot) = table.column("overshoot_pct").expect("a column") else {

@@ -57,7 +57,7 @@ fn the_largest_overshoot_is_in_the_corner_of_least_damping_and_slowest_servo() {
             cube.expect("a cube").point(run, &mut point);
             (run, campaign.draws().drawn_at(&point))
         });
-        let runs = campaign.fly_together(drawn);
+        let runs = campaign.fly_together(drawn).expect("no external controllers");
         let overshoot = runs.iter().map(|run| {
             let flights = run.flights.as_ref().expect("flown");
             flights[1].metrics.first_step().overshoot_pct.expect("measured")

@@ -11,6 +11,8 @@ mod every_command;
 mod export;
 mod external;
 mod external_fly;
+#[cfg(unix)]
+mod external_losses;
 mod fly;
 mod foreign_fmu;
 mod fuzzy_system;

@@ -3,9 +3,12 @@
 //! Nothing here qualifies anything. Every change of the program that [`mutants`] lists is run by the interpreter against
 //! the vectors; the same changes are written as lines of the C, so that a script does it with a compiler too.
 
+mod equivalent;
 mod mutants;
+mod normal;
 mod pack;
 mod proof;
+mod ranges;
 mod run;
 mod scripts;
 
@@ -18,6 +21,7 @@ use crate::program::Program;
 use crate::targets::File;
 use crate::vectors::Vector;
 use crate::write::{self, Heading};
+use equivalent::Judge;
 use mutants::Mutant;
 
 /// What the evidence is about.
@@ -38,34 +42,38 @@ struct Finding {
     lines: Vec<(usize, String)>,
     /// The first vector with another answer, from 1.
     vector: Option<usize>,
+    /// Why there can be none, where that is shown.
+    equivalent: Option<&'static str>,
 }
 
 /// So many vectors, the directed ones and the first of those that are drawn, are asked for each change; the script asks
 /// for all. More take longer and were not seen to find more.
-pub(super) const ASKED: usize = 6000;
+pub(super) const ASKED: usize = 9000;
 
 /// The files of a pack.
 pub(crate) fn files<R: Real>(subject: &Subject<'_, R>) -> Vec<File> {
     let base = run::run(subject.program, subject.vectors);
-    let findings = findings(subject);
+    let judge = Judge::new(subject);
+    let findings = findings(subject, &judge);
     let mut files: Vec<File> = subject
         .code
         .iter()
         .map(|file| File { name: format!("code/{}", file.name), bytes: file.bytes.clone() })
         .collect();
     files.extend(pack::tables(&findings));
-    files.push(File::text("coverage.csv", pack::coverage(subject, &base.branches)));
+    files.push(File::text("coverage.csv", pack::coverage(subject, &judge, &base.branches)));
     files.extend(proof::files(subject));
     files.extend(scripts::files(subject));
-    files.push(File::text("README.md", pack::front(subject, &findings, &base)));
+    files.push(File::text("README.md", pack::front(subject, &judge, &findings, &base)));
     files
 }
 
 /// Every change, asked for on all processors.
-fn findings<R: Real>(subject: &Subject<'_, R>) -> Vec<Finding> {
+fn findings<R: Real>(subject: &Subject<'_, R>, judge: &Judge<'_>) -> Vec<Finding> {
     let all = mutants::all(subject.program);
     let text = |program: &Program| write::c(program, subject.prefix, subject.heading).source;
     let original = text(subject.program);
+    let rows: Vec<&str> = original.lines().collect();
     let count = std::thread::available_parallelism().map_or(1, usize::from);
     let asked = &subject.vectors[..subject.vectors.len().min(ASKED)];
     let answered = |mutant: &Mutant| {
@@ -73,9 +81,13 @@ fn findings<R: Real>(subject: &Subject<'_, R>) -> Vec<Finding> {
         let changed = text(&program);
         let lines = original.lines().zip(changed.lines()).zip(1..);
         let lines = lines.filter(|((before, after), _)| before != after);
-        let lines = lines.map(|((_, after), line)| (line, after.to_owned())).collect();
+        let lines: Vec<_> = lines.map(|((_, after), line)| (line, after.to_owned())).collect();
         let vector = run::first_different(&program, asked);
-        Finding { mutant: mutant.clone(), lines, vector }
+        let mut finding = Finding { mutant: mutant.clone(), lines, vector, equivalent: None };
+        if vector.is_none() && !finding.lines.is_empty() {
+            finding.equivalent = judge.reason(&finding, &program, &rows);
+        }
+        finding
     };
     let mut findings = BTreeMap::new();
     std::thread::scope(|scope| {
@@ -94,4 +106,149 @@ fn findings<R: Real>(subject: &Subject<'_, R>) -> Vec<Finding> {
         }
     });
     findings.into_values().filter(|finding| !finding.lines.is_empty()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use fspid_core::fuzzy::{Defuzzifier, NumberTable, OutOfRange, Supervisor};
+    use fspid_core::{
+        AntiWindup, Change, ControllerSetting, Fspid, Gains, Limits, Pid, PidConfig, SelfTuner,
+        TunerSettings,
+    };
+
+    use super::*;
+    use crate::Angles;
+    use crate::interpret::{Cell, Machine};
+    use crate::program::Part;
+    use crate::vectors::eventful;
+
+    const GAINS: Gains<f32> = Gains { kp: 1.1, ki: 0.6, kd: 0.3 };
+
+    fn config() -> PidConfig<f32> {
+        let mut config = PidConfig::sampled_every(0.01);
+        config.derivative.filter_s = 0.05;
+        config.limits = Limits::new(ControllerSetting::OutputLimits, -0.3, 0.35).ok();
+        config.anti_windup = AntiWindup::BackCalculation { tracking_s: 0.5 };
+        config
+    }
+
+    fn tuned(supervisor: Supervisor<f32>) -> Controller<f32> {
+        let settings = TunerSettings { change: Change::Delta, ..TunerSettings::literal() };
+        let tuner = SelfTuner::new(GAINS, supervisor, settings).expect("allowed");
+        Controller::SelfTuning(Fspid::new(tuner, config()).expect("allowed"))
+    }
+
+    fn with_labels() -> Controller<f32> {
+        let rules = fspid_core::paper::rules();
+        let clamp = OutOfRange::Clamp;
+        tuned(Supervisor::new(&rules, 2.0, Defuzzifier::Exact, clamp).expect("allowed"))
+    }
+
+    fn with_numbers() -> Controller<f32> {
+        // No two neighbours are the same, and no two inputs turned conclude the same.
+        let number = |cell: usize| 0.1 + 0.003 * ((cell * 37) % 49) as f32;
+        let grid = |first: usize| {
+            std::array::from_fn(|row| {
+                std::array::from_fn(|column| number(first + 7 * row + column))
+            })
+        };
+        let numbers = NumberTable::new([grid(0), grid(5), grid(11)]).expect("finite");
+        tuned(Supervisor::of_numbers(&numbers, 2.0, OutOfRange::Clamp).expect("allowed"))
+    }
+
+    /// What is asked about the changes of a controller that are chosen.
+    fn asked(
+        controller: &Controller<f32>,
+        vectors: &[Vector<f32>],
+        is_chosen: impl Fn(&Mutant) -> bool,
+        answer: impl Fn(&Judge<'_>, &Finding, &Program, &[&str]) -> bool,
+    ) -> Vec<String> {
+        let program = crate::program(controller, Angles::Radians).expect("nothing is refused");
+        let heading = Heading {
+            name: "FSPID",
+            digest: "0",
+            precision: program.precision,
+            angles: Some(Angles::Radians),
+        };
+        let subject = Subject {
+            program: &program,
+            controller,
+            prefix: "fspid",
+            heading: &heading,
+            vectors,
+            code: &[],
+        };
+        let judge = Judge::new(&subject);
+        let source = write::c(&program, "fspid", &heading).source;
+        let rows: Vec<&str> = source.lines().collect();
+        let mut named = Vec::new();
+        for mutant in mutants::all(&program).into_iter().filter(is_chosen) {
+            let changed = mutant.of(&program);
+            let text = write::c(&changed, "fspid", &heading).source;
+            let lines = source.lines().zip(text.lines()).zip(1..);
+            let lines = lines.filter(|((before, after), _)| before != after);
+            let lines = lines.map(|((_, after), line)| (line, after.to_owned())).collect();
+            let vector = run::first_different(&changed, vectors);
+            let finding = Finding { mutant, lines, vector, equivalent: None };
+            if answer(&judge, &finding, &changed, &rows) {
+                named.push(format!("{} {}", finding.mutant.element, finding.mutant.change));
+            }
+        }
+        named
+    }
+
+    #[test]
+    fn every_rule_and_every_number_of_a_design_is_found_when_it_is_changed_or_shown_to_do_nothing()
+    {
+        for controller in [with_labels(), with_numbers()] {
+            let vectors = eventful(&controller, Angles::Radians, 1, ASKED);
+            let left = asked(
+                &controller,
+                &vectors,
+                |it| it.is_design,
+                |judge, finding, changed, rows| {
+                    finding.vector.is_none() && judge.reason(finding, changed, rows).is_none()
+                },
+            );
+            assert!(left.is_empty(), "not told apart: {left:?}");
+        }
+    }
+
+    #[test]
+    fn what_a_vector_finds_is_never_said_to_change_nothing() {
+        let pid = Controller::Fixed(Pid::new(GAINS, config()).expect("allowed"));
+        // Steps alone: what others write into the memory is what some guards are for.
+        let steps = crate::vectors::vectors(&pid, Angles::Radians, 1, 3000);
+        let wrong = asked(
+            &pid,
+            &steps,
+            |_| true,
+            |judge, finding, changed, rows| {
+                finding.vector.is_some() && judge.reason(finding, changed, rows).is_some()
+            },
+        );
+        assert!(wrong.is_empty(), "found, and said to change nothing: {wrong:?}");
+    }
+
+    #[test]
+    fn what_is_remembered_stays_within_the_bounds_that_intervals_found() {
+        for controller in [with_labels(), with_numbers()] {
+            let program = crate::program(&controller, Angles::Radians).expect("nothing is refused");
+            let memory = ranges::memory(&program).expect("bounded");
+            let mut machine = Machine::<f32>::new(&program);
+            machine.run("reset");
+            for sample in crate::vectors::samples::<f32>(5, 3000) {
+                machine.set(Part::Sample, "setpoint_rad", Cell::Real(sample.setpoint_rad));
+                machine.set(Part::Sample, "measurement_rad", Cell::Real(sample.measurement_rad));
+                machine.run("step");
+                for member in &program.state {
+                    let Some(Cell::Real(value)) = machine.member(Part::State, &member.name) else {
+                        continue;
+                    };
+                    let holds = memory.holds(&member.name, f64::from(*value));
+                    assert!(holds, "{} is {value}", member.name);
+                }
+            }
+        }
+    }
 }

@@ -9,7 +9,7 @@
 mod directed;
 mod drawn;
 
-use fspid_core::{Controller, Faults, Sample, State, Step};
+use fspid_core::{Controller, Faults, Previous, Sample, State, Step};
 use fspid_numeric::Real;
 
 use crate::Angles;
@@ -47,6 +47,9 @@ impl<R: Real> Event<R> {
             Self::Memory(Remembered::Command, _) => "command_rad",
             Self::Memory(Remembered::Integral, _) => "integral",
             Self::Memory(Remembered::Gain(gain), _) => GAINS[*gain],
+            Self::Memory(Remembered::Derivative, _) => "derivative_rad_s",
+            Self::Memory(Remembered::Model, _) => "model_rad",
+            Self::Memory(Remembered::ModelRate, _) => "model_rad_s",
         }
     }
 
@@ -62,6 +65,9 @@ impl<R: Real> Event<R> {
             Self::Memory(Remembered::Command, _) => 5,
             Self::Memory(Remembered::Integral, _) => 6,
             Self::Memory(Remembered::Gain(gain), _) => 7 + *gain as u8,
+            Self::Memory(Remembered::Derivative, _) => 10,
+            Self::Memory(Remembered::Model, _) => 11,
+            Self::Memory(Remembered::ModelRate, _) => 12,
         }
     }
 
@@ -84,6 +90,12 @@ pub enum Remembered {
     Integral,
     /// A gain: 0 for kp, 1 for ki, 2 for kd.
     Gain(usize),
+    /// The filtered derivative, rad/s.
+    Derivative,
+    /// Where the reference model is, rad.
+    Model,
+    /// Its rate, rad/s.
+    ModelRate,
 }
 
 /// What is done, a sample and its answer, in the units of the export.
@@ -194,10 +206,15 @@ impl<'a, R: Real> Flight<'a, R> {
             }
             Event::Memory(Remembered::Command, value) => state.command_rad = value,
             Event::Memory(Remembered::Integral, value) => state.integral = value,
-            Event::Memory(Remembered::Gain(gain), value) => {
-                if let Some(previous) = &mut state.previous {
-                    let gains = &mut previous.gains;
-                    *[&mut gains.kp, &mut gains.ki, &mut gains.kd][gain] = value;
+            Event::Memory(Remembered::Derivative, value) => state.derivative_rad_s = value,
+            Event::Memory(which, value) => {
+                if let Some(Previous { gains, model, .. }) = &mut state.previous {
+                    let [kp, ki, kd] = [&mut gains.kp, &mut gains.ki, &mut gains.kd];
+                    match which {
+                        Remembered::Gain(gain) => *[kp, ki, kd][gain] = value,
+                        Remembered::Model => model.pitch_rad = value,
+                        _ => model.rate_rad_s = value,
+                    }
                 }
             }
         }

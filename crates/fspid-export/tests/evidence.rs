@@ -62,9 +62,22 @@ fn what_is_not_found_is_listed_by_name() {
     let mutants = text(&export, "mutants.csv");
     let left: std::collections::BTreeSet<&str> = mutants
         .lines()
-        .filter(|row| row.ends_with(",none"))
+        .filter(|row| row.ends_with(",none") || row.contains(",equivalent: "))
         .filter_map(|row| row.split(',').next())
         .collect();
     let page = text(&export, "README.md");
     assert!(page.contains(&format!("Not found, {}:", left.len())), "{page}");
+    let first = page.lines().nth(2).expect("a line behind the verdict");
+    assert!(first.contains("single changes:") && first.ends_with("not told apart."), "{first}");
+}
+
+#[test]
+fn what_goes_one_way_has_its_reason() {
+    let coverage = text_of("coverage.csv");
+    let one_way: Vec<&str> = coverage.lines().filter(|row| row.contains(",0,")).collect();
+    assert!(one_way.iter().all(|row| !row.ends_with("not known")), "{one_way:?}");
+}
+
+fn text_of(name: &str) -> String {
+    text(&exported(), name).to_owned()
 }

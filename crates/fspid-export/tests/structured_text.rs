@@ -1,7 +1,7 @@
 //! The Structured Text that is written answers what the controller answers, bit for bit.
 
 use fspid_core::Controller;
-use fspid_export::vectors::{Event, Remembered, Vector, eventful};
+use fspid_export::vectors::{Event, Vector, eventful};
 use fspid_export::write::{Heading, structured_text, structured_text_check};
 use fspid_export::{Angles, program};
 use fspid_numeric::Real;
@@ -66,10 +66,8 @@ fn different<R: Real>(
         block.set("track", is(matches!(vector.event, Event::Track(_))))?;
         block.set(&format!("track_{}", text.command), real(vector.event.given()))?;
         match vector.event {
-            Event::Memory(Remembered::Command, value) => write(block, "state_command_rad", value)?,
-            Event::Memory(Remembered::Integral, value) => write(block, "state_integral", value)?,
-            Event::Memory(Remembered::Gain(gain), value) => {
-                write(block, ["state_kp", "state_ki", "state_kd"][gain], value)?;
+            Event::Memory(_, value) => {
+                write(block, &format!("state_{}", vector.event.name()), value)?;
             }
             _ => {}
         }

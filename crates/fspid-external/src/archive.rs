@@ -5,6 +5,10 @@ use std::path::{Component, Path};
 
 /// Largest size of all files together, in bytes: a controller has some tens of kilobytes, and a bomb is refused.
 const MOST_BYTES: usize = 64 << 20;
+/// Most files: a controller has some dozens, and each takes a moment in each flight.
+const MOST_FILES: usize = 4096;
+/// The bit of an entry's flags that says that it is encrypted.
+const ENCRYPTED: usize = 1;
 /// Longest end of an archive: its fixed part and a comment.
 const LONGEST_END: usize = 22 + u16::MAX as usize;
 
@@ -20,8 +24,13 @@ pub(crate) fn archive(path: &Path) -> io::Result<Vec<u8>> {
 /// Writes the files of an archive into a folder.
 pub(crate) fn unpack(archive: &[u8], folder: &Path) -> io::Result<()> {
     let mut left = MOST_BYTES;
+    let mut files = 0;
     for entry in entries(archive).ok_or_else(|| bad("it is no zip archive"))? {
         let Entry { name, bytes } = entry?;
+        files += 1;
+        if files > MOST_FILES {
+            return Err(bad("it has more than 4096 files"));
+        }
         left =
             left.checked_sub(bytes.len()).ok_or_else(|| bad("its files are larger than 64 MiB"))?;
         let path = Path::new(&name);
@@ -64,8 +73,9 @@ fn entries(archive: &[u8]) -> Option<impl Iterator<Item = io::Result<Entry>>> {
 /// The entry at a place of the directory, and the place of the next.
 fn entry(archive: &[u8], at: usize) -> Option<(io::Result<Entry>, usize)> {
     archive.get(at..)?.starts_with(b"PK\x01\x02").then_some(())?;
-    let (method, packed, size) =
-        (short(archive, at + 10)?, long(archive, at + 20)?, long(archive, at + 24)?);
+    let (flags, method) = (short(archive, at + 8)?, short(archive, at + 10)?);
+    let [sum, packed, size] = [16, 20, 24].map(|offset| long(archive, at + offset));
+    let (sum, packed, size) = (sum?, packed?, size?);
     let [name, extra, comment] = [28, 30, 32].map(|offset| short(archive, at + offset));
     let (name, next) = (name?, 46 + name? + extra? + comment?);
     let name = String::from_utf8_lossy(archive.get(at + 46..at + 46 + name)?).into_owned();
@@ -74,12 +84,29 @@ fn entry(archive: &[u8], at: usize) -> Option<(io::Result<Entry>, usize)> {
     let begin = header + 30 + short(archive, header + 26)? + short(archive, header + 28)?;
     let packed = archive.get(begin..begin.checked_add(packed)?)?;
     let bytes = match method {
+        _ if flags & ENCRYPTED != 0 => Err(bad("a file in it is encrypted")),
         0 => Ok(packed.to_vec()),
         8 => miniz_oxide::inflate::decompress_to_vec_with_limit(packed, size.min(MOST_BYTES))
             .map_err(|_| bad("a file in it cannot be unpacked")),
         _ => Err(bad("a file in it is neither stored nor deflated")),
     };
+    let bytes = bytes.and_then(|bytes| match (bytes.len(), crc32(&bytes)) == (size, sum) {
+        true => Ok(bytes),
+        false => Err(bad("a file in it is damaged: its size or its sum is another than it says")),
+    });
     Some((bytes.map(|bytes| Entry { name, bytes }), at + next))
+}
+
+/// The sum of a file's bytes: CRC-32 of the polynomial 0xedb88320, as APPNOTE 4.4.7 has it.
+fn crc32(bytes: &[u8]) -> usize {
+    let turned = |sum: u32, _| (sum >> 1) ^ (0xedb8_8320 & (sum & 1).wrapping_neg());
+    let of_byte = |byte: u32| (0..8).fold(byte, turned);
+    let table: [u32; 256] = std::array::from_fn(|byte| of_byte(byte as u32));
+    let add = |sum: u32, byte: &u8| {
+        let place = (sum ^ u32::from(*byte)) & 0xff;
+        (sum >> 8) ^ table.get(place as usize).copied().unwrap_or_default()
+    };
+    !bytes.iter().fold(u32::MAX, add) as usize
 }
 
 fn short(bytes: &[u8], at: usize) -> Option<usize> {
@@ -95,6 +122,39 @@ fn long(bytes: &[u8], at: usize) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// An archive of one stored file.
+    fn stored(bytes: &[u8], flags: u8) -> Vec<u8> {
+        let sizes = [(bytes.len() as u32).to_le_bytes(); 2].concat();
+        let common = [
+            &[20, 0, flags, 0, 0, 0, 0, 0, 0, 0][..],
+            &(crc32(bytes) as u32).to_le_bytes(),
+            &sizes,
+        ]
+        .concat();
+        let mut archive = [b"PK\x03\x04", &common[..], &[1, 0, 0, 0, b'f'], bytes].concat();
+        let at = (archive.len() as u32).to_le_bytes();
+        archive.extend([b"PK\x01\x02\x14\x00", &common[..], &[1], &[0; 17], b"f"].concat());
+        archive.extend(
+            [&b"PK\x05\x06\0\0\0\0\x01\0\x01\0"[..], &[47, 0, 0, 0], &at, &[0; 2]].concat(),
+        );
+        archive
+    }
+
+    #[test]
+    fn an_archive_is_unpacked_if_it_is_whole_and_readable() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let refused =
+            |archive: &[u8]| unpack(archive, folder.path()).err().map(|it| it.to_string());
+        assert_eq!(crc32(b"123456789"), 0xcbf4_3926);
+        let whole = stored(b"some bytes", 0);
+        assert_eq!(refused(&whole), None);
+        assert!(std::fs::read(folder.path().join("f")).is_ok_and(|found| found == b"some bytes"));
+        let mut damaged = whole;
+        damaged[35] ^= 1;
+        assert!(refused(&damaged).is_some_and(|told| told.contains("damaged")));
+        assert!(refused(&stored(b"secret", 1)).is_some_and(|told| told.contains("encrypted")));
+    }
 
     #[test]
     fn what_is_no_archive_is_refused_wherever_it_is_cut() {

@@ -17,6 +17,12 @@ impl ProcessHost {
         Self
     }
 
+    /// Tells nothing here.
+    #[must_use]
+    pub fn telling(self, _: fn(&str)) -> Self {
+        self
+    }
+
     /// Prints nothing here.
     #[must_use]
     pub fn printing_at_most(self, _: u64) -> Self {

@@ -2,6 +2,7 @@
 #![allow(unsafe_code, reason = "calling C is; every call says why it may be made")]
 
 use std::ffi::{CString, c_char, c_int, c_void};
+use std::os::unix::ffi::OsStrExt as _;
 use std::path::Path;
 use std::ptr::{null, null_mut};
 
@@ -12,6 +13,11 @@ use crate::library::{Refusal, function, words};
 
 /// The worst status with which there is an answer: a warning.
 const WARNING: c_int = 1;
+/// A step that was not done whole.
+const DISCARD: c_int = 2;
+/// Behind this status an instance can only be freed, and behind the next nothing is left that may be called.
+const ERROR: c_int = 3;
+const FATAL: c_int = 4;
 /// `fmi2CoSimulation`.
 const CO_SIMULATION: c_int = 1;
 
@@ -79,6 +85,22 @@ struct Three {
     do_step: StepThree,
 }
 
+/// What an instance is left with. Libraries that lack them fly as well.
+struct Leaving {
+    terminate: Option<unsafe extern "C" fn(Instance) -> Status>,
+    free: Option<unsafe extern "C" fn(Instance)>,
+}
+
+impl Leaving {
+    fn of(library: &Library, version: Version) -> Self {
+        let [terminate, free] = match version {
+            Version::Two => ["fmi2Terminate", "fmi2FreeInstance"],
+            Version::Three => ["fmi3Terminate", "fmi3FreeInstance"],
+        };
+        Self { terminate: function(library, terminate).ok(), free: function(library, free).ok() }
+    }
+}
+
 enum Calls {
     Two(Two),
     Three(Three),
@@ -88,6 +110,9 @@ enum Calls {
 pub(crate) struct Fmu {
     calls: Calls,
     instance: Instance,
+    leaving: Leaving,
+    /// The worst status so far.
+    worst: Status,
     /// Functions and callbacks are called for as long as the instance lives.
     _kept: (Library, Box<Callbacks>, [CString; 3]),
 }
@@ -96,13 +121,29 @@ pub(crate) struct Fmu {
 fn texts(description: &Description, folder: &Path) -> Result<[CString; 3], Refusal> {
     let resources = folder.join("resources");
     let resources = match description.version {
-        Version::Two => format!("file://{}", resources.display()),
+        Version::Two => uri(&resources),
         Version::Three => format!("{}/", resources.display()),
     };
     let text = |text: &str| {
         CString::new(text).map_err(|_| ("has a zero in a text".to_owned(), "a text".to_owned()))
     };
     Ok([text("controller")?, text(&description.token)?, text(&resources)?])
+}
+
+/// The address of a folder as RFC 3986 writes it: what has a meaning there, or is no letter, by its number.
+fn uri(folder: &Path) -> String {
+    use std::fmt::Write as _;
+    let mut text = "file://".to_owned();
+    for byte in folder.as_os_str().as_bytes() {
+        match byte {
+            b'A'..=b'Z' | b'a'..=b'z' | b'0'..=b'9' | b'/' | b'-' | b'.' | b'_' | b'~' => {
+                text.push(char::from(*byte));
+            }
+            // Writing into a text cannot fail.
+            _ => drop(write!(text, "%{byte:02X}")),
+        }
+    }
+    text
 }
 
 impl Fmu {
@@ -125,33 +166,43 @@ impl Fmu {
             Version::Two => two(&kept)?,
             Version::Three => three(&kept)?,
         };
-        Ok(Self { calls, instance, _kept: kept })
+        let leaving = Leaving::of(&kept.0, description.version);
+        Ok(Self { calls, instance, leaving, worst: 0, _kept: kept })
+    }
+
+    /// What a status means, kept for the end.
+    fn ok(&mut self, status: Status) -> Result<(), Failure> {
+        // A status that the standard has not is as bad as any.
+        self.worst = if (0..=FATAL).contains(&status) { self.worst.max(status) } else { FATAL };
+        ok(status)
     }
 
     /// Sets one real.
     pub(crate) fn set(&mut self, reference: u32, value: f64) -> Result<(), Failure> {
         // SAFETY: the instance lives; both arrays have the one entry that is said, and live through the call. The same
         // holds of the next three.
-        ok(unsafe {
+        let status = unsafe {
             match &self.calls {
                 Calls::Two(two) => (two.set_real)(self.instance, &reference, 1, &value),
                 Calls::Three(three) => (three.set_real)(self.instance, &reference, 1, &value, 1),
             }
-        })
+        };
+        self.ok(status)
     }
 
     /// Asks for a real.
     pub(crate) fn real(&mut self, reference: u32) -> Result<f64, Failure> {
         let mut value = f64::NAN;
         // SAFETY: as in `set`.
-        ok(unsafe {
+        let status = unsafe {
             match &self.calls {
                 Calls::Two(two) => (two.get_real)(self.instance, &reference, 1, &mut value),
                 Calls::Three(three) => {
                     (three.get_real)(self.instance, &reference, 1, &mut value, 1)
                 }
             }
-        })?;
+        };
+        self.ok(status)?;
         Ok(value)
     }
 
@@ -159,14 +210,15 @@ impl Fmu {
     pub(crate) fn whole(&mut self, reference: u32) -> Result<i32, Failure> {
         let mut value = 0;
         // SAFETY: as in `set`.
-        ok(unsafe {
+        let status = unsafe {
             match &self.calls {
                 Calls::Two(two) => (two.get_integer)(self.instance, &reference, 1, &mut value),
                 Calls::Three(three) => {
                     (three.get_integer)(self.instance, &reference, 1, &mut value, 1)
                 }
             }
-        })?;
+        };
+        self.ok(status)?;
         Ok(value)
     }
 
@@ -174,14 +226,15 @@ impl Fmu {
     pub(crate) fn truth(&mut self, reference: u32) -> Result<bool, Failure> {
         let (mut whole, mut truth) = (0, false);
         // SAFETY: as in `set`.
-        ok(unsafe {
+        let status = unsafe {
             match &self.calls {
                 Calls::Two(two) => (two.get_boolean)(self.instance, &reference, 1, &mut whole),
                 Calls::Three(three) => {
                     (three.get_boolean)(self.instance, &reference, 1, &mut truth, 1)
                 }
             }
-        })?;
+        };
+        self.ok(status)?;
         Ok(truth || whole != 0)
     }
 
@@ -189,7 +242,7 @@ impl Fmu {
     pub(crate) fn step(&mut self, time_s: f64, step_s: f64) -> Result<(), Failure> {
         let (mut event, mut over, mut early, mut reached_s) = (false, false, false, 0.0);
         // SAFETY: the instance lives, and what is written to lives through the call.
-        ok(unsafe {
+        let status = unsafe {
             match &self.calls {
                 Calls::Two(two) => (two.do_step)(self.instance, time_s, step_s, 1),
                 Calls::Three(three) => (three.do_step)(
@@ -203,7 +256,26 @@ impl Fmu {
                     &mut reached_s,
                 ),
             }
-        })
+        };
+        self.ok(status)?;
+        // It wants to end, or stands somewhere on the way to the next sample: there is no answer of that sample.
+        if over || early { Err(DISCARD) } else { Ok(()) }
+    }
+}
+
+impl Drop for Fmu {
+    /// Leaves the instance as the standard asks.
+    fn drop(&mut self) {
+        let Leaving { terminate, free } = &self.leaving;
+        // SAFETY: the instance lives, and what its worst status forbids is not called.
+        unsafe {
+            if let Some(terminate) = terminate.filter(|_| self.worst < ERROR) {
+                let _ = terminate(self.instance);
+            }
+            if let Some(free) = free.filter(|_| self.worst < FATAL) {
+                free(self.instance);
+            }
+        }
     }
 }
 
@@ -308,4 +380,83 @@ fn three((library, _, [name, token, resources]): &Kept) -> Result<(Calls, Instan
         do_step: function(library, "fmi3DoStep")?,
     };
     Ok((Calls::Three(calls), instance))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::variables::Variable;
+
+    #[test]
+    fn a_folder_is_written_as_an_address() {
+        assert_eq!(uri(Path::new("/tmp/a b#ü%")), "file:///tmp/a%20b%23%C3%BC%25");
+    }
+
+    /// An FMU of version 3.0 that notes how it is left; its fourth step ends as it is told.
+    const NOTING: &str = r#"
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+typedef int S;
+static int steps;
+static void note(const char *word) { FILE *f = fopen(NOTES, "a"); fputs(word, f); fclose(f); }
+void *fmi3InstantiateCoSimulation(void) { return &steps; }
+S fmi3EnterInitializationMode(void) { return 0; }
+S fmi3ExitInitializationMode(void) { return 0; }
+S fmi3SetFloat64(void) { return 0; }
+S fmi3GetFloat64(void) { return 0; }
+S fmi3GetInt32(void) { return 0; }
+S fmi3GetBoolean(void) { return 0; }
+S fmi3DoStep(void *i, double t, double h, bool n, bool *event, bool *over, bool *early, double *last)
+{
+    if (++steps == 4) { FOURTH; }
+    return 0;
+}
+S fmi3Terminate(void *i) { note("terminated "); return 0; }
+void fmi3FreeInstance(void *i) { note("freed"); }
+"#;
+
+    /// The status of the fourth step, and how the instance was left.
+    fn fourth(does: &str) -> (Option<Failure>, String) {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (source, library) = (folder.path().join("f.c"), folder.path().join("f.so"));
+        let notes = folder.path().join("notes");
+        std::fs::write(&source, NOTING).expect("a file");
+        let built = std::process::Command::new("cc")
+            .args(["-shared", "-fPIC", &format!("-DNOTES={notes:?}"), &format!("-DFOURTH={does}")])
+            .args([&source, Path::new("-o"), &library])
+            .status();
+        assert!(built.is_ok_and(|status| status.success()));
+        let description = Description {
+            version: Version::Three,
+            identifier: "f".to_owned(),
+            token: "t".to_owned(),
+            period_s: 0.0,
+            inputs: [None; 3],
+            command: Variable { reference: 1, unit: 1.0 },
+            gains: [None; 3],
+            saturated: None,
+            faults: None,
+        };
+        let mut fmu = Fmu::load(&library, &description, folder.path()).expect("it begins");
+        for k in 0..3 {
+            fmu.step(f64::from(k), 1.0).expect("a step");
+        }
+        let status = fmu.step(3.0, 1.0).err();
+        drop(fmu);
+        (status, std::fs::read_to_string(notes).unwrap_or_default())
+    }
+
+    #[test]
+    fn a_step_that_is_not_whole_is_no_answer_and_an_instance_is_left_as_the_standard_asks() {
+        for (does, status, left) in [
+            ("", None, "terminated freed"),
+            ("*over = true", Some(DISCARD), "terminated freed"),
+            ("*early = true", Some(DISCARD), "terminated freed"),
+            ("return 3", Some(ERROR), "freed"),
+            ("return 4", Some(FATAL), ""),
+        ] {
+            assert_eq!(fourth(does), (status, left.to_owned()), "{does}");
+        }
+    }
 }

@@ -59,7 +59,7 @@ fn text(from: &mut impl Read) -> io::Result<String> {
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-fn read<const N: usize>(from: &mut impl Read) -> io::Result<[u8; N]> {
+pub(crate) fn read<const N: usize>(from: &mut impl Read) -> io::Result<[u8; N]> {
     let mut bytes = [0; N];
     from.read_exact(&mut bytes)?;
     Ok(bytes)

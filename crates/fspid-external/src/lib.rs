@@ -21,6 +21,8 @@ mod process;
 #[cfg(unix)]
 mod serve;
 #[cfg(unix)]
+mod timed;
+#[cfg(unix)]
 mod variables;
 
 #[cfg(unix)]

@@ -12,6 +12,15 @@ pub(crate) const VERSION: u32 = 1;
 /// Most memory that a controller may ask for, in bytes: no controller needs it, and a wrong number is refused.
 const MOST_BYTES: usize = 1 << 24;
 
+/// What memory holds before it is reset: no number as a float of any size, and no zero as a whole number, so that a
+/// controller which never writes what it reads does not fly as if it had.
+const UNWRITTEN: u8 = 0xff;
+/// What stands behind it, and has to stay there, in bytes: a cache line.
+const GUARD: u8 = 0xc3;
+const GUARD_BYTES: usize = 64;
+/// In place of a status of FMI: the guard was written to.
+pub(crate) const OVERRAN: i32 = i32::MIN;
+
 /// `fspid_external_sample` of the header.
 #[repr(C)]
 struct CSample {
@@ -52,8 +61,7 @@ pub(crate) type Refusal = (String, String);
 /// A controller of a library, with its memory.
 pub(crate) struct LibraryController {
     step: Answer,
-    /// As memory from `malloc` is: aligned for every type of C.
-    state: Vec<u128>,
+    state: Memory,
     pub(crate) period_s: f64,
     /// Functions are called for as long as it is loaded.
     _library: Library,
@@ -87,30 +95,64 @@ impl LibraryController {
             let reason = format!("asks for {bytes} bytes of memory");
             return Err((reason, format!("{MOST_BYTES} bytes at most")));
         }
-        let mut state = vec![0_u128; bytes.div_ceil(size_of::<u128>()).max(1)];
+        let mut state = Memory::new(bytes);
         let reset: Reset = function(&library, reset)?;
         // SAFETY: the memory has the bytes that the controller asked for, and nobody else's.
-        unsafe { reset(state.as_mut_ptr().cast()) };
+        unsafe { reset(state.pointer()) };
+        if !state.is_whole() {
+            let reason =
+                format!("writes in `{}` beyond the {bytes} bytes that it asks for", NAMES[3]);
+            return Err((reason, format!("as many bytes as it writes, from `{}`", NAMES[2])));
+        }
         let step = function(&library, step)?;
         Ok(Self { step, state, period_s, _library: library })
     }
 
-    /// The answer to a sample. A command that the controller does not write is NaN.
-    pub(crate) fn step(&mut self, sample: &Sample<f64>) -> Step<f64> {
+    /// The answer to a sample, or [`OVERRAN`]. A command that the controller does not write is NaN.
+    pub(crate) fn step(&mut self, sample: &Sample<f64>) -> Result<Step<f64>, i32> {
         let Sample { setpoint_rad, measurement_rad, rate_rad_s } = *sample;
         let sample = CSample { setpoint_rad, measurement_rad, rate_rad_s };
         let (kp, ki, kd, saturated, faults) = (0.0, 0.0, 0.0, 0, 0);
         let mut answer = CAnswer { command_rad: f64::NAN, kp, ki, kd, saturated, faults };
         // SAFETY: the memory is the one that was reset; sample and answer live through the call and have the layout of
         // the header; the library is loaded for as long as `self` is.
-        unsafe { (self.step)(self.state.as_mut_ptr().cast(), &sample, &mut answer) };
+        unsafe { (self.step)(self.state.pointer(), &sample, &mut answer) };
+        if !self.state.is_whole() {
+            return Err(OVERRAN);
+        }
         let CAnswer { command_rad, kp, ki, kd, saturated, faults } = answer;
-        Step {
+        Ok(Step {
             command_rad,
             gains: Gains { kp, ki, kd },
             saturated: saturated != 0,
             faults: Faults::from_bits((faults & 0xff) as u8),
-        }
+        })
+    }
+}
+
+/// The memory of a controller, as from `malloc` aligned for every type of C, and a guard behind it.
+struct Memory {
+    blocks: Vec<u128>,
+    bytes: usize,
+}
+
+impl Memory {
+    fn new(bytes: usize) -> Self {
+        let mut all = vec![UNWRITTEN; bytes];
+        all.resize((bytes + GUARD_BYTES).next_multiple_of(size_of::<u128>()), GUARD);
+        let block = |block: &[u8]| u128::from_ne_bytes(block.try_into().unwrap_or_default());
+        Self { blocks: all.chunks_exact(size_of::<u128>()).map(block).collect(), bytes }
+    }
+
+    fn pointer(&mut self) -> *mut c_void {
+        self.blocks.as_mut_ptr().cast()
+    }
+
+    /// True as long as nobody wrote behind it.
+    fn is_whole(&self) -> bool {
+        let first = self.bytes / size_of::<u128>();
+        let behind = self.blocks.iter().skip(first).flat_map(|block| block.to_ne_bytes());
+        behind.skip(self.bytes % size_of::<u128>()).all(|byte| byte == GUARD)
     }
 }
 

@@ -1,52 +1,85 @@
 //! The simulator's side: a process for each flight.
 
+use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::io::{self, PipeReader, Read as _, Write as _};
 use std::net::Shutdown;
 use std::os::fd::OwnedFd;
 use std::os::unix::net::UnixStream;
-use std::os::unix::process::{CommandExt as _, ExitStatusExt as _};
+use std::os::unix::process::CommandExt as _;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, ExitStatus, Stdio};
-use std::sync::Arc;
+use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::mpsc::{Receiver, channel};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use fspid_sim::core::{Sample, Step};
-use fspid_sim::external::{Answers, Host, Renamed};
+use fspid_sim::external::{Answers, Contents, Host, Lost, Renamed};
 use fspid_sim::{ControllerLoss, External, ExternalSource, SimError};
+use rustix::process::{Pid, Signal, WaitId, WaitIdOptions, kill_process_group, waitid};
 use tempfile::TempDir;
 
 use crate::archive::{archive, unpack};
 use crate::frame::{Start, read_answer, write_sample};
+use crate::library::OVERRAN;
+use crate::timed::Timed;
 
-/// The longest time for loading a controller: no library of a controller takes as many seconds, however busy a machine is.
-const LOAD_LIMIT: Duration = Duration::from_secs(30);
+/// What loading a controller may take beyond its time for an answer: a process starts in less, however busy a machine is.
+const START_LIMIT: Duration = Duration::from_secs(5);
 /// How long a process has to end once nobody asks any more: what it has to print is printed by then.
 const END_LIMIT: Duration = Duration::from_secs(1);
-/// How often, and how far apart, it is looked whether a process has ended whose socket is closed: a second in all.
-const ENDING_LOOKS: u32 = 500;
-const ENDING_PAUSE: Duration = Duration::from_millis(2);
+/// How often it is looked whether a process has ended whose socket is closed, and how far apart at first; each pause is
+/// twice the one before: a second in all.
+const ENDING_LOOKS: u32 = 14;
+const FIRST_PAUSE: Duration = Duration::from_micros(64);
 /// Of the period: how far a controller's may lie beside the scenario's. A period in 32 bits is near enough.
 const SAME_PERIOD: f64 = 1e-6;
 
 /// What a process is told that its controller is.
 pub(crate) const LIBRARY: &str = "library";
 pub(crate) const FMU: &str = "fmu";
+/// How the folder of an unpacked FMU begins: nothing else is ever removed.
+pub(crate) const FOLDER: &str = "fspid-fmu-";
+/// Says that everything is there to be loaded.
+const LOAD: [u8; 1] = [1];
 
-/// The folder of an unpacked FMU.
-fn unpacked(path: &Path) -> io::Result<TempDir> {
-    let folder = tempfile::tempdir()?;
-    unpack(&archive(path)?, folder.path())?;
-    Ok(folder)
+/// What is wrong with a machine, or with an FMU.
+enum Unspawned {
+    Host(io::Error),
+    Archive(String),
 }
+
+impl From<io::Error> for Unspawned {
+    fn from(error: io::Error) -> Self {
+        Self::Host(error)
+    }
+}
+
+/// Unpacks what was read of an FMU, or else what lies there.
+fn unpack_into(folder: &Path, external: &External) -> Result<(), Unspawned> {
+    let unpacked = || {
+        let bytes: Arc<[u8]> = match &external.contents {
+            Some(Contents(bytes)) => Arc::clone(bytes),
+            None => archive(external.source.path())?.into(),
+        };
+        unpack(&bytes, folder)
+    };
+    unpacked().map_err(|error| match error.kind() {
+        // What the reader of archives says; all else is the system's.
+        io::ErrorKind::InvalidData => Unspawned::Archive(error.to_string()),
+        _ => Unspawned::Host(error),
+    })
+}
+
+const CHANGED: &str = "the file has changed since it was read; begin again with what it is now, or put back what it was";
 
 /// Starts a process of a program for each flight.
 #[derive(Clone, Debug)]
 pub struct ProcessHost {
     program: PathBuf,
     arguments: Vec<OsString>,
+    notes: Arc<Notes>,
     /// What is still passed on of what controllers print, bytes; nothing where all is.
     prints: Option<Arc<AtomicU64>>,
 }
@@ -56,7 +89,14 @@ impl ProcessHost {
     /// and the names that follow them.
     #[must_use]
     pub fn new(program: PathBuf, arguments: &[&str]) -> Self {
-        Self { program, arguments: arguments.iter().map(OsString::from).collect(), prints: None }
+        let arguments = arguments.iter().map(OsString::from).collect();
+        Self { program, arguments, notes: Arc::default(), prints: None }
+    }
+
+    /// Says who is told what a controller does that is part of no verdict: how it ends behind its last sample.
+    #[must_use]
+    pub fn telling(self, tell: fn(&str)) -> Self {
+        Self { notes: Arc::new(Notes { tell: Some(tell), ..Notes::default() }), ..self }
     }
 
     /// The same that passes on so many bytes of what all controllers print, and drops the rest: whoever does not read our
@@ -85,7 +125,9 @@ impl ProcessHost {
         let (stream, theirs) = UnixStream::pair()?;
         let (kind, folder) = match &external.source {
             ExternalSource::Library(_) => (LIBRARY, None),
-            ExternalSource::Fmu(path) => (FMU, Some(unpacked(path)?)),
+            ExternalSource::Fmu(_) => {
+                (FMU, Some(tempfile::Builder::new().prefix(FOLDER).tempdir()?))
+            }
         };
         let path = folder.as_ref().map_or(external.source.path(), TempDir::path);
         let (printer, [output, errors]) = self.prints()?;
@@ -104,10 +146,12 @@ impl ProcessHost {
             child,
             stream,
             sample: 0,
-            limit_s: external.answer_limit_s,
+            limit: Duration::from_secs_f64(external.answer_limit_s),
             is_lost: false,
+            file: external.source.path().to_owned(),
+            notes: Arc::clone(&self.notes),
             printer,
-            _folder: folder,
+            folder,
         })
     }
 }
@@ -134,41 +178,73 @@ fn pass_on(mut reader: PipeReader, left: &AtomicU64) {
 
 impl Host for ProcessHost {
     fn start(&self, external: &External) -> Result<Box<dyn Answers>, SimError> {
-        let refused = |reason: String, allowed: String| {
-            let file = external.source.path().display().to_string();
-            SimError::NotStarted { file, reason, allowed }
-        };
-        let spawned = self.spawn(external).and_then(|mut process| {
-            let start = process.begin()?;
+        let file = external.source.path().display().to_string();
+        let begun = || -> Result<_, Unspawned> {
+            let mut process = self.spawn(external)?;
+            let start = process.begin(external)?;
+            require_unchanged(external)?;
             Ok((process, start))
-        });
-        let (process, start) = spawned.map_err(|error| {
-            let allowed = "a file that can be read, and a process that can be started";
-            refused(error.to_string(), allowed.to_owned())
+        };
+        let (process, start) = begun().map_err(|error| match error {
+            Unspawned::Host(reason) => {
+                SimError::Host { file: file.clone(), reason: reason.to_string() }
+            }
+            Unspawned::Archive(reason) => {
+                let allowed = "an FMU, which is a zip archive, whole and without encryption";
+                SimError::NotStarted { file: file.clone(), reason, allowed: allowed.to_owned() }
+            }
         })?;
+        let refused = |reason, allowed| Err(SimError::NotStarted { file, reason, allowed });
         match start {
             Ok(Start::Ready { period_s }) if is_period(period_s, external.dt_s) => {
                 Ok(Box::new(process))
             }
-            Ok(Start::Ready { period_s }) => Err(refused(
+            Ok(Start::Ready { period_s }) => refused(
                 format!(
                     "its period is {period_s:?} s, and the scenario samples every {:?} s",
                     external.dt_s
                 ),
                 "the same period, or 0 for a controller that has none".to_owned(),
-            )),
-            Ok(Start::Refused { reason, allowed }) => Err(refused(reason, allowed)),
-            Err(loss) => Err(refused(
-                format!("the controller {loss} while it was loaded"),
-                "a library that can be loaded, whose `fspid_external_reset` returns".to_owned(),
-            )),
+            ),
+            Ok(Start::Refused { reason, allowed }) => refused(reason, allowed),
+            // Crashing before the first sample is as much of a verdict as crashing at it.
+            Err(loss) => Ok(Box::new(Lost(loss))),
         }
+    }
+}
+
+/// Refuses a library that is another one than was read: what is told of a flight would be told of that one. An FMU is
+/// unpacked from what was read; a library has to be loaded where it lies, for it may look for others beside itself.
+fn require_unchanged(External { source, contents, .. }: &External) -> io::Result<()> {
+    let (ExternalSource::Library(path), Some(Contents(bytes))) = (source, contents) else {
+        return Ok(());
+    };
+    match std::fs::read(path).is_ok_and(|found| found == **bytes) {
+        true => Ok(()),
+        false => Err(io::Error::other(CHANGED)),
     }
 }
 
 /// Written so that NaN is none.
 fn is_period(period_s: f64, dt_s: f64) -> bool {
     period_s == 0.0 || (period_s - dt_s).abs() <= SAME_PERIOD * dt_s
+}
+
+/// What is told of controllers that were done with a flight, once each.
+#[derive(Debug, Default)]
+struct Notes {
+    tell: Option<fn(&str)>,
+    told: Mutex<BTreeSet<String>>,
+}
+
+impl Notes {
+    fn tell(&self, words: String) {
+        let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(tell) = self.tell.filter(|_| !told.contains(&words)) {
+            tell(&words);
+            told.insert(words);
+        }
+    }
 }
 
 /// A controller in flight.
@@ -178,63 +254,102 @@ struct Process {
     stream: UnixStream,
     /// Number of the next sample.
     sample: u64,
-    limit_s: f64,
+    limit: Duration,
     /// True once there is nothing more to wait for.
     is_lost: bool,
+    file: PathBuf,
+    notes: Arc<Notes>,
     printer: Printer,
     /// What an FMU was unpacked into, removed behind it.
-    _folder: Option<TempDir>,
+    folder: Option<TempDir>,
 }
 
 impl Process {
-    /// Its first words, or how it was lost before them.
-    fn begin(&mut self) -> io::Result<Result<Start, ControllerLoss>> {
-        self.stream.set_read_timeout(Some(LOAD_LIMIT))?;
-        let start = Start::read(&mut self.stream);
-        let start = start.map_err(|error| self.lost(&error, LOAD_LIMIT.as_secs_f64()));
-        self.stream.set_read_timeout(Some(Duration::from_secs_f64(self.limit_s)))?;
-        Ok(start)
+    /// Its first words, or how it was lost before them. An FMU is unpacked when the process is there: whichever of both
+    /// goes first, the other one removes the folder.
+    fn begin(&mut self, external: &External) -> Result<Result<Start, ControllerLoss>, Unspawned> {
+        self.stream.write_all(&std::process::id().to_ne_bytes())?;
+        if let Some(folder) = &self.folder {
+            unpack_into(folder.path(), external)?;
+        }
+        self.stream.write_all(&LOAD)?;
+        let limit = START_LIMIT + self.limit;
+        let start = Start::read(&mut Timed::new(&self.stream, limit));
+        Ok(start.map_err(|error| self.lost(&error, limit)))
     }
 
     /// What an error of the conversation means.
-    fn lost(&mut self, error: &io::Error, limit_s: f64) -> ControllerLoss {
+    fn lost(&mut self, error: &io::Error, limit: Duration) -> ControllerLoss {
         use io::ErrorKind::{BrokenPipe, ConnectionReset, TimedOut, UnexpectedEof, WouldBlock};
         self.is_lost = true;
         match error.kind() {
-            WouldBlock | TimedOut => ControllerLoss::Silent { limit_s },
+            // A process that it left behind may hold the socket.
+            WouldBlock | TimedOut => {
+                self.ending().unwrap_or(ControllerLoss::Silent { limit_s: limit.as_secs_f64() })
+            }
             UnexpectedEof | BrokenPipe | ConnectionReset => {
-                self.ended().map_or(ControllerLoss::NoAnswer, of_status)
+                self.ended().unwrap_or(ControllerLoss::NoAnswer)
             }
             _ => ControllerLoss::NoAnswer,
         }
     }
 
     /// What it ended with: its socket closes a moment before that is known. None for one that goes on without it.
-    fn ended(&mut self) -> Option<ExitStatus> {
+    fn ended(&self) -> Option<ControllerLoss> {
+        let mut pause = FIRST_PAUSE;
         for _ in 0..ENDING_LOOKS {
-            if let Ok(Some(status)) = self.child.try_wait() {
-                return Some(status);
+            if let Some(ending) = self.ending() {
+                return Some(ending);
             }
-            std::thread::sleep(ENDING_PAUSE);
+            std::thread::sleep(pause);
+            pause *= 2;
         }
         None
     }
-}
 
-fn of_status(status: ExitStatus) -> ControllerLoss {
-    match (status.signal(), status.code()) {
-        (Some(signal), _) => ControllerLoss::Crashed { signal },
-        (None, code) => ControllerLoss::Ended { code: code.unwrap_or_default() },
+    /// What it ended with, if it has. Its number stays its own, which is also that of its group.
+    fn ending(&self) -> Option<ControllerLoss> {
+        let options = WaitIdOptions::EXITED | WaitIdOptions::NOHANG | WaitIdOptions::NOWAIT;
+        let status = waitid(WaitId::Pid(Pid::from_child(&self.child)), options);
+        let Ok(status) = status else { return Some(ControllerLoss::Gone) };
+        let status = status?;
+        let code = status.exit_status().unwrap_or_default();
+        let signal = status.terminating_signal();
+        Some(
+            signal.map_or(ControllerLoss::Ended { code }, |signal| ControllerLoss::Crashed {
+                signal,
+            }),
+        )
+    }
+
+    /// Lets it end once nobody asks any more, and tells how if that is not as it should be.
+    fn let_end(&mut self) {
+        let _ = self.stream.shutdown(Shutdown::Write);
+        // Its side closes when it has ended; anything else is passed over.
+        let closed = io::copy(&mut Timed::new(&self.stream, END_LIMIT), &mut io::sink());
+        let ending = if closed.is_ok() { self.ended() } else { self.ending() };
+        let told = match ending {
+            Some(ControllerLoss::Ended { code: 0 }) => return,
+            Some(loss) => loss.to_string(),
+            None => format!("did not end within {:?} s and was ended", END_LIMIT.as_secs_f64()),
+        };
+        let file = self.file.display();
+        self.notes.tell(format!(
+            "note: external controller {file} {told}, behind the last sample of a flight, whose verdict that is not part of"
+        ));
     }
 }
 
 impl Answers for Process {
     fn answer(&mut self, sample: Sample<f64>) -> Result<Step<f64>, ControllerLoss> {
-        let limit_s = self.limit_s;
-        let written = write_sample(&mut self.stream, &sample);
-        let read = written.and_then(|()| read_answer(&mut self.stream));
-        let answer = read.map_err(|error| self.lost(&error, limit_s))?;
-        let (number, step) = answer.map_err(|status| ControllerLoss::Refused { status })?;
+        let mut timed = Timed::new(&self.stream, self.limit);
+        let written = write_sample(&mut timed, &sample);
+        let read = written.and_then(|()| read_answer(&mut timed));
+        let answer = read.map_err(|error| self.lost(&error, self.limit))?;
+        let (number, step) = answer.map_err(|status| match status {
+            OVERRAN => ControllerLoss::Overran,
+            status => ControllerLoss::Refused { status },
+        })?;
         if number != self.sample {
             self.is_lost = true;
             return Err(ControllerLoss::NoAnswer);
@@ -248,13 +363,14 @@ impl Answers for Process {
 }
 
 impl Drop for Process {
-    /// Lets it end; one that does not is ended.
+    /// Lets it end; one that does not is ended, and so is what it left behind in its group.
     fn drop(&mut self) {
         if !self.is_lost {
-            let _ = self.stream.shutdown(Shutdown::Write);
-            let _ = self.stream.set_read_timeout(Some(END_LIMIT));
-            // Its side closes when it has ended; anything else is passed over.
-            let _ = io::copy(&mut self.stream, &mut io::sink());
+            self.let_end();
+        }
+        // Before it is waited for, while nobody else can have its number.
+        if self.ending() != Some(ControllerLoss::Gone) {
+            let _ = kill_process_group(Pid::from_child(&self.child), Signal::KILL);
         }
         let _ = self.child.kill();
         let _ = self.child.wait();

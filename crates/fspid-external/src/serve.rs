@@ -3,16 +3,22 @@
 use std::io;
 use std::os::fd::AsFd as _;
 use std::os::unix::net::UnixStream;
-use std::path::Path;
+use std::os::unix::process::parent_id;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Duration;
 
 use fspid_sim::core::{Sample, Step};
 use fspid_sim::external::{Place, Renamed};
+use rustix::process::{Signal, kill_current_process_group};
 
 use crate::fmu::FmuController;
-use crate::frame::{Start, read_sample, write_answer, write_refusal};
+use crate::frame::{Start, read, read_sample, write_answer, write_refusal};
 use crate::library::{LibraryController, Refusal};
-use crate::process::{FMU, LIBRARY};
+use crate::process::{FMU, FOLDER, LIBRARY};
+
+/// How often a process looks whether the one that asks it is still there.
+const LOOK_AGAIN: Duration = Duration::from_millis(100);
 
 /// Loads a controller of this kind, `library` or `fmu` (its folder), and answers what comes each `dt_s` over standard
 /// input, which [`ProcessHost`](crate::ProcessHost) has made a socket. `renamed` are names of an FMU's variables, such as
@@ -20,8 +26,12 @@ use crate::process::{FMU, LIBRARY};
 /// standard error.
 #[must_use]
 pub fn serve(kind: &str, path: &Path, dt_s: f64, renamed: &[String]) -> ExitCode {
+    let conversed = converse(kind, path, dt_s, renamed);
+    if kind == FMU {
+        remove(path);
+    }
     // Nobody is left to be told what is wrong with the conversation.
-    match converse(kind, path, dt_s, renamed) {
+    match conversed {
         Ok(()) => ExitCode::SUCCESS,
         Err(_) => ExitCode::FAILURE,
     }
@@ -29,6 +39,13 @@ pub fn serve(kind: &str, path: &Path, dt_s: f64, renamed: &[String]) -> ExitCode
 
 fn converse(kind: &str, path: &Path, dt_s: f64, renamed: &[String]) -> io::Result<()> {
     let mut stream = UnixStream::from(io::stdin().as_fd().try_clone_to_owned()?);
+    let asked_by = u32::from_ne_bytes(read(&mut stream)?);
+    let folder = (kind == FMU).then(|| path.to_owned());
+    std::thread::Builder::new().spawn(move || end_with(asked_by, folder))?;
+    // From here on there is something to load, if there ever is.
+    if read::<1>(&mut stream).is_err() {
+        return Ok(());
+    }
     let mut controller = match Controller::load(kind, path, dt_s, renamed) {
         Ok(controller) => controller,
         Err((reason, allowed)) => return Start::Refused { reason, allowed }.write(&mut stream),
@@ -44,8 +61,28 @@ fn converse(kind: &str, path: &Path, dt_s: f64, renamed: &[String]) -> io::Resul
     Ok(())
 }
 
+/// Ends this process and all that it began once the one that asks is gone, of whatever it died: a controller that hangs
+/// would go on for ever. Of an FMU the folder goes too, which nobody else removes then.
+fn end_with(asked_by: u32, folder: Option<PathBuf>) {
+    while parent_id() == asked_by {
+        std::thread::sleep(LOOK_AGAIN);
+    }
+    if let Some(folder) = folder {
+        remove(&folder);
+    }
+    let _ = kill_current_process_group(Signal::KILL);
+}
+
+/// Removes the folder of an FMU, and nothing else that somebody may have named.
+fn remove(folder: &Path) {
+    let name = folder.file_name().unwrap_or_default();
+    if name.to_string_lossy().starts_with(FOLDER) {
+        let _ = std::fs::remove_dir_all(folder);
+    }
+}
+
 /// Reads what the simulator's side wrote.
-fn read(text: &str) -> Option<Renamed> {
+fn named(text: &str) -> Option<Renamed> {
     let (key, name) = text.split_once('=')?;
     let (place, in_degrees) = Place::of_key(key)?;
     Some(Renamed { place, in_degrees, name: name.to_owned() })
@@ -58,7 +95,7 @@ enum Controller {
 
 impl Controller {
     fn load(kind: &str, path: &Path, dt_s: f64, renamed: &[String]) -> Result<Self, Refusal> {
-        let renamed: Vec<Renamed> = renamed.iter().filter_map(|text| read(text)).collect();
+        let renamed: Vec<Renamed> = renamed.iter().filter_map(|text| named(text)).collect();
         match kind {
             LIBRARY => LibraryController::load(path).map(Self::Library),
             FMU => FmuController::load(path, dt_s, &renamed).map(|fmu| Self::Fmu(Box::new(fmu))),
@@ -75,7 +112,7 @@ impl Controller {
 
     fn step(&mut self, sample: &Sample<f64>) -> Result<Step<f64>, i32> {
         match self {
-            Self::Library(library) => Ok(library.step(sample)),
+            Self::Library(library) => library.step(sample),
             Self::Fmu(fmu) => fmu.step(sample),
         }
     }

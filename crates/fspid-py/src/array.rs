@@ -2,8 +2,7 @@
 
 #![allow(unsafe_code, reason = "memory of another library is read where it lies")]
 
-use std::sync::Arc;
-
+use arrow_array::Float64Array;
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -17,12 +16,20 @@ const FLOAT64: &str = if cfg!(target_endian = "little") { "<f8" } else { ">f8" }
 #[pyclass(frozen, module = "fspid", weakref, sequence)]
 pub(crate) struct Column {
     name: String,
-    values: Arc<Vec<f64>>,
+    values: Float64Array,
 }
 
 impl Column {
+    pub(crate) fn arrow(&self) -> Float64Array {
+        self.values.clone()
+    }
+
+    pub(crate) fn name_of(&self) -> &str {
+        &self.name
+    }
+
     pub(crate) fn new(name: String, values: Vec<f64>) -> Self {
-        Self { name, values: Arc::new(values) }
+        Self { name, values: Float64Array::from(values) }
     }
 }
 
@@ -42,7 +49,7 @@ impl Column {
         let place =
             if index < 0 { index.checked_add_unsigned(self.values.len()) } else { Some(index) };
         let found = place.and_then(|place| usize::try_from(place).ok());
-        let value = found.and_then(|place| self.values.get(place));
+        let value = found.and_then(|place| self.values.values().get(place));
         value.copied().ok_or_else(|| {
             PyIndexError::new_err(format!("{index} in a column of {} numbers", self.values.len()))
         })
@@ -50,11 +57,11 @@ impl Column {
 
     /// The numbers as a list.
     fn tolist(&self) -> Vec<f64> {
-        self.values.to_vec()
+        self.values.values().to_vec()
     }
 
     fn __repr__(&self) -> String {
-        match (self.values.first(), self.values.last()) {
+        match (self.values.values().first(), self.values.values().last()) {
             (Some(first), Some(last)) => {
                 let count = self.values.len();
                 format!("<Column {}: {count} numbers, {first:?} to {last:?}>", self.name)
@@ -70,7 +77,7 @@ impl Column {
         interface.set_item("version", 3)?;
         interface.set_item("shape", (self.values.len(),))?;
         interface.set_item("typestr", FLOAT64)?;
-        interface.set_item("data", (self.values.as_ptr() as usize, true))?;
+        interface.set_item("data", (self.values.values().as_ptr() as usize, true))?;
         Ok(interface)
     }
 }

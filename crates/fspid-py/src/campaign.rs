@@ -7,11 +7,13 @@ use fspid::campaign::report;
 use fspid::campaign::sample::Sampling;
 use fspid::campaign::shard::{self, Done};
 use fspid::campaign::summary::{self, Summary, SummaryError, SummarySettings};
+use fspid::campaign::table::{Reader, TableError};
 use fspid::campaign::{self, CampaignError, Folder, Progress, Question, local, merge};
 use pyo3::prelude::*;
 
 use crate::answer::Answer;
 use crate::scenario::Scenario;
+use crate::table::Table;
 use crate::{error, interrupt};
 
 /// A campaign that is planned in a folder.
@@ -188,6 +190,20 @@ impl Campaign {
             merge(&folder, &campaign, &folder.merged_path())
         })?;
         digest.map(|digest| digest.to_string()).map_err(|found| error::campaign(py, &found))
+    }
+
+    /// All rows of the merged file.
+    fn table(&self, py: Python<'_>) -> PyResult<Table> {
+        let path = self.folder.merged_path();
+        let read = interrupt::run(py, move || {
+            let mut batches = Vec::new();
+            for rows in Reader::open(&path)?.tables() {
+                batches.push(rows?);
+            }
+            Ok(batches)
+        })?;
+        let rows = read.map_err(|found: TableError| error::input(py, found))?;
+        Table::of_rows(self.campaign.rows().schema(), rows).map_err(|it| error::input(py, it))
     }
 
     /// How often it failed, and by how much, with a report.

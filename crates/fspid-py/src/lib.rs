@@ -14,6 +14,7 @@ mod fuzzy;
 mod interrupt;
 mod lti;
 mod scenario;
+mod table;
 mod tune;
 
 /// The native part of fspid; private: use the package `fspid`.
@@ -35,6 +36,8 @@ mod _core {
     use super::lti::margins;
     #[pymodule_export]
     use super::scenario::{Scenario, starter, starters};
+    #[pymodule_export]
+    use super::table::Table;
 
     /// Version of this build.
     #[pymodule_export]

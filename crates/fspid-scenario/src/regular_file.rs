@@ -35,8 +35,20 @@ fn standard_input() -> Result<Vec<u8>, String> {
     READ.get_or_init(read).clone()
 }
 
+/// Largest program, in bytes: what is made by a compiler is larger than what people write.
+const PROGRAM_LIMIT: u64 = 64 * 1024 * 1024;
+
 /// The bytes of a regular file that is not too large.
 pub fn read_regular(path: &Path) -> Result<Vec<u8>, String> {
+    read_within(path, FILE_LIMIT)
+}
+
+/// The same of a library or an FMU.
+pub(crate) fn read_program(path: &Path) -> Result<Vec<u8>, String> {
+    read_within(path, PROGRAM_LIMIT)
+}
+
+fn read_within(path: &Path, limit: u64) -> Result<Vec<u8>, String> {
     let reason = |error: std::io::Error| unread_in_words(&error);
     if path == Path::new(STANDARD_INPUT) {
         return standard_input();
@@ -45,15 +57,15 @@ pub fn read_regular(path: &Path) -> Result<Vec<u8>, String> {
     if !metadata.is_file() {
         return Err("it is no regular file".to_owned());
     }
-    let too_large = || format!("it is larger than {} MiB", FILE_LIMIT / (1024 * 1024));
-    if metadata.len() > FILE_LIMIT {
+    let too_large = || format!("it is larger than {} MiB", limit / (1024 * 1024));
+    if metadata.len() > limit {
         return Err(too_large());
     }
     let file = std::fs::File::open(path).map_err(reason)?;
     let mut bytes = Vec::new();
-    let mut limited = file.take(FILE_LIMIT + 1);
+    let mut limited = file.take(limit + 1);
     limited.read_to_end(&mut bytes).map_err(reason)?;
-    if bytes.len() as u64 > FILE_LIMIT {
+    if bytes.len() as u64 > limit {
         return Err(too_large());
     }
     Ok(bytes)

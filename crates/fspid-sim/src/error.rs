@@ -87,6 +87,13 @@ pub enum SimError {
         /// What would be right.
         allowed: String,
     },
+    /// An external controller that could not be asked, for a reason that is not its own.
+    Host {
+        /// Its file.
+        file: String,
+        /// What is wrong with the machine, or with the file since it was read.
+        reason: String,
+    },
     /// The linear model is refused.
     Linear(LtiError),
     /// The controller is refused.
@@ -143,6 +150,10 @@ impl fmt::Display for SimError {
             Self::NotStarted { file, reason, allowed } => {
                 write!(f, "external controller {file}: {reason}; allowed is {allowed}")
             }
+            Self::Host { file, reason } => write!(
+                f,
+                "external controller {file} could not be asked, which says nothing of it: {reason}"
+            ),
             Self::Linear(error) => error.fmt(f),
             Self::Controller(error) => error.fmt(f),
             Self::Supervisor(error) => error.fmt(f),
@@ -151,6 +162,14 @@ impl fmt::Display for SimError {
 }
 
 impl std::error::Error for SimError {}
+
+impl SimError {
+    /// True where this machine or this program is what is wrong, so that there is nothing to say of any controller.
+    #[must_use]
+    pub fn is_of_host(&self) -> bool {
+        matches!(self, Self::NoHost | Self::Host { .. })
+    }
+}
 
 impl From<LtiError> for SimError {
     fn from(error: LtiError) -> Self {

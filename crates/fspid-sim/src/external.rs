@@ -5,7 +5,7 @@
 
 use std::fmt;
 use std::path::PathBuf;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use fspid_core::{Sample, Step};
 
@@ -16,6 +16,8 @@ use crate::error::SimError;
 pub struct External {
     /// What is loaded.
     pub source: ExternalSource,
+    /// What was in that file when it was read, and what flies therefore; None flies what is there.
+    pub contents: Option<Contents>,
     /// The longest time for an answer, s.
     pub answer_limit_s: f64,
     /// Time from sample to sample of the scenario, s.
@@ -75,6 +77,16 @@ impl Place {
     }
 }
 
+/// The bytes of a file.
+#[derive(Clone, PartialEq, Eq)]
+pub struct Contents(pub Arc<[u8]>);
+
+impl fmt::Debug for Contents {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} bytes", self.0.len())
+    }
+}
+
 /// The file of an external controller.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ExternalSource {
@@ -126,10 +138,16 @@ pub enum ControllerLoss {
         /// The status.
         status: i32,
     },
+    /// It wrote behind the memory that it asked for.
+    Overran,
     /// It answered a command that is NaN or infinite.
     NotFinite,
     /// What came was no answer.
     NoAnswer,
+    /// Its process is gone, and the system keeps it to itself how: signals of children are ignored.
+    Gone,
+    /// It could not be started, though it could before.
+    NotStarted,
 }
 
 impl ControllerLoss {
@@ -141,19 +159,23 @@ impl ControllerLoss {
             Self::Ended { .. } => "ended",
             Self::Silent { .. } => "silent",
             Self::Refused { .. } => "refused",
+            Self::Overran => "overran",
             Self::NotFinite => "not finite",
             Self::NoAnswer => "no answer",
+            Self::Gone => "gone",
+            Self::NotStarted => "not started",
         }
     }
 }
 
-/// Signals that programs crash with, as POSIX and Linux number them everywhere alike.
-const SIGNALS: [(i32, &str); 9] = [
+/// Signals that programs crash with; all but one have the same number on every system.
+const SIGNALS: [(i32, &str); 10] = [
     (1, "SIGHUP"),
     (2, "SIGINT"),
     (4, "SIGILL"),
     (5, "SIGTRAP"),
     (6, "SIGABRT"),
+    (if cfg!(target_os = "linux") { 7 } else { 10 }, "SIGBUS"),
     (8, "SIGFPE"),
     (9, "SIGKILL"),
     (11, "SIGSEGV"),
@@ -170,8 +192,11 @@ impl fmt::Display for ControllerLoss {
             Self::Ended { code } => write!(f, "ended its process with code {code}"),
             Self::Silent { limit_s } => write!(f, "gave no answer within {limit_s:?} s"),
             Self::Refused { status } => write!(f, "refused with FMI status {status}"),
+            Self::Overran => f.write_str("wrote behind the memory that it asked for"),
             Self::NotFinite => f.write_str("answered a command that is not finite"),
             Self::NoAnswer => f.write_str("wrote something else than an answer"),
+            Self::Gone => f.write_str("ended, and the system does not tell how"),
+            Self::NotStarted => f.write_str("could not be started for this flight"),
         }
     }
 }
@@ -185,12 +210,23 @@ pub trait Answers: fmt::Debug {
     fn answer(&mut self, sample: Sample<f64>) -> Result<Step<f64>, ControllerLoss>;
 }
 
+/// A controller that is lost before its first sample.
+#[derive(Clone, Copy, Debug)]
+pub struct Lost(pub ControllerLoss);
+
+impl Answers for Lost {
+    fn answer(&mut self, _: Sample<f64>) -> Result<Step<f64>, ControllerLoss> {
+        Err(self.0)
+    }
+}
+
 /// What starts external controllers.
 pub trait Host: Send + Sync {
-    /// Starts one, at rest.
+    /// Starts one, at rest. One that is lost on the way answers with that loss.
     ///
     /// # Errors
-    /// [`SimError::NotStarted`] says what is wrong with it and what would be right.
+    /// [`SimError::NotStarted`] says what is wrong with it and what would be right, [`SimError::Host`] what is wrong
+    /// with the machine.
     fn start(&self, external: &External) -> Result<Box<dyn Answers>, SimError>;
 }
 
@@ -218,7 +254,8 @@ mod tests {
     #[test]
     fn without_a_host_an_external_controller_is_refused_and_says_why() {
         let source = ExternalSource::Library(PathBuf::from("controller.so"));
-        let external = External { source, answer_limit_s: 1.0, dt_s: 0.01, renamed: Vec::new() };
+        let (contents, renamed) = (None, Vec::new());
+        let external = External { source, contents, answer_limit_s: 1.0, dt_s: 0.01, renamed };
         let refused = external.start().err().map(|error| error.to_string());
         assert!(refused.is_some_and(|text| text.contains("external controllers")));
     }

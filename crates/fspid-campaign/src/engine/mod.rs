@@ -29,8 +29,9 @@ pub struct FlightResult {
     pub largest_error_rad: f64,
     /// Effort of the elevator over the whole flight.
     pub elevator: CommandEffort,
-    /// Samples whose command was cut by the controller's own limits, as a share of those flown.
-    pub saturated_share: f64,
+    /// Samples whose command was cut by the controller's own limits, as a share of those flown. Of an external controller
+    /// nobody knows but itself.
+    pub saturated_share: Option<f64>,
     /// Faults latched by the controller.
     pub faults: Faults,
     /// When an aircraft first left the range of its model, if it did.
@@ -155,7 +156,9 @@ fn measure(
             judgement.controller == result.name || judgement.is_of_aircraft()
         };
         let mine = judgements.iter().filter(concerns).cloned().collect();
-        flight(memory, result, mine, scenario.timing.dt_s())
+        let is_known = scenario.controllers.iter().any(|named| named.name == result.name);
+        let flown = flight(memory, result, mine, scenario.timing.dt_s());
+        FlightResult { saturated_share: flown.saturated_share.filter(|_| is_known), ..flown }
     });
     Ok(flights.collect())
 }
@@ -172,7 +175,7 @@ fn flight(
         metrics,
         largest_error_rad: largest_error_rad(&trace.setpoint_rad, &trace.theta_rad),
         elevator: CommandEffort::of(&trace.elevator_rad, dt_s),
-        saturated_share: trace.saturated_samples as f64 / trace.rows().max(1) as f64,
+        saturated_share: Some(trace.saturated_samples as f64 / trace.rows().max(1) as f64),
         faults: trace.faults,
         exit: trace.exit,
         range_rule,

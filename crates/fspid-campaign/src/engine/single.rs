@@ -3,9 +3,10 @@
 
 use std::ops::ControlFlow;
 
-use fspid_sim::{Exit, Flyer, Perturbation, Prepared, SimError, Trace};
+use fspid_sim::{ControllerLoss, Exit, Flyer, Outcome, Perturbation, Prepared, SimError, Trace};
 
-/// One flight, recorded in an empty trace as far as measures need it.
+/// One flight, recorded in an empty trace as far as measures need it. An external controller that cannot be started is
+/// lost: whoever flies beside it has nothing to do with that.
 pub(super) fn record(
     mut trace: Trace,
     prepared: &Prepared,
@@ -23,7 +24,12 @@ pub(super) fn record(
         let departure = instant.aircraft.and_then(|aircraft| aircraft.departure);
         Exit::take_in(&mut trace.exit, departure, instant.k, timing);
         ControlFlow::Continue(())
-    })?;
-    trace.outcome = outcome;
+    });
+    trace.outcome = match outcome {
+        Err(SimError::NotStarted { .. }) => {
+            Outcome::ControllerLost { at_s: 0.0, loss: ControllerLoss::NotStarted }
+        }
+        outcome => outcome?,
+    };
     Ok(trace)
 }

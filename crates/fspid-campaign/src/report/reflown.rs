@@ -125,6 +125,7 @@ fn campaign(source: &Source<'_>) -> Result<Campaign, String> {
 /// Refuses curves that are not those of the file: the first run must give the same bits.
 fn compare(campaign: &Campaign, reader: &Reader) -> Result<(), String> {
     let again = campaign.fly_together(std::iter::once((0, campaign.drawn(0))));
+    let again = again.map_err(|error| error.to_string())?;
     let again = campaign.rows().table(&again).map_err(|error| error.to_string())?;
     let table = reader.tables().next().and_then(Result::ok);
     let stored = table.and_then(|table| table.slice(0..again.rows()).ok());

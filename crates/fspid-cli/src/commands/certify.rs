@@ -85,7 +85,15 @@ fn prove(path: &Path, arguments: &Arguments) -> Result<(), Failure> {
     }
     match arguments.format {
         Format::Text => print(&certification.text())?,
-        Format::Json => print(&json_text(&certification.json()))?,
+        Format::Json => {
+            let mut answer = certification.json();
+            let left_out = study.scenario.externals.iter().map(|named| named.name.as_str());
+            let left_out: Vec<&str> = left_out.filter(|_| only.is_none()).collect();
+            if !left_out.is_empty() {
+                answer["left_out"] = left_out.into();
+            }
+            print(&json_text(&answer))?;
+        }
     }
     if certification.all_proved() {
         return Ok(());

@@ -123,18 +123,30 @@ fn entry(key: &str, file: &Path, more: &str) -> Result<String, Failure> {
     let path = file.canonicalize().map_err(|error| refused(&unread_in_words(&error)))?;
     let name = path.file_name().unwrap_or_default();
     match (name.to_str(), path.to_str()) {
-        (Some(name), Some(path)) => Ok(format!(
-            "controller[]={{ name = {name:?}, kind = \"external\", {key} = {path:?}{more} }}"
-        )),
+        (Some(name), Some(path)) => {
+            let (name, path) = (toml_text(name), toml_text(path));
+            Ok(format!(
+                "controller[]={{ name = {name}, kind = \"external\", {key} = {path}{more} }}"
+            ))
+        }
         _ => Err(refused(&"its path is no text")),
     }
 }
 
+/// A text as TOML writes it: as JSON does, but for one character.
+fn toml_text(text: &str) -> String {
+    serde_json::Value::from(text).to_string().replace('\u{7f}', "\\u007f")
+}
+
+/// The program that runs, whatever lies at its path by now: Linux keeps it there, also once it is removed.
+const RUNNING: &str = "/proc/self/exe";
+
 /// Lets this program start itself for external controllers. Of what they print beside a stream of commands as much is
 /// passed on as a client need not read.
 pub(crate) fn host(beside_a_stream: bool) {
-    let Ok(program) = std::env::current_exe() else { return };
-    let host = ProcessHost::new(program, &[NAME]);
+    let running = Some(PathBuf::from(RUNNING)).filter(|path| path.exists());
+    let Some(program) = running.or_else(|| std::env::current_exe().ok()) else { return };
+    let host = ProcessHost::new(program, &[NAME]).telling(|words| note(words));
     set_host(match beside_a_stream {
         true => host.printing_at_most(MOST_PRINTED),
         false => host,

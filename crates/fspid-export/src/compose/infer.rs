@@ -5,7 +5,7 @@ mod labels;
 mod numbers;
 
 use fspid_core::SelfTuner;
-use fspid_core::fuzzy::OutOfRange;
+use fspid_core::fuzzy::{OutOfRange, Supervisor};
 use fspid_numeric::Real;
 
 use super::members::Configuration;
@@ -39,6 +39,10 @@ pub(super) fn functions<R: Real>(
             vec![Statement::Return(Some(Expression::Byte(OUT_OF_RANGE)))],
         )],
         OutOfRange::Evaluate if supervisor.numbers().is_none() => Vec::new(),
+        // The ends of the range are at three spacings, where the numbers limit once more.
+        OutOfRange::Clamp | OutOfRange::Evaluate if ends_at_three_spacings(supervisor) => {
+            Vec::new()
+        }
         OutOfRange::Clamp | OutOfRange::Evaluate => vec![Statement::when(is_outside(), clamped())],
     };
     match supervisor.numbers() {
@@ -66,6 +70,12 @@ pub(super) fn functions<R: Real>(
         body: copied(body),
     });
     Ok(functions)
+}
+
+/// True of numbers whose outermost centres are the ends of the range also when divided by the spacing.
+fn ends_at_three_spacings<R: Real>(supervisor: &Supervisor<R>) -> bool {
+    let [.., [spacing, _], _, _] = &supervisor.sets();
+    supervisor.numbers().is_some() && (supervisor.range() / *spacing).to_f64() >= 3.0
 }
 
 /// Parameters cannot be written to in every language, so that copies are.
@@ -103,7 +113,16 @@ fn limited(value: Expression, lower: Expression, upper: Expression) -> Expressio
 }
 
 /// The function that moves an input so that the even sets see it, for [`fspid_core::SetCentres`].
-pub(super) fn warp_function<R: Real>() -> Function {
+///
+/// Beyond the range it answers no less than the range where inputs are moved there behind it, else what it is given.
+pub(super) fn warp_function<R: Real>(policy: OutOfRange) -> Function {
+    let beyond = Statement::when(
+        local("part").less(number(1.0)).negated(),
+        vec![Statement::Return(Some(local("seen")))],
+    );
+    let is_moved = policy == OutOfRange::Clamp;
+    let whole = || local("warped");
+    let most = if is_moved { whole() } else { whole().smaller(number(1.0)) };
     let third = number((R::ONE / R::from_f64(3.0)).to_f64());
     let two_thirds = R::ONE / R::from_f64(3.0) + R::ONE / R::from_f64(3.0);
     let (part, small, medium) = (|| local("part"), || local("small"), || local("medium"));
@@ -118,13 +137,13 @@ pub(super) fn warp_function<R: Real>() -> Function {
         parts: &[Part::Configuration],
         parameters: vec![real("seen"), real("small"), real("medium")],
         answers: Some(Kind::Real),
-        body: vec![
+        body: [
             Statement::real("part", local("seen").magnitude() / range()),
             Statement::real("warped", number(0.0)),
-            Statement::when(
-                part().less(number(1.0)).negated(),
-                vec![Statement::Return(Some(local("seen")))],
-            ),
+        ]
+        .into_iter()
+        .chain((!is_moved).then_some(beyond))
+        .chain([
             Statement::If(
                 part().at_most(small()),
                 vec![Statement::set("warped", third * (part() / small()))],
@@ -134,8 +153,9 @@ pub(super) fn warp_function<R: Real>() -> Function {
                     vec![Statement::set("warped", outer)],
                 )],
             ),
-            Statement::set("warped", warped().smaller(number(1.0)) * range()),
+            Statement::set("warped", most * range()),
             Statement::Return(Some(local("seen").less(number(0.0)).select(-warped(), warped()))),
-        ],
+        ])
+        .collect(),
     }
 }

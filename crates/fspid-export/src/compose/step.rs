@@ -110,7 +110,7 @@ pub(super) fn functions<R: Real>(
     if let Controller::SelfTuning(fspid) = controller
         && !fspid.tuner().settings().input_sets.are_even()
     {
-        functions.push(infer::warp_function::<R>());
+        functions.push(infer::warp_function::<R>(fspid.tuner().supervisor().out_of_range()));
     }
     functions.push(around::reset(configuration, controller));
     functions.push(around::hold(configuration, controller, angles));
@@ -165,11 +165,26 @@ fn both(truths: impl IntoIterator<Item = Expression>) -> Expression {
     all.unwrap_or(Expression::Truth(true))
 }
 
-/// Answers whether two finite numbers are not the same, without asking whether they are equal.
-fn cut(left: &Expression, right: &Expression) -> [Statement; 2] {
+/// True where something may cut the command.
+fn is_limited<R: Real>(controller: &Controller<R>) -> bool {
+    let config = controller.config();
+    config.limits.is_some() || config.slew_rad_s.is_some()
+}
+
+/// Answers whether two finite numbers are not the same, without asking whether they are equal; they are where nothing
+/// limits the command.
+fn cut<R: Real>(
+    controller: &Controller<R>,
+    left: &Expression,
+    right: &Expression,
+) -> Vec<Statement> {
     let mark = |is| Statement::set_member(Part::Answer, "saturated", Expression::Truth(is));
     let differs = left.clone().less(right.clone()).or(right.clone().less(left.clone()));
-    [mark(false), Statement::when(differs, vec![mark(true)])]
+    let mut marked = vec![mark(false)];
+    if is_limited(controller) {
+        marked.push(Statement::when(differs, vec![mark(true)]));
+    }
+    marked
 }
 
 impl<R: Real> Composer<'_, R> {
@@ -537,7 +552,7 @@ impl<R: Real> Composer<'_, R> {
             Controller::Fixed(_) => nominal_gain(configuration, controller, gain),
             Controller::SelfTuning(_) => local(GAINS[gain]),
         }));
-        body.extend(cut(&local("excess_rad"), &number(0.0)));
+        body.extend(cut(self.controller, &local("excess_rad"), &number(0.0)));
         let faults = member(Part::State, "faults");
         body.push(Statement::set_member(Part::Answer, "faults", faults));
     }

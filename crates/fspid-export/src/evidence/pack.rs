@@ -5,10 +5,11 @@ use std::fmt::Write as _;
 
 use fspid_numeric::Real;
 
+use super::equivalent::Judge;
 use super::run::Ran;
 use super::{Finding, Subject, proof};
 use crate::interpret::Branch;
-use crate::program::{Precision, Program, Value};
+use crate::program::Precision;
 use crate::targets::File;
 use crate::write;
 
@@ -36,7 +37,20 @@ impl Finding {
     }
 
     fn found(&self) -> String {
-        self.vector.map_or_else(|| "none".to_owned(), |vector| vector.to_string())
+        match (self.vector, self.equivalent) {
+            (Some(vector), _) => vector.to_string(),
+            // The last column has no comma, so that a script finds it.
+            (None, Some(why)) => format!("equivalent: {}", why.replace(',', ";")),
+            (None, None) => "none".to_owned(),
+        }
+    }
+
+    /// The same in a word.
+    fn vectors(&self) -> String {
+        match (self.vector, self.equivalent) {
+            (None, Some(_)) => "equivalent".to_owned(),
+            _ => self.found(),
+        }
     }
 }
 
@@ -82,7 +96,7 @@ fn traced(trace: &BTreeMap<(bool, String), Vec<&Finding>>) -> String {
         lines.dedup();
         let lines: Vec<String> = lines.iter().map(usize::to_string).collect();
         let changes: Vec<&str> = findings.iter().map(|it| it.mutant.change.as_str()).collect();
-        let vectors: Vec<String> = findings.iter().map(|it| it.found()).collect();
+        let vectors: Vec<String> = findings.iter().map(|it| it.vectors()).collect();
         let of = if *is_code { "code" } else { "design" };
         let row = [cell(name), lines.join(" "), cell(&changes.join("; ")), vectors.join(" ")];
         let _ = writeln!(text, "{of},{}", row.join(","));
@@ -98,140 +112,53 @@ fn reversed(header: &str, rows: &BTreeMap<usize, Vec<String>>) -> String {
     text
 }
 
-/// What is asked where, and how often it held and did not.
-pub(super) fn coverage<R: Real>(subject: &Subject<'_, R>, branches: &[Branch]) -> String {
-    let mut text = "function,asked,held,did not\n".to_owned();
+/// What is asked where, how often it held and did not, and why it never goes the other way.
+pub(super) fn coverage<R: Real>(
+    subject: &Subject<'_, R>,
+    judge: &Judge<'_>,
+    branches: &[Branch],
+) -> String {
+    let mut text = "function,asked,held,did not,why never the other way\n".to_owned();
     for branch in branches {
         let asked = write::c_expression(subject.program, subject.prefix, &branch.condition);
-        let row = [cell(&asked), branch.held.to_string(), branch.failed.to_string()];
+        let why = match branch.held == 0 || branch.failed == 0 {
+            true => judge.one_way(branch).unwrap_or_else(|| "not known".to_owned()),
+            false => String::new(),
+        };
+        let row = [cell(&asked), branch.held.to_string(), branch.failed.to_string(), cell(&why)];
         let _ = writeln!(text, "{},{}", branch.function, row.join(","));
     }
     text
 }
 
-/// Found and all of those that satisfy something.
-fn counted(findings: &[Finding], is: impl Fn(&Finding) -> bool) -> (usize, usize) {
-    let all = findings.iter().filter(|it| is(it));
-    all.fold((0, 0), |(found, all), it| (found + usize::from(it.vector.is_some()), all + 1))
-}
-
-/// What is known of places that the vectors do not tell apart.
-struct Known<'a> {
-    /// The source, line by line.
-    lines: Vec<&'a str>,
-    /// What never goes the other way.
-    one_way: &'a [(&'a str, String, bool)],
-    is_mirrored: bool,
-    has_numbers: bool,
-}
-
-impl Known<'_> {
-    /// True for a line in a block that is never entered.
-    fn is_unreached(&self, line: usize) -> bool {
-        let depth =
-            |line: usize| self.lines.get(line - 1).map_or(0, |it| it.len() - it.trim_start().len());
-        let mut inside = depth(line);
-        (1..line).rev().any(|above| {
-            let begins = depth(above) < inside;
-            inside = inside.min(depth(above));
-            begins
-                && self.one_way.iter().any(|(_, asked, held)| {
-                    let opened = self.lines[above - 1].trim() == format!("if ({asked}) {{");
-                    opened && !held
-                })
-        })
-    }
-
-    /// True where what a line writes is written again before it is read.
-    fn is_overwritten(&self, line: usize) -> bool {
-        let Some((left, _)) = self.lines.get(line - 1).and_then(|it| it.split_once(" = ")) else {
-            return false;
+/// All of those that satisfy something, found, shown to change nothing, and not told apart.
+fn counted(findings: &[Finding], is: impl Fn(&Finding) -> bool) -> [usize; 4] {
+    let mut counts = [0; 4];
+    for finding in findings.iter().filter(|it| is(it)) {
+        let place = match (finding.vector, finding.equivalent) {
+            (Some(_), _) => 1,
+            (None, Some(_)) => 2,
+            (None, None) => 3,
         };
-        let indentation = left.len() - left.trim_start().len();
-        let name = left.split_whitespace().next_back().unwrap_or_default();
-        let words =
-            |it: &str| it.split(|c: char| !c.is_alphanumeric() && c != '_').any(|it| it == name);
-        let next = self.lines[line..].iter().find(|it| words(it));
-        next.is_some_and(|it| {
-            let written = it.trim_start().strip_prefix(name).and_then(|it| it.strip_prefix(" = "));
-            written.is_some_and(|value| !words(value))
-                && it.len() - it.trim_start().len() == indentation
-        })
+        counts[0] += 1;
+        counts[place] += 1;
     }
-
-    /// Why a change is not found, as far as it can be told without running it.
-    fn reason(&self, finding: &Finding) -> &'static str {
-        let line = finding.line();
-        let text = self.lines.get(line.wrapping_sub(1)).copied().unwrap_or_default();
-        let (element, change) = (finding.mutant.element.as_str(), finding.mutant.change.as_str());
-        let asks = self.one_way.iter().any(|(_, asked, _)| text.contains(asked.as_str()));
-        let compares = matches!(change, "<= for <" | "< for <=");
-        let above = &self.lines[line.saturating_sub(3)..line.min(self.lines.len())];
-        let asks_sample = |it: &&str| it.contains("if (") && it.contains("setpoint_rad");
-        let is_sample = element == "track" && above.iter().any(asks_sample);
-        if self.is_unreached(line) {
-            return "stands where no vector goes: coverage.csv";
-        }
-        match () {
-            () if is_sample => "the step behind it holds such a sample alike",
-            () if compares && (text.contains('?') || text.contains("if (strengths")) => {
-                "both ways answer the same number where the two sides are equal"
-            }
-            () if element == "infer" && self.has_numbers && text.contains("->range") => {
-                "the inputs are limited once more behind it, in spacings"
-            }
-            () if compares && text.contains("->range") => {
-                "the end of the range is moved onto itself"
-            }
-            () if asks => "what is asked here never goes the other way: coverage.csv",
-            () if self.is_mirrored && matches!(element, "sign" | "fill_grades" | "spacing") => {
-                "the rules conclude the same for both inputs turned"
-            }
-            () if element == "set_sigma" && change == "the other sign" => "squared",
-            () if element == "reset" => "written again before it is read: nothing has started",
-            () if self.is_overwritten(line) => "written again before it is read",
-            () if text.contains("| fault") => "no fault comes here that is not held",
-            () if text.contains("saturated = 0") => "nothing sets it before",
-            () if compares => "no vector meets the very end with another answer",
-            () if change.starts_with("a thousandth") => "no vector tells a thousandth apart here",
-            () => "not told apart by these vectors",
-        }
-    }
-}
-
-/// True where every rule concludes what the rule for both inputs turned concludes.
-fn is_mirrored(program: &Program) -> bool {
-    let tables = program.configuration.iter().filter(|it| it.is_rules());
-    tables.map(|it| &it.value).all(|value| match value {
-        Value::Bytes(cells) => cells.iter().eq(cells.iter().rev()),
-        Value::Reals(cells) => cells.iter().eq(cells.iter().rev()),
-        Value::Real(_) | Value::Byte(_) | Value::Truth(_) => false,
-    })
+    counts
 }
 
 /// The first page.
-pub(super) fn front<R: Real>(subject: &Subject<'_, R>, findings: &[Finding], base: &Ran) -> String {
-    let asked = |it: &Branch| write::c_expression(subject.program, subject.prefix, &it.condition);
-    let one_way = base.branches.iter().filter(|it| it.held == 0 || it.failed == 0);
-    let one_way: Vec<(&str, String, bool)> =
-        one_way.map(|it| (it.function, asked(it), it.held > 0)).collect();
-    let source = write::c(subject.program, subject.prefix, subject.heading).source;
-    let known = Known {
-        lines: source.lines().collect(),
-        one_way: &one_way,
-        is_mirrored: is_mirrored(subject.program),
-        has_numbers: subject.program.function("lower_set").is_some(),
-    };
-    let row = |what: &str, (found, all): (usize, usize)| format!("| {what} | {all} | {found} |\n");
-    let is_rule = |it: &Finding| it.mutant.is_design && it.mutant.element.contains(" of ");
-    let is_comparison = |it: &Finding| {
-        !it.mutant.is_design
-            && matches!(it.mutant.change.as_str(), "<= for <" | "< for <=" | "negated")
-    };
+pub(super) fn front<R: Real>(
+    subject: &Subject<'_, R>,
+    judge: &Judge<'_>,
+    findings: &[Finding],
+    base: &Ran,
+) -> String {
+    let [all, found, equivalent, left] = counted(findings, |_| true);
     let mut text = proof::first_line(subject);
     let _ = write!(
         text,
-        "\n\n# Evidence for {}: data for a review, no qualification\n\n{}\n",
+        "\n\n{all} single changes: {found} found by a vector, {equivalent} shown to change nothing, {left} not told apart.\n\n\
+         # Evidence for {}: data for a review, no qualification\n\n{}\n",
         subject.heading.name.replace('\n', " "),
         about(subject)
     );
@@ -240,25 +167,37 @@ pub(super) fn front<R: Real>(subject: &Subject<'_, R>, findings: &[Finding], bas
         "\n## Changes that the vectors find\n\nMeasured here by the interpreter of the program from which the C is \
          written, with the first {} vectors (of {}, {} are answered otherwise by the program itself). `make-evidence.sh` changes the \
          same lines of the C, compiles each and runs it; its count is in `results/`.\n\n| single change of | changes | \
-         found |\n| --- | --- | --- |\n",
+         found | shown to change nothing | not told apart |\n| --- | --- | --- | --- | --- |\n",
         subject.vectors.len().min(super::ASKED),
         subject.vectors.len(),
         base.different
     );
-    text += &row("a rule", counted(findings, is_rule));
-    text += &row(
-        "another number of the design",
-        counted(findings, |it| it.mutant.is_design && !is_rule(it)),
-    );
-    text += &row("a comparison in the code", counted(findings, is_comparison));
-    text += &row(
-        "anything else in the code",
-        counted(findings, |it| !it.mutant.is_design && !is_comparison(it)),
-    );
-    text += &survivors(findings, &known);
-    text += &ways(&base.branches, &one_way);
+    for (what, is) in KINDS {
+        let [all, found, equivalent, left] = counted(findings, is);
+        let _ = writeln!(text, "| {what} | {all} | {found} | {equivalent} | {left} |");
+    }
+    text += &survivors(findings);
+    text += &ways(subject, judge, &base.branches);
     text += FILES;
     text
+}
+
+type Kind = (&'static str, fn(&Finding) -> bool);
+
+const KINDS: [Kind; 4] = [
+    ("a rule", is_rule),
+    ("another number of the design", |it| it.mutant.is_design && !is_rule(it)),
+    ("a comparison in the code", is_comparison),
+    ("anything else in the code", |it| !it.mutant.is_design && !is_comparison(it)),
+];
+
+fn is_rule(finding: &Finding) -> bool {
+    finding.mutant.is_design && finding.mutant.element.contains(" of ")
+}
+
+fn is_comparison(finding: &Finding) -> bool {
+    let compares = matches!(finding.mutant.change.as_str(), "<= for <" | "< for <=" | "negated");
+    !finding.mutant.is_design && compares
 }
 
 fn about<R: Real>(subject: &Subject<'_, R>) -> String {
@@ -279,38 +218,54 @@ fn about<R: Real>(subject: &Subject<'_, R>) -> String {
     )
 }
 
-fn survivors(findings: &[Finding], known: &Known<'_>) -> String {
-    let left: Vec<&Finding> = findings.iter().filter(|it| it.vector.is_none()).collect();
+/// What no vector finds, those first of which nobody knows why.
+fn survivors(findings: &[Finding]) -> String {
+    let mut left: Vec<&Finding> = findings.iter().filter(|it| it.vector.is_none()).collect();
     if left.is_empty() {
         return "\nEvery change is found.\n".to_owned();
     }
-    let mut text =
-        format!("\nNot found, {}:\n\n| where | change | why |\n| --- | --- | --- |\n", left.len());
+    left.sort_by_key(|it| it.equivalent.is_some());
+    let mut text = format!(
+        "\n{SHOWN}\nNot found, {}:\n\n| where | change | why |\n| --- | --- | --- |\n",
+        left.len()
+    );
     for finding in left {
-        let why = known.reason(finding);
-        let line = finding.line();
-        let _ = writeln!(
-            text,
-            "| {} (line {line}) | {} | {why} |",
-            finding.mutant.element, finding.mutant.change
+        let why = finding.equivalent.map_or_else(
+            || "not told apart by these vectors".to_owned(),
+            |why| format!("equivalent: {why}"),
         );
+        let (element, change, line) =
+            (&finding.mutant.element, &finding.mutant.change, finding.line());
+        let _ = writeln!(text, "| {element} (line {line}) | {change} | {why} |");
     }
     text
 }
 
-fn ways(branches: &[Branch], one_way: &[(&str, String, bool)]) -> String {
-    let both = 2 * branches.len() - one_way.len();
+const SHOWN: &str = "\"Equivalent\" holds with the numbers of the design, from a reset on, for every sequence of calls with any samples, \
+where nobody else writes into the memory. \"Intervals\" means: with intervals of floats in place of numbers, bounds of the memory are found \
+that no call leaves, and within them both programs are the same once ways that are never gone are left out.\n";
+
+fn ways<R: Real>(subject: &Subject<'_, R>, judge: &Judge<'_>, branches: &[Branch]) -> String {
+    let ways = |it: &Branch| usize::from(it.held > 0) + usize::from(it.failed > 0);
+    let both: usize = branches.iter().map(ways).sum();
+    let one_way: Vec<&Branch> = branches.iter().filter(|it| ways(it) < 2).collect();
+    let why: Vec<Option<String>> = one_way.iter().map(|it| judge.one_way(it)).collect();
+    let known = why.iter().flatten().count();
     let mut text = format!(
         "\n## Ways that the vectors go\n\n{both} of {} outcomes of what the program asks (`coverage.csv`; \
-         `make-evidence.sh` counts those of the compiled C).",
-        2 * branches.len()
+         `make-evidence.sh` counts those of the compiled C). Of what goes one way, {known} are shown never to go the other \
+         and {} are not.",
+        2 * branches.len(),
+        one_way.len() - known
     );
     if !one_way.is_empty() {
         text += " These never go the other way:\n\n";
-        for (function, asked, held) in one_way {
-            let way = if *held { "always holds" } else { "never holds" };
-            let _ = writeln!(text, "- `{function}`: `{asked}` {way}");
-        }
+    }
+    for (branch, why) in one_way.iter().zip(why) {
+        let asked = write::c_expression(subject.program, subject.prefix, &branch.condition);
+        let way = if branch.held > 0 { "always holds" } else { "never holds" };
+        let why = why.unwrap_or_else(|| "not known why".to_owned());
+        let _ = writeln!(text, "- `{}`: `{asked}` {way}; {why}", branch.function);
     }
     text
 }

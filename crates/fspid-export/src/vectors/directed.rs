@@ -4,7 +4,7 @@ use fspid_core::equations::LawKind;
 use fspid_core::{Controller, Fspid, Limits, SecondInput};
 use fspid_numeric::Real;
 
-use super::drawn::BAD;
+use super::drawn::{BAD, Draw};
 use super::{Event, Flight, Remembered, Vector};
 use crate::precision_of;
 
@@ -24,34 +24,49 @@ pub(super) fn fly<R: Real>(flight: &mut Flight<'_, R>) {
     bad(flight);
     taking_over(flight);
     memories(flight);
+    edges(flight);
     winding_up(flight);
     if let Controller::SelfTuning(fspid) = flight.controller
         && fspid.tuner_equations().structure.law == LawKind::Accumulating
     {
         gains(flight, fspid);
         gain_limits(flight, fspid);
+        low_gains(flight, fspid);
+    }
+    if let Controller::SelfTuning(fspid) = flight.controller {
+        anywhere(flight, fspid);
     }
 }
 
 /// What the supervisor of a self-tuner is to see: the error and what stands beside it, in its units.
-fn seek<R: Real>(flight: &mut Flight<'_, R>, fspid: &Fspid<R>, [error, second]: [f64; 2]) {
+fn seek<R: Real>(flight: &mut Flight<'_, R>, fspid: &Fspid<R>, seen: [f64; 2]) {
+    seek_with(flight, fspid, seen, Event::Step);
+}
+
+/// The same, with what is done at the sample at which it sees that.
+fn seek_with<R: Real>(
+    flight: &mut Flight<'_, R>,
+    fspid: &Fspid<R>,
+    [error, second]: [f64; 2],
+    event: Event<R>,
+) {
     let numbers = fspid.tuner_equations().numbers.map(|number| number.to_f64());
     let error_rad = error / (numbers.sign * numbers.error_per_rad);
     let second_rad = second / (numbers.sign * numbers.change_per_rad);
     match fspid.tuner().settings().second_input {
         SecondInput::Change => {
             flight.reset([error_rad - second_rad * numbers.change_divisor, 0.0, 0.0]);
-            flight.step([error_rad, 0.0, 0.0]);
+            flight.event(event, [error_rad, 0.0, 0.0]);
         }
         SecondInput::Rate => {
             flight.reset(REST);
-            flight.step([error_rad, 0.0, -second_rad]);
+            flight.event(event, [error_rad, 0.0, -second_rad]);
         }
         SecondInput::ModelError(_) => {
             flight.reset(REST);
             let model_rad = flight.state.memory().map_or(0.0, |memory| memory.model_rad.to_f64());
             let pitch_rad = model_rad - second_rad;
-            flight.step([pitch_rad + error_rad, pitch_rad, 0.0]);
+            flight.event(event, [pitch_rad + error_rad, pitch_rad, 0.0]);
         }
     }
 }
@@ -80,10 +95,94 @@ fn rules<R: Real>(flight: &mut Flight<'_, R>, fspid: &Fspid<R>) {
         }
     }
     // Close to the centres, on both sides.
-    let near = 0.0004 * fspid.tuner().supervisor().range().to_f64();
+    let range = fspid.tuner().supervisor().range().to_f64();
     for (error, second) in errors.iter().zip(&seconds).take(7) {
-        for side in [[near, near], [-near, -near], [near, -near], [-near, near]] {
-            seek(flight, fspid, [error + side[0], second + side[1]]);
+        for near in [0.0004 * range, 0.000_05 * range] {
+            for side in [[near, near], [-near, -near], [near, -near], [-near, near]] {
+                seek(flight, fspid, [error + side[0], second + side[1]]);
+            }
+        }
+    }
+}
+
+/// Close to half way between two centres, where two rules are about as strong, at every centre of the other input.
+fn halves<R: Real>(flight: &mut Flight<'_, R>, fspid: &Fspid<R>, event: Event<R>) {
+    let (errors, seconds) = (places(fspid, true), places(fspid, false));
+    for part in [0.4999, 0.5, 0.5001] {
+        let half = |pair: &[f64]| part * pair[0] + (1.0 - part) * pair[1];
+        for error in errors[..7].windows(2).map(half) {
+            seconds[..7]
+                .iter()
+                .for_each(|second| seek_with(flight, fspid, [error, *second], event));
+        }
+        for second in seconds[..7].windows(2).map(half) {
+            errors[..7].iter().for_each(|error| seek_with(flight, fspid, [*error, second], event));
+        }
+    }
+}
+
+/// So many views around the place where a Gaussian grade passes from one power of two to the next.
+const AROUND_POWERS: usize = 16;
+
+/// Where the exponent of a grade is half of the logarithm of 2, and the sum behind it has the most to do.
+fn powers<R: Real>(flight: &mut Flight<'_, R>, fspid: &Fspid<R>, event: Event<R>) {
+    let supervisor = fspid.tuner().supervisor();
+    if supervisor.numbers().is_some() {
+        return;
+    }
+    let [.., [spacing, sigma], _, _] = supervisor.sets().map(|set| set.map(Real::to_f64));
+    let distance = core::f64::consts::LN_2.sqrt() * sigma / spacing;
+    let (errors, seconds) = (places(fspid, true), places(fspid, false));
+    for (pair, near) in errors[..7].windows(2).zip(seconds.windows(2)) {
+        for part in 0..AROUND_POWERS {
+            let beside = (1.0 + 0.0005 * (part as f64 / 8.0 - 1.0)) * distance;
+            for (from, to, second) in [(pair[0], pair[1], near[0]), (pair[1], pair[0], near[1])] {
+                seek_with(flight, fspid, [from + beside * (to - from), second], event);
+            }
+        }
+    }
+}
+
+/// What gives the derivative's gain the most digits before a sample.
+fn finest<R: Real>(flight: &Flight<'_, R>, fspid: &Fspid<R>) -> Event<R> {
+    let equations = fspid.tuner_equations();
+    if equations.structure.law != LawKind::Accumulating || !flight.has_events {
+        return Event::Step;
+    }
+    Event::Memory(Remembered::Gain(2), R::from_f64(low_gain(flight, fspid, 2, 1.1)))
+}
+
+/// A gain so small, above its limit by some of what a rule adds at most.
+fn low_gain<R: Real>(flight: &Flight<'_, R>, fspid: &Fspid<R>, gain: usize, part: f64) -> f64 {
+    let numbers = fspid.tuner_equations().gains[gain].map(|it| it.to_f64());
+    let lower = Some(numbers.lower).filter(|it| it.is_finite()).unwrap_or(0.0);
+    lower + part * numbers.scale.abs() * flight.controller.config().dt_s.to_f64()
+}
+
+/// So many views that nobody has chosen.
+const VIEWS: usize = 400;
+
+/// Views between and a little outside of all places.
+fn anywhere<R: Real>(flight: &mut Flight<'_, R>, fspid: &Fspid<R>) {
+    let event = finest(flight, fspid);
+    halves(flight, fspid, event);
+    powers(flight, fspid, event);
+    let (mut draw, range) = (Draw(49), fspid.tuner().supervisor().range().to_f64());
+    for _ in 0..VIEWS {
+        seek_with(flight, fspid, [draw.around(1.05 * range), draw.around(1.05 * range)], event);
+    }
+}
+
+/// Every rule from gains so small that what it adds in one sample has the most digits.
+fn low_gains<R: Real>(flight: &mut Flight<'_, R>, fspid: &Fspid<R>) {
+    let (errors, seconds) = (places(fspid, true), places(fspid, false));
+    for gain in 0..3 {
+        for part in [1.1, 1.73] {
+            let value = low_gain(flight, fspid, gain, part);
+            let event = Event::Memory(Remembered::Gain(gain), R::from_f64(value));
+            for error in &errors[..7] {
+                seconds[..7].iter().for_each(|it| seek_with(flight, fspid, [*error, *it], event));
+            }
         }
     }
 }
@@ -231,9 +330,10 @@ fn taking_over<R: Real>(flight: &mut Flight<'_, R>) {
         flight.event(Event::Faults, good);
         flight.step(good);
     }
-    for (place, bad) in
-        [f64::NAN, guard * 1.001].into_iter().flat_map(|bad| (0..3).map(move |it| (it, bad)))
-    {
+    let largest = largest::<R>();
+    let ends = [f64::INFINITY, largest, guard * 1.001, guard];
+    let ends = ends.into_iter().flat_map(|end| [end, -end]).chain([f64::NAN]);
+    for (place, bad) in ends.flat_map(|bad| (0..3).map(move |it| (it, bad))) {
         let mut sample = good;
         sample[place] = bad;
         flight.reset(good);
@@ -267,6 +367,63 @@ fn memories<R: Real>(flight: &mut Flight<'_, R>) {
             }
         }
     }
+}
+
+/// So many numbers of the memory, each half as far from where a sample is held as the one before.
+const HALVINGS: usize = 28;
+
+/// From 0 to an end at which samples are held, ever closer to where that begins, on both sides of it.
+fn edge<R: Real>(flight: &mut Flight<'_, R>, end: f64, probe: impl Fn(&mut Flight<'_, R>, f64)) {
+    let (mut good, mut held) = (0.0, end);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (good + held);
+        probe(flight, middle);
+        let is_held = flight.vectors.last().is_some_and(|it| it.marks[1] != 0);
+        *if is_held { &mut held } else { &mut good } = middle;
+    }
+}
+
+/// The largest numbers that are remembered: the integral beside a derivative that takes it out of the command again,
+/// and the reference model.
+fn edges<R: Real>(flight: &mut Flight<'_, R>) {
+    let [rate, integral] = fspid_core::largest_remembered::<R>().map(R::to_f64);
+    let good = [0.05, 0.02, 0.01];
+    let write = |flight: &mut Flight<'_, R>, which, value| {
+        flight.event(Event::Memory(which, R::from_f64(value)), good);
+    };
+    let kd = flight.controller.nominal().kd.to_f64().abs().max(1e-6);
+    let end = (4.0 * integral / kd).min(0.2 * largest::<R>());
+    for sign in [-1.0, 1.0] {
+        edge(flight, end, |flight, value| {
+            flight.reset(good);
+            write(flight, Remembered::Derivative, -sign * value);
+            write(flight, Remembered::Integral, sign * integral);
+        });
+        if !has_model(flight) {
+            continue;
+        }
+        let members = [Remembered::Model, Remembered::ModelRate];
+        // From two memories, since not every one comes to the very end.
+        for (which, other) in members.into_iter().zip(members.into_iter().rev()) {
+            for part in [0.0, 0.3] {
+                edge(flight, 2.0 * rate, |flight, value| {
+                    flight.reset(good);
+                    write(flight, other, part * rate);
+                    write(flight, which, sign * value);
+                });
+            }
+        }
+        // It comes to the edge while another commands, where nothing was latched before.
+        flight.reset(good);
+        write(flight, Remembered::ModelRate, 0.99 * sign * rate);
+        write(flight, Remembered::Model, 0.97 * sign * rate);
+        (0..8).for_each(|_| flight.track(0.1, good));
+    }
+}
+
+fn has_model<R: Real>(flight: &Flight<'_, R>) -> bool {
+    matches!(flight.controller, Controller::SelfTuning(fspid)
+        if matches!(fspid.tuner().settings().second_input, SecondInput::ModelError(_)))
 }
 
 /// Long against the limits, and out of it.

@@ -93,6 +93,9 @@ fn main(
             }
             let answers = if is_controller(program) {
                 page.line(&format!("const {real} given = real(vectors[k][{inputs}]);"));
+                // What nobody writes is not what it should be.
+                page.line("answer.saturated = 1U;");
+                page.line("answer.faults = 255U;");
                 events(page, program, prefix);
                 inputs + 1
             } else {
@@ -150,7 +153,9 @@ fn events(page: &mut Page, program: &Program, prefix: &str) {
     let all = format!("{prefix}_faults(&state) != (k > 0U ? marks[k - 1U][1] : 0U)");
     page.line(&format!("    if ({all}) {{ ++different; }}"));
     page.line("    break;");
-    for (name, number) in [("command_rad", 5), ("integral", 6), ("kp", 7), ("ki", 8), ("kd", 9)] {
+    let remembered = ["command_rad", "integral", "kp", "ki", "kd"];
+    let further = ["derivative_rad_s", "model_rad", "model_rad_s"];
+    for (name, number) in remembered.into_iter().chain(further).zip(5..) {
         if has(name) {
             page.line(&format!("case {number}U: state.{name} = given; break;"));
         }

@@ -137,6 +137,16 @@ class Trace(Mapping[str, "_core.Column"]):
         """All that is known of the flight but its columns."""
         return self._facts
 
+    def __arrow_c_schema__(self) -> object:
+        return self._table().__arrow_c_schema__()
+
+    def __arrow_c_stream__(self, requested_schema: object | None = None) -> object:
+        """The columns for Arrow: ``polars.DataFrame(trace)`` and ``pyarrow.table(trace)`` take no copy."""
+        return self._table().__arrow_c_stream__(requested_schema)
+
+    def _table(self) -> _core.Table:
+        return _core.Table(list(self._columns.values()))
+
     def __getitem__(self, column: str) -> _core.Column:
         try:
             return self._columns[column]

@@ -106,6 +106,13 @@ class Campaign:
         """Merge all shards; answers SHA-256 of all rows. Gaps and parts of other campaigns are refused."""
         return self._core.merge()
 
+    def table(self) -> _core.Table:
+        """All rows of the merged file, one for each run and controller.
+
+        ``polars.DataFrame(campaign.table())``, ``pyarrow.table(…)`` and DuckDB take it as it lies, by Arrow.
+        """
+        return self._core.table()
+
     def summary(self, confidence: float = 0.95) -> CampaignSummary:
         """What the rows say, with confidence intervals.
 

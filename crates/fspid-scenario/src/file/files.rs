@@ -1,6 +1,8 @@
 //! The files that a file refers to, and the digest of all that was read.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use sha2::{Digest as _, Sha256};
 
@@ -8,16 +10,43 @@ use crate::file::overrides::Change;
 use crate::keyed::Section;
 use crate::keyed::Table;
 use crate::keyed::document::Item;
-use crate::regular_file::{read_regular, unread_in_words};
+use crate::regular_file::{read_program, read_regular, unread_in_words};
 use fspid_diagnostics::Report;
 
 /// Why a file cannot be referred to.
 const NO_FOLDER: &str = "this scenario is not in a folder, so it cannot refer to files";
 
+/// Where a file lies, from the root, and what is in it.
+type Found = (PathBuf, Arc<[u8]>);
+
+/// What was read, by its path. A scenario that is built again and again is built of the same bytes,
+/// whatever became of its files meanwhile: those that its digest is of.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Kept(Arc<Mutex<BTreeMap<PathBuf, Found>>>);
+
+impl Kept {
+    fn read(
+        &self,
+        path: PathBuf,
+        read: fn(&Path) -> Result<Vec<u8>, String>,
+    ) -> Result<Found, String> {
+        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(found) = kept.get(&path) {
+            return Ok(found.clone());
+        }
+        let bytes: Arc<[u8]> = read(&path)?.into();
+        let root = path.canonicalize().map_err(|error| unread_in_words(&error))?;
+        let found = (root, bytes);
+        kept.insert(path, found.clone());
+        Ok(found)
+    }
+}
+
 /// Reads files and keeps the digest of everything read, and what plant and aircraft files say.
 pub(crate) struct Files<'a> {
     folder: Option<&'a Path>,
     hasher: Sha256,
+    kept: Kept,
     /// Path of the key that refers to a file, the file's specification, and what it says.
     referred: Vec<(String, &'static Table, Section)>,
     /// Path of a key that is left out, and the word that a file makes its default.
@@ -38,6 +67,7 @@ impl<'a> Files<'a> {
         Self {
             folder,
             hasher: Sha256::new(),
+            kept: Kept::default(),
             referred: Vec::new(),
             filled: Vec::new(),
             changes: Vec::new(),
@@ -45,6 +75,11 @@ impl<'a> Files<'a> {
             names: Vec::new(),
             documents: None,
         }
+    }
+
+    /// The same with what was read before.
+    pub(crate) fn of_kept(folder: Option<&'a Path>, kept: &Kept) -> Self {
+        Self { kept: kept.clone(), ..Self::new(folder) }
     }
 
     /// Keeps what the file says that the key at `path` refers to.
@@ -146,21 +181,21 @@ impl<'a> Files<'a> {
         self.hasher.update(bytes);
     }
 
-    /// Where a program lies that is referred to, from the root; what it is goes into the digest.
-    pub(crate) fn program(&mut self, path: &str) -> Result<PathBuf, String> {
+    /// Where a program lies that is referred to, from the root, and its bytes; what it is goes into the digest.
+    pub(crate) fn program(&mut self, path: &str) -> Result<Found, String> {
         let folder = self.folder.ok_or(NO_FOLDER)?;
-        let bytes = read_regular(&folder.join(path))?;
         self.name(path);
+        let (path, bytes) = self.kept.read(folder.join(path), read_program)?;
         self.digest_bytes(&bytes);
-        folder.join(path).canonicalize().map_err(|error| unread_in_words(&error))
+        Ok((path, bytes))
     }
 
     /// The text of a file that is referred to.
     pub(crate) fn read(&mut self, path: &str) -> Result<String, String> {
         let folder = self.folder.ok_or(NO_FOLDER)?;
-        let bytes = read_regular(&folder.join(path))?;
         self.name(path);
-        String::from_utf8(bytes).map_err(|error| {
+        let (_, bytes) = self.kept.read(folder.join(path), read_regular)?;
+        String::from_utf8(bytes.to_vec()).map_err(|error| {
             let position = error.utf8_error().valid_up_to();
             format!("not UTF-8 from byte {position} on")
         })

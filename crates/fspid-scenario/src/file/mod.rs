@@ -248,8 +248,16 @@ pub fn parse_with(
     folder: Option<&Path>,
     extra: &Extra<'_>,
 ) -> Result<Study, Problems> {
+    parse_keeping(text, name, Files::new(folder), extra)
+}
+
+fn parse_keeping(
+    text: &str,
+    name: &str,
+    mut files: Files<'_>,
+    extra: &Extra<'_>,
+) -> Result<Study, Problems> {
     let mut report = Report::default();
-    let mut files = Files::new(folder);
     files.digest(text);
     let study = read(&mut report, &mut files, text, extra);
     let warnings = report.finish(name)?;

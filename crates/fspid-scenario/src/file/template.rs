@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::build::{Built, scenario};
 use super::document::{Item, Value};
 use super::extra::Extra;
-use super::files::Files;
+use super::files::{Files, Kept};
 use super::overrides::{self, Found, Setting};
 use crate::setting_path::{NewValue, SettingPath, steps};
 use crate::tuning::TunableParameter;
@@ -23,6 +23,8 @@ pub struct Template {
     /// Changes of files that the scenario names.
     changes: Vec<overrides::Change>,
     study: Study,
+    /// The files that the digest is of.
+    kept: Kept,
 }
 
 impl Template {
@@ -48,8 +50,9 @@ impl Template {
         folder: Option<&Path>,
         extra: &Extra<'_>,
     ) -> Result<Self, Problems> {
-        let study = super::parse_with(text, name, folder, extra)?;
-        let (mut report, mut files) = (Report::default(), Files::new(folder));
+        let kept = Kept::default();
+        let study = super::parse_keeping(text, name, Files::of_kept(folder, &kept), extra)?;
+        let (mut report, mut files) = (Report::default(), Files::of_kept(folder, &kept));
         let document = changed_document(&mut report, &mut files, text, extra).map(|(it, _)| it);
         Ok(Self {
             name: name.to_owned(),
@@ -59,6 +62,7 @@ impl Template {
             changes: files.changes().cloned().collect(),
             report,
             study,
+            kept,
         })
     }
 
@@ -167,7 +171,7 @@ impl Template {
     }
 
     fn files(&self) -> Files<'_> {
-        let mut files = Files::new(self.folder.as_deref());
+        let mut files = Files::of_kept(self.folder.as_deref(), &self.kept);
         self.changes.iter().for_each(|change| files.change(change.clone()));
         files
     }
@@ -253,5 +257,25 @@ mod tests {
         let name = path("name.x");
         let problems = template().with(&[(&name, NewValue::Number(1.0))]).expect_err("no file");
         assert!(problems.to_string().contains("has no `x` in it"), "{problems}");
+    }
+
+    #[test]
+    fn a_file_that_changes_meanwhile_changes_no_scenario_that_is_built_again() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let program = folder.path().join("own.so");
+        std::fs::write(&program, "as it was hashed").expect("a file");
+        let external =
+            "\n[[controller]]\nname = \"own\"\nkind = \"external\"\nlibrary = \"own.so\"\n";
+        let (text, extra) = (format!("{SCENARIO}{external}"), Extra::default());
+        let template = Template::parse(&text, "step.toml", Some(folder.path()), &extra);
+        let template = template.expect("a scenario");
+        for change in [Some("another"), None] {
+            match change {
+                Some(bytes) => std::fs::write(&program, bytes).expect("a file"),
+                None => std::fs::remove_file(&program).expect("it was there"),
+            }
+            let again = template.with(&[]).expect("the same scenario");
+            assert_eq!(again.scenario, template.study().scenario);
+        }
     }
 }

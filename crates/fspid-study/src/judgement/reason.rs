@@ -79,6 +79,11 @@ pub enum NotEvaluated {
         "an external controller has no equations here, so that its loop cannot be asked; its flights can"
     )]
     External,
+    /// What only the controller knows, and might say wrongly.
+    #[error(
+        "an external controller's limits are not known here, and its own word of what they cut is no measure; its elevator and its command are measured"
+    )]
+    OwnWord,
     /// No mode of the loop has a frequency that counts.
     #[error("no mode of the loop has a frequency that counts")]
     NoMode,

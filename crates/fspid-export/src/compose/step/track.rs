@@ -6,7 +6,7 @@ use fspid_core::{Controller, largest_remembered};
 use fspid_numeric::Real;
 
 use super::super::infer;
-use super::{Composer, IMPLAUSIBLE, NOT_FINITE, PARTS, cut, held, read};
+use super::{Composer, IMPLAUSIBLE, NOT_FINITE, PARTS, cut, held, is_limited, read};
 use crate::program::{
     Expression, Function, Kind, Operator, Parameter, Part, Statement, local, member, number,
 };
@@ -135,7 +135,9 @@ impl<R: Real> Composer<'_, R> {
             Statement::set_member(Part::State, "command_rad", local("tracked_rad")),
             Statement::set_member(Part::Answer, &command, shown),
         ]);
-        body.extend(cut(&local("tracked_rad"), &local("given_rad")));
+        if is_limited(self.controller) {
+            body.extend(cut(self.controller, &local("tracked_rad"), &local("given_rad")));
+        }
         body
     }
 }

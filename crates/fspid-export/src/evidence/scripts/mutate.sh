@@ -35,4 +35,9 @@ ls "$work" | sed -n 's/\.line$//p' | sort -n | xargs -P "$(nproc)" -n 1 sh -c '
     rm -f "$work/$n.c" "$work/$n.o" "$work/$n.run"' "$work" | sort -n > results/mutants.txt
 awk '{ count[$2]++ } END { for (word in count) printf "%s %d\n", word, count[word] }' results/mutants.txt | sort \
     > results/mutation.txt
+# What was shown to change nothing, against what the compiled C says.
+awk 'FNR == NR { n = $0; sub(/,.*/, "", n); if ($0 ~ /,equivalent: [^,]*$/) shown[n] = 1; next }
+    $2 == "survived" && !($1 in shown) { left++ } $2 == "found" && ($1 in shown) { wrong++ }
+    END { printf "survived and not shown to change nothing %d\nfound though shown to change nothing %d\n", left, wrong }' \
+    mutants.csv results/mutants.txt >> results/mutation.txt
 cat results/mutation.txt

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use fspid_sim::external::{Place, Renamed};
+use fspid_sim::external::{Contents, Place, Renamed};
 use fspid_sim::{External, ExternalSource, NamedExternal};
 
 use crate::file::files::Files;
@@ -22,8 +22,8 @@ pub(super) fn external(
         true => (keys::FMU, ExternalSource::Fmu),
         false => (keys::LIBRARY, ExternalSource::Library),
     };
-    let path = match files.program(section.get(key)?) {
-        Ok(path) => path,
+    let (path, bytes) = match files.program(section.get(key)?) {
+        Ok(found) => found,
         Err(reason) => {
             let message = format!("cannot be read: {reason}");
             let allowed = "a shared library or an FMU, its path relative to the scenario's folder";
@@ -40,7 +40,8 @@ pub(super) fn external(
             renamed.extend(called(report, section, keys)?);
         }
     }
-    let external = External { source: of(path), answer_limit_s, dt_s, renamed };
+    let (source, contents) = (of(path), Some(Contents(bytes)));
+    let external = External { source, contents, answer_limit_s, dt_s, renamed };
     Some(NamedExternal { name, external })
 }
 

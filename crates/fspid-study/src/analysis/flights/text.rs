@@ -1,9 +1,9 @@
 //! Flights in words.
 
 use fspid_sim::describing::{LimitCycle, LimitCycles};
-use fspid_sim::flown::Margin;
 use fspid_sim::flown::empirical::{EmpiricalAnswer, EmpiricalMargins};
 use fspid_sim::flown::trajectory::TrajectoryLinearisation;
+use fspid_sim::flown::{Failure, Margin};
 
 use super::Flights;
 use crate::analysis::decibels;
@@ -53,8 +53,13 @@ fn flown_margins(margins: &EmpiricalMargins) -> Vec<(&'static str, String)> {
 /// Where a flight ceases to hold, in words; `way` is where it was looked for.
 fn between(margin: &Margin, way: &str, shown: impl Fn(f64) -> String) -> String {
     match margin {
-        Margin::Between { holds, fails, .. } => {
-            format!("holds at {}, fails at {}", shown(*holds), shown(*fails))
+        Margin::Between { holds, fails, failure } => {
+            // Who reads "fails" thinks of the loop.
+            let lost = match failure {
+                Failure::ControllerLost { .. } => format!(" ({failure})"),
+                _ => String::new(),
+            };
+            format!("holds at {}, fails at {}{lost}", shown(*holds), shown(*fails))
         }
         Margin::Beyond { held } => format!("holds {way} to {} and further", shown(*held)),
     }

@@ -13,7 +13,7 @@ use super::{Case, NotEvaluated};
 use crate::metrics::Verdict;
 use crate::simulation::ControllerResult;
 use fspid_scenario::file::Study;
-use fspid_scenario::measure::Family;
+use fspid_scenario::measure::{Family, Measure};
 use fspid_scenario::requirement::Requirement;
 use linear::PlantEvidence;
 
@@ -68,6 +68,9 @@ impl<'a> Evidence<'a> {
     /// # Errors
     /// [`NotEvaluated`] where one case has no value; the others do not count then.
     pub fn cases(&self, requirement: &Requirement) -> Result<Vec<Case>, NotEvaluated> {
+        if requirement.measure == Measure::Saturated && self.flyer.controller().is_none() {
+            return Err(NotEvaluated::OwnWord);
+        }
         match requirement.measure.family() {
             Family::Step | Family::Flight => {
                 // Where the loop says it of each plant, it says of which.
