@@ -1,7 +1,6 @@
 //! Arguments that name files: `-` is standard input or output everywhere, and an unknown ending is refused.
 
-use std::convert::Infallible;
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::ops::Deref;
 use std::path::{Path, PathBuf};
 
@@ -69,7 +68,7 @@ impl Deref for Source {
 impl ValueParserFactory for InFile {
     type Parser = ValueParser;
     fn value_parser() -> ValueParser {
-        let read = |text: OsString| Ok::<_, Infallible>(Self(text.into()));
+        let read = |text: OsString| named(text).map(Self);
         OsStringValueParser::new().try_map(read).into()
     }
 }
@@ -84,7 +83,7 @@ impl ValueParserFactory for NamedFile {
 impl ValueParserFactory for Source {
     type Parser = ValueParser;
     fn value_parser() -> ValueParser {
-        StringValueParser::new().map(Self).into()
+        StringValueParser::new().try_map(|text| named(text).map(Self)).into()
     }
 }
 
@@ -104,7 +103,7 @@ impl ValueParserFactory for Drawings {
 
 impl NamedFile {
     fn named(text: OsString) -> Result<Self, String> {
-        let path = PathBuf::from(text);
+        let path: PathBuf = named(text)?;
         match is_standard(&path) {
             true => Err("a file with a name is needed, which standard input is not".to_owned()),
             false => Ok(Self(path)),
@@ -114,7 +113,7 @@ impl NamedFile {
 
 impl Folder {
     fn named(text: OsString) -> Result<Self, String> {
-        let path = PathBuf::from(text);
+        let path: PathBuf = named(text)?;
         match is_standard(&path) {
             true => Err("a folder is needed, which standard output is not".to_owned()),
             false => Ok(Self(path)),
@@ -126,7 +125,7 @@ impl Drawings {
     const ENDING: &str = "svg";
 
     fn named(text: OsString) -> Result<Self, String> {
-        let path = PathBuf::from(text);
+        let path: PathBuf = named(text)?;
         if is_standard(&path) || path.is_dir() || has_ending(&path, &[Self::ENDING]) {
             return Ok(Self(path));
         }
@@ -145,10 +144,18 @@ impl Drawings {
     }
 }
 
+/// What is named; nothing is, where a shell's variable is not set, and would be taken for the folder that one is in.
+fn named<T: AsRef<OsStr>, P: From<T>>(text: T) -> Result<P, String> {
+    match text.as_ref().is_empty() {
+        true => Err("a name is needed; is a variable of the shell not set?".to_owned()),
+        false => Ok(text.into()),
+    }
+}
+
 /// A file that is written, with one of these endings.
 pub(crate) fn written(endings: &'static [&'static str]) -> ValueParser {
-    let named = move |text: OsString| {
-        let path = PathBuf::from(text);
+    let ended = move |text: OsString| {
+        let path: PathBuf = named(text)?;
         // A device or a pipe has no ending.
         let is_special = std::fs::metadata(&path).is_ok_and(|data| !data.is_file());
         if is_standard(&path) || is_special || has_ending(&path, endings) {
@@ -165,7 +172,7 @@ pub(crate) fn written(endings: &'static [&'static str]) -> ValueParser {
         };
         Err(format!("{what}; {known}, and `-` for standard output"))
     };
-    OsStringValueParser::new().try_map(named).into()
+    OsStringValueParser::new().try_map(ended).into()
 }
 
 /// A whole number with its least and most.
@@ -212,6 +219,28 @@ mod tests {
         assert_eq!(told("9"), "");
         for wrong in ["0", "10", "x", "1.5"] {
             assert!(told(wrong).contains("a whole number from 1 to 9"), "{}", told(wrong));
+        }
+    }
+
+    /// `--out "$NOT_SET"` wrote over what was in the folder that one is in.
+    #[test]
+    fn nothing_is_no_name() {
+        let command = clap::Command::new("it").no_binary_name(true).args([
+            clap::Arg::new("in").long("in").value_parser(clap::value_parser!(InFile)),
+            clap::Arg::new("named").long("named").value_parser(clap::value_parser!(NamedFile)),
+            clap::Arg::new("out").long("out").value_parser(written(&["csv"])),
+            clap::Arg::new("folder").long("folder").value_parser(clap::value_parser!(Folder)),
+            clap::Arg::new("drawings").long("drawings").value_parser(clap::value_parser!(Drawings)),
+            clap::Arg::new("source").long("source").value_parser(clap::value_parser!(Source)),
+        ]);
+        for option in ["--in", "--named", "--out", "--folder", "--drawings", "--source"] {
+            let parsed = command.clone().try_get_matches_from([option, ""]);
+            let told = parsed.err().map(|error| error.to_string()).unwrap_or_default();
+            assert!(told.contains("a name is needed"), "{option}: {told}");
+            assert!(
+                command.clone().try_get_matches_from([option, "a.csv"]).is_ok()
+                    || option == "--drawings"
+            );
         }
     }
 

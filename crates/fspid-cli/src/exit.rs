@@ -3,8 +3,9 @@
 //! With `--format json` standard output holds exactly one JSON object: the answer, or, where there is none, what went
 //! wrong. Standard error holds words for people in any case.
 
+use std::borrow::Cow;
 use std::fmt::Display;
-use std::io::{self, Write as _};
+use std::io::{self, IsTerminal as _, Write as _};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use fspid_diagnostics::digits::counted;
@@ -134,7 +135,7 @@ impl Failure {
             let _ = print(&format!("{:#}\n", self.json()));
         }
         if !message.is_empty() {
-            let _ = writeln!(io::stderr(), "{}{message}", self.name);
+            let _ = writeln!(io::stderr(), "{}{}", self.name, visible(message));
         }
     }
 
@@ -173,6 +174,8 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
         return Ok(());
     }
     let mut out = io::stdout().lock();
+    // Into a file or a program goes what was asked for, bit for bit.
+    let text = if out.is_terminal() { visible(text) } else { Cow::Borrowed(text) };
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Ok(()) => Ok(()),
         Err(error) => Failure::of_writing(&error),
@@ -186,12 +189,37 @@ pub(crate) fn stream() {
 
 /// Tells people something that is no result.
 pub(crate) fn note(text: impl Display) {
-    let _ = writeln!(io::stderr(), "{text}");
+    let _ = writeln!(io::stderr(), "{}", visible(&text.to_string()));
+}
+
+/// The text with what moves a terminal's cursor, or turns the text around, written out: names come from files of others.
+fn visible(text: &str) -> Cow<'_, str> {
+    let is_odd = |c: char| {
+        let turns = matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+        turns || (c.is_control() && !matches!(c, '\n' | '\t'))
+    };
+    if !text.contains(is_odd) {
+        return Cow::Borrowed(text);
+    }
+    let written = |c: char| if is_odd(c) { c.escape_unicode().to_string() } else { c.to_string() };
+    Cow::Owned(text.chars().map(written).collect())
 }
 
 /// Tells people where a file was written; standard output needs no telling.
 pub(crate) fn wrote(path: &std::path::Path) {
     if !crate::argument::is_standard(path) {
         note(format_args!("wrote {}", path.display()));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::visible;
+
+    /// A controller's name coloured the terminal, or cleared it.
+    #[test]
+    fn what_moves_a_terminals_cursor_is_written_out() {
+        assert_eq!(visible("a\u{1b}[31mb\u{202e}c\rd\ne"), "a\\u{1b}[31mb\\u{202e}c\\u{d}d\ne");
+        assert_eq!(visible("Regler für Höhe\n"), "Regler für Höhe\n");
     }
 }

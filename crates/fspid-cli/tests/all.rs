@@ -8,6 +8,7 @@ mod cli;
 mod common;
 mod equations;
 mod every_command;
+mod export;
 mod external;
 mod external_fly;
 #[cfg(unix)]

@@ -10,7 +10,7 @@ mod place;
 mod problem;
 mod report;
 
-pub use nearest::{known_words, nearest};
+pub use nearest::{known_words, listed, nearest};
 pub use note::Note;
 pub use place::{LineStarts, Place};
 pub use problem::{Problem, Problems, in_two};

@@ -6,11 +6,20 @@ const LEAST_BARE: usize = 6;
 /// What follows "there is no `word`": the word that was probably meant, and those that are known.
 #[must_use]
 pub fn known_words(word: &str, known: &[&str]) -> String {
-    let all = known.join(", ");
+    let all = listed(known);
     match nearest(word, known) {
         Some(meant) => format!("; did you mean `{meant}`? Known are {all}"),
         None => format!("; known are {all}"),
     }
+}
+
+/// Names in a row; those that a reader would part or join otherwise stand in marks.
+#[must_use]
+pub fn listed<N: AsRef<str>>(names: &[N]) -> String {
+    let marked = |name: &str| {
+        if name.contains([',', ' ']) { format!("`{name}`") } else { name.to_owned() }
+    };
+    names.iter().map(|name| marked(name.as_ref())).collect::<Vec<_>>().join(", ")
 }
 
 /// The known word that was probably meant.

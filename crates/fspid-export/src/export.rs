@@ -3,11 +3,14 @@
 use std::panic::resume_unwind;
 use std::thread;
 
+use fspid_core::fuzzy::{FuzzyError, RANGE_LIMITS_F32};
 use fspid_core::{ConfigError, Controller};
 use fspid_numeric::Real;
 
-use crate::compose::{Angles, Refusal, precision_of, program};
+use crate::compose::{Angles, Refusal, outline, precision_of, program};
 use crate::evidence::{self, Subject};
+pub(crate) use crate::names::identifier;
+use crate::names::prefix;
 use crate::program::Precision;
 use crate::targets::{File, Flown, Source, Target, Written};
 use crate::vectors::{eventful, vectors};
@@ -47,13 +50,15 @@ pub enum ExportError {
     },
     /// A setting does not survive rounding.
     #[error(
-        "controller `{name}` cannot fly with numbers of 32 bits: {reason}; --numbers double keeps them"
+        "controller `{name}` cannot fly with numbers of 32 bits: {}{}", of_single(*reason), if *is_table { ", and a table has no others" } else { "; --numbers double keeps them" }
     )]
     Rounded {
         /// The controller.
         name: String,
         /// Why.
         reason: ConfigError,
+        /// It is a table, which has 32 bits at most.
+        is_table: bool,
     },
 }
 
@@ -75,13 +80,28 @@ pub struct Export {
 /// # Errors
 /// [`ExportError`] names what cannot be exported and what would make it possible.
 pub fn export(controller: &Controller<f64>, request: &Request<'_>) -> Result<Export, ExportError> {
+    export_called(controller, request, &prefix(request.name))
+}
+
+/// As [`export`], with what every name in the code begins with: one of [`prefixes`](crate::prefixes), or a
+/// [`prefix`] that is one of itself.
+///
+/// # Errors
+/// As [`export`].
+pub fn export_called(
+    controller: &Controller<f64>,
+    request: &Request<'_>,
+    prefix: &str,
+) -> Result<Export, ExportError> {
     match request.precision {
-        Precision::Double => exported(controller, request),
+        Precision::Double => exported(controller, request, prefix),
         Precision::Single => {
-            let rounded = controller
-                .rounded::<f32>()
-                .map_err(|reason| ExportError::Rounded { name: request.name.to_owned(), reason })?;
-            exported(&rounded, request)
+            let rounded = controller.rounded::<f32>().map_err(|reason| ExportError::Rounded {
+                name: request.name.to_owned(),
+                reason,
+                is_table: request.target == Target::Table,
+            })?;
+            exported(&rounded, request, prefix)
         }
     }
 }
@@ -89,13 +109,19 @@ pub fn export(controller: &Controller<f64>, request: &Request<'_>) -> Result<Exp
 fn exported<R: Real>(
     controller: &Controller<R>,
     request: &Request<'_>,
+    prefix: &str,
 ) -> Result<Export, ExportError> {
     let refused = |reason| ExportError::Refused { name: request.name.to_owned(), reason };
-    let program = program(controller, request.angles).map_err(refused)?;
-    let prefix = identifier(request.name);
+    let program = match program(controller, request.angles) {
+        // `fspid-core` runs there itself.
+        Err(Refusal::Defuzzifier(_)) if request.target == Target::Rust => {
+            outline(controller, request.angles)
+        }
+        program => program.map_err(refused)?,
+    };
     let drawn = if request.target.has_events() { eventful } else { vectors };
     let vectors = drawn(controller, request.angles, SEED, request.samples);
-    let mut notes = Vec::from_iter(renamed(request.name, &prefix));
+    let mut notes = Vec::from_iter(renamed(request.name, prefix));
     notes.extend(way(controller));
     notes.push(NOT_JUDGED.to_owned());
     if request.precision == Precision::Single {
@@ -109,7 +135,7 @@ fn exported<R: Real>(
     };
     let source = Source {
         program: &program,
-        prefix: &prefix,
+        prefix,
         heading: &heading,
         vectors: &vectors,
         flown: Some(Flown { controller, points: request.points }),
@@ -120,14 +146,14 @@ fn exported<R: Real>(
     let subject = Subject {
         program: &program,
         controller,
-        prefix: &prefix,
+        prefix,
         heading: &heading,
         vectors: &vectors,
         code: &files,
     };
     let has_evidence = request.evidence && request.target == Target::C;
     let evidence = if has_evidence { evidence::files(&subject) } else { Vec::new() };
-    Ok(Export { prefix: prefix.clone(), files, evidence, notes })
+    Ok(Export { prefix: prefix.to_owned(), files, evidence, notes })
 }
 
 /// The files of the target, and the vectors.
@@ -144,6 +170,23 @@ pub(crate) fn written<R: Real>(target: Target, source: &Source<'_, R>) -> Result
         written.files.push(File::text("vectors.csv", csv));
         Ok(written)
     })
+}
+
+/// Why in the digits and with the limits of 32 bits.
+fn of_single(reason: ConfigError) -> String {
+    match reason {
+        ConfigError::Supervisor(FuzzyError::Range { found }) => {
+            let [least, most] = [RANGE_LIMITS_F32.start(), RANGE_LIMITS_F32.end()];
+            format!(
+                "range is {:e}; allowed is at least {least:e} and at most {most:e}",
+                found as f32
+            )
+        }
+        ConfigError::Number { what, found, allowed } => {
+            format!("{what} is {:?}; allowed is {allowed}", found as f32)
+        }
+        other => other.to_string(),
+    }
 }
 
 /// That a name is another one in the code, if it is.
@@ -173,32 +216,4 @@ fn way<R: Real>(controller: &Controller<R>) -> Option<String> {
         }
     };
     Some(way)
-}
-
-/// Libraries that Lua has loaded before it looks for a file, and headers of C that a file must not hide.
-const TAKEN: &str = "bit32 coroutine debug io math os package string table utf8 \
-                     assert complex ctype errno fenv float inttypes iso646 limits locale setjmp signal stdalign \
-                     stdarg stdatomic stdbool stddef stdint stdio stdlib stdnoreturn tgmath threads time uchar \
-                     wchar wctype";
-
-/// A name as every language takes it: lower-case letters, digits and underscores, a letter first.
-#[must_use]
-pub fn identifier(name: &str) -> String {
-    let mut text = String::new();
-    for c in name.chars() {
-        match c.to_ascii_lowercase() {
-            c if c.is_ascii_alphanumeric() => text.push(c),
-            _ if !text.ends_with('_') => text.push('_'),
-            _ => {}
-        }
-    }
-    let text = text.trim_matches('_');
-    if TAKEN.split_whitespace().any(|taken| taken == text) {
-        return format!("controller_{text}");
-    }
-    match text.chars().next() {
-        Some(first) if first.is_ascii_alphabetic() => text.to_owned(),
-        Some(_) => format!("controller_{text}"),
-        None => "controller".to_owned(),
-    }
 }

@@ -8,6 +8,7 @@ mod evidence;
 mod export;
 mod flat;
 pub mod interpret;
+mod names;
 pub mod program;
 mod systems;
 pub mod table;
@@ -18,8 +19,9 @@ pub mod write;
 mod zip;
 
 pub use compose::{Angles, Refusal, precision_of, program};
-pub use export::{Export, ExportError, Request, export, identifier};
+pub use export::{Export, ExportError, Request, export, export_called};
 pub use fspid_core::Controller;
+pub use names::{identifier, prefix, prefixes};
 pub use systems::{
     NOT_FINITE, Names, OUT_OF_RANGE, SystemProgram, SystemRefusal, SystemRequest, export_system,
     source_code, system_program, system_vectors,

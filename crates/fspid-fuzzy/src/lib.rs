@@ -60,5 +60,6 @@ pub use number_table::{NumberGrid, NumberTable};
 pub use rule_table::{Grid, GridError, Output, RuleTable};
 
 pub use supervisor::{
-    Increments, Inference, InferenceError, OutOfRange, Supervisor, SupervisorNumbers,
+    Increments, Inference, InferenceError, OutOfRange, RANGE_LIMITS_F32, Supervisor,
+    SupervisorNumbers,
 };

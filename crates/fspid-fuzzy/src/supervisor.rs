@@ -22,8 +22,8 @@ use fspid_numeric::lanes::{One, Two};
 
 /// Half ranges outside this interval would overflow or underflow inside.
 const RANGE_LIMITS: core::ops::RangeInclusive<f64> = 1e-100..=1e100;
-/// As [`RANGE_LIMITS`] for `f32`.
-const RANGE_LIMITS_F32: core::ops::RangeInclusive<f64> = 1e-12..=1e12;
+/// Half ranges that a supervisor may have with numbers of 32 bits; outside they would overflow or underflow inside.
+pub const RANGE_LIMITS_F32: core::ops::RangeInclusive<f64> = 1e-12..=1e12;
 
 /// What to do with an input beyond the half range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]

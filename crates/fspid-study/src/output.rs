@@ -1,11 +1,15 @@
 //! Files that are either the old ones or the new ones, never halves.
 
+mod folder;
+
 use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write as _};
 use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
 use std::thread;
+
+pub use folder::{Contents, is_free, write_folders};
 
 /// A file or folder that could not be written. Nothing at the path has changed.
 #[derive(Debug, thiserror::Error)]
@@ -27,6 +31,7 @@ pub fn in_words(reason: &io::Error) -> String {
         io::ErrorKind::PermissionDenied => "permission denied",
         io::ErrorKind::ReadOnlyFilesystem => "the file system is read-only",
         io::ErrorKind::IsADirectory => "it is a folder",
+        io::ErrorKind::NotADirectory | io::ErrorKind::AlreadyExists => "what is there is no folder",
         _ => return reason.to_string(),
     }
     .to_owned()

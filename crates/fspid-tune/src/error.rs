@@ -43,7 +43,10 @@ pub enum TuneError {
         controller: String,
     },
     /// Several controllers have free numbers.
-    #[error("several controllers have free numbers: {}; name one with --controller or `tuning.controller`", names.join(", "))]
+    #[error(
+        "several controllers have free numbers: {}; name one with --controller or `tuning.controller`",
+        fspid_diagnostics::listed(names)
+    )]
     WhichController {
         /// Their names.
         names: Vec<String>,

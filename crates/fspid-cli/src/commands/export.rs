@@ -1,5 +1,6 @@
 //! `fspid export`: a controller, or a fuzzy system, in another language.
 
+mod folders;
 mod system;
 
 use std::path::Path;
@@ -11,13 +12,14 @@ use super::external_controller::leave_out;
 use super::{Format, json_text};
 use crate::argument::{Folder, InFile};
 use crate::exit::{Failure, note, print};
+use fspid_diagnostics::listed;
 use fspid_export::program::Precision;
-use fspid_export::{Angles, Export, File, Request, Target, export};
+use fspid_export::table::is_sampled;
+use fspid_export::{Angles, Export, File, Request, Target, export_called, prefix, prefixes};
 use fspid_scenario::file::{self, Study};
 use fspid_scenario::fuzzy_system;
 use fspid_scenario::tuning::TunableParameter;
 use fspid_sim::NamedController;
-use fspid_study::output;
 
 /// Write a controller or a fuzzy system in another language: the same bits as the simulator, with vectors that show it.
 ///
@@ -44,6 +46,9 @@ pub(crate) struct Arguments {
     /// Write into a folder that holds something, over files of the same names.
     #[arg(long)]
     force: bool,
+    /// What names in the code and of files begin with; made of the name of what is exported if left out.
+    #[arg(long, value_name = "NAME", value_parser = own_prefix)]
+    prefix: Option<String>,
     /// The digits of the numbers; double for fmu2, fmu3 and fuzzy systems if left out, else single.
     #[arg(long, value_enum)]
     numbers: Option<Numbers>,
@@ -95,6 +100,17 @@ fn target(name: &str) -> Result<Target, String> {
     })
 }
 
+/// A prefix that may be given.
+fn own_prefix(text: &str) -> Result<String, String> {
+    let possible = prefix(text);
+    match possible == text {
+        true => Ok(possible),
+        false => Err(format!(
+            "allowed are lower-case letters, digits and `_`, and no word that files have; `{possible}` is"
+        )),
+    }
+}
+
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if fuzzy_system::is_system(&arguments.file) {
         return system::run(arguments);
@@ -126,19 +142,22 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         samples: arguments.samples as usize,
         points: points(arguments)?,
         digest: &study.digest,
-        evidence: evidence(arguments)?.is_some(),
+        evidence: evidence(arguments)?,
     };
-    let exported = export(&named.controller, &request).map_err(Failure::input)?;
+    folders::check(arguments)?;
+    if request.target == Target::Table && is_sampled(&named.controller) {
+        note(
+            "the bound of a table with a sampled centre of gravity is proved in minutes, not seconds",
+        );
+    }
+    let called = called(arguments, &study, &named.name);
+    let exported = export_called(&named.controller, &request, &called).map_err(Failure::input)?;
     answer(arguments, ["controller", &named.name], &exported)
 }
 
 /// Writes the files and tells them; `what` is what was exported, and its name.
 fn answer(arguments: &Arguments, what: [&str; 2], exported: &Export) -> Result<(), Failure> {
-    empty(&arguments.out, arguments.force)?;
-    write(&exported.files, &arguments.out)?;
-    if let Some(folder) = &arguments.evidence {
-        write(&exported.evidence, folder)?;
-    }
+    folders::write(arguments, exported)?;
     match arguments.format {
         Format::Text => {
             exported.notes.iter().for_each(|it| note(format_args!("{it}")));
@@ -163,6 +182,14 @@ fn file_stem(path: &Path) -> String {
     path.file_stem().map_or_else(|| "system".to_owned(), |stem| stem.to_string_lossy().into_owned())
 }
 
+/// What its code is called, which no other controller of the scenario is.
+fn called(arguments: &Arguments, study: &Study, name: &str) -> String {
+    let names: Vec<&str> = study.scenario.controllers.iter().map(|it| it.name.as_str()).collect();
+    let mut all = names.iter().zip(prefixes(&names)).filter(|(it, _)| **it == name);
+    let own = arguments.prefix.clone().or_else(|| all.next().map(|(_, prefix)| prefix));
+    own.unwrap_or_else(|| prefix(name))
+}
+
 /// The controller that is meant.
 fn chosen<'a>(study: &'a Study, name: Option<&str>) -> Result<&'a NamedController, Failure> {
     let controllers = &study.scenario.controllers;
@@ -171,7 +198,7 @@ fn chosen<'a>(study: &'a Study, name: Option<&str>) -> Result<&'a NamedControlle
         (None, [only]) => Ok(only),
         (None, _) => Err(Failure::input(format_args!(
             "--controller NAME is missing; the scenario flies {}",
-            names.join(", ")
+            listed(&names)
         ))),
         (Some(name), all) => all.iter().find(|named| named.name == name).ok_or_else(|| {
             let known = file::known_words(name, &names);
@@ -192,20 +219,17 @@ fn tuned(study: &Study, name: &str) -> Result<(), Failure> {
     }
 }
 
-/// Refuses a folder with files in it.
-fn empty(folder: &Path, force: bool) -> Result<(), Failure> {
-    let is_full = folder.read_dir().is_ok_and(|mut entries| entries.next().is_some());
-    if is_full && !force {
-        let folder = folder.display();
-        return Err(Failure::input(format_args!(
-            "{folder} is not empty; choose another folder, or --force to write into it"
-        )));
-    }
-    Ok(())
-}
-
-/// The points of a table along an input.
+/// The points of a table along an input; a table has no other digits and no other unit.
 fn points(arguments: &Arguments) -> Result<usize, Failure> {
+    let is_table = arguments.to == Target::Table;
+    if is_table && matches!(arguments.numbers, Some(Numbers::Double)) {
+        return Err(Failure::input("--numbers double: a table has numbers of 32 and 16 bits"));
+    }
+    if is_table && matches!(arguments.angles, Unit::Degrees) {
+        return Err(Failure::input(
+            "--angles degrees: a table has the supervisor's own units, which are no angles",
+        ));
+    }
     match arguments.points {
         Some(_) if arguments.to != Target::Table => {
             let to = arguments.to.name();
@@ -215,25 +239,13 @@ fn points(arguments: &Arguments) -> Result<usize, Failure> {
     }
 }
 
-/// The folder of the evidence, if the target has some and the folder may be written into.
-fn evidence(arguments: &Arguments) -> Result<Option<&Path>, Failure> {
-    let Some(folder) = &arguments.evidence else { return Ok(None) };
-    if arguments.to != Target::C {
+/// If evidence is asked for, of a target that has some.
+fn evidence(arguments: &Arguments) -> Result<bool, Failure> {
+    if arguments.evidence.is_some() && arguments.to != Target::C {
         let to = arguments.to.name();
         return Err(Failure::input(format_args!("{to} has no evidence; --to c has")));
     }
-    empty(folder, arguments.force)?;
-    Ok(Some(folder))
-}
-
-fn write(files: &[File], folder: &Path) -> Result<(), Failure> {
-    let mut placed = Vec::new();
-    for File { name, bytes } in files {
-        let path = folder.join(name);
-        output::make_folder(path.parent().unwrap_or(folder))?;
-        placed.push((path, bytes.as_slice()));
-    }
-    Ok(output::write_all(&placed)?)
+    Ok(arguments.evidence.is_some())
 }
 
 fn told(files: &[File], folder: &Path) -> String {

@@ -33,7 +33,7 @@ pub enum Angles {
 pub enum Refusal {
     /// A rule for the centre of gravity whose number of steps depends on the inputs.
     #[error(
-        "the defuzzifier {0} cannot be exported; allowed are exact, endpoints:N, midpoint:N, trapezoid:N, left-end:N"
+        "the defuzzifier {0} takes a number of steps that depends on the inputs, which --to rust alone can write; allowed are exact, endpoints:N, midpoint:N, trapezoid:N, left-end:N"
     )]
     Defuzzifier(Defuzzifier),
     /// A fuzzy system of its own, where a target is of controllers alone.
@@ -52,6 +52,14 @@ pub enum Refusal {
         "its rules are evaluated beyond their range, where no table ends; out_of_range = \"clamp\" or \"error\" has one"
     )]
     BeyondRange,
+    /// A name that is too long for a language.
+    #[error(
+        "its name is too long for functions of MATLAB; allowed are {most} letters, and --prefix NAME gives another"
+    )]
+    LongName {
+        /// Letters that are possible.
+        most: usize,
+    },
     /// Points that would miss the centres of sets.
     #[error(
         "{found} points along an input; allowed are 6m + 1 from 7 to 127, which keep the centres of the sets"
@@ -80,13 +88,22 @@ pub fn program<R: Real>(controller: &Controller<R>, angles: Angles) -> Result<Pr
     }
     functions.extend(step::functions(&mut configuration, controller, angles));
     let mut program = Program {
-        precision: precision_of::<R>(),
         configuration: configuration.members(),
-        state: step::state(controller),
-        sample: step::sample(controller, angles),
-        answer: step::answer(angles),
         functions,
+        ..outline(controller, angles)
     };
     prune::prune(&mut program);
     Ok(program)
+}
+
+/// What goes in and comes out alone, for a target whose operations are those of `fspid-core` itself.
+pub(crate) fn outline<R: Real>(controller: &Controller<R>, angles: Angles) -> Program {
+    Program {
+        precision: precision_of::<R>(),
+        configuration: Vec::new(),
+        state: step::state(controller),
+        sample: step::sample(controller, angles),
+        answer: step::answer(angles),
+        functions: Vec::new(),
+    }
 }

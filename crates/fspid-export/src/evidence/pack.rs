@@ -77,7 +77,7 @@ pub(super) fn tables(findings: &[Finding]) -> Vec<File> {
         File::text("mutants.csv", mutants),
         File::text("trace.csv", traced(&trace)),
         File::text("lines.csv", reversed("line,elements\n", &by_line)),
-        File::text("by-vector.csv", reversed("vector,elements\n", &by_vector)),
+        File::text("by-vector.csv", reversed("first vector that fails,elements\n", &by_vector)),
     ]
 }
 
@@ -88,7 +88,7 @@ fn push(names: &mut Vec<String>, name: &str) {
 }
 
 fn traced(trace: &BTreeMap<(bool, String), Vec<&Finding>>) -> String {
-    let mut text = "of,element,lines,changes,vectors that fail\n".to_owned();
+    let mut text = "of,element,lines,changes,first vector that fails\n".to_owned();
     for ((is_code, name), findings) in trace {
         let mut lines: Vec<usize> =
             findings.iter().flat_map(|it| it.lines.iter().map(|(line, _)| *line)).collect();
@@ -276,11 +276,11 @@ const FILES: &str = "
 | file | from | what it is |
 | --- | --- | --- |
 | `code/` | fspid | the export, with its vectors and the program that asks for them |
-| `trace.csv` | fspid | element of the design or the code, its lines in the C, the vectors that fail when it is changed |
-| `lines.csv`, `by-vector.csv` | fspid | the same the other ways: from a line, and from a vector, to elements |
+| `trace.csv` | fspid | element of the design or the code, its lines in the C, for each change the first vector that fails |
+| `lines.csv`, `by-vector.csv` | fspid | the same the other ways: from a line, and from a vector that is the first to fail, to elements |
 | `mutants.csv` | fspid | every change: the line of the C as it then is, and the first vector that fails |
 | `coverage.csv` | fspid | what the program asks, how often it held and did not |
-| `eva_main.c`, `sweep.c` | fspid | what the proof is asked, and the sweep over all numbers of 32 bits |
+| `eva_main.c`, `sweep.c` | fspid | what the proof is asked, and the sweep over all numbers of 32 bits, of which an export of 64 has none |
 | `make-evidence.sh`, `mutate.sh` | fspid | make everything below with a compiler, gcov, cppcheck, Frama-C and QEMU |
 | `results/` | the script | warnings, vectors at each level, changes of the C compiled and run, branches by gcov, MISRA findings, the \
 proof, the sweep, flash, frames, instructions (not cycles), tools, hashes |

@@ -14,6 +14,11 @@ use crate::write::c_number;
 
 /// Why no proof is tried with hope, if so.
 fn obstacle<R: Real>(subject: &Subject<'_, R>) -> Option<&'static str> {
+    if subject.program.precision == Precision::Double {
+        return Some(
+            "numbers of 64 bits are too many for a sweep, and a proof rests on one; --numbers single has one",
+        );
+    }
     let Controller::SelfTuning(fspid) = subject.controller else {
         return literal(subject.controller);
     };
@@ -23,11 +28,6 @@ fn obstacle<R: Real>(subject: &Subject<'_, R>) -> Option<&'static str> {
     if accumulates && settings.gain_limits.is_none() {
         return Some(
             "gains that accumulate without limits have no bound; gain_limits would give them one",
-        );
-    }
-    if has_labels && subject.program.precision == Precision::Double {
-        return Some(
-            "the exponential of 64 bits cannot be asked for every number; --numbers single can",
         );
     }
     if has_labels && supervisor.out_of_range() == OutOfRange::Evaluate {
@@ -114,7 +114,14 @@ fn main<R: Real>(subject: &Subject<'_, R>) -> String {
     let sample = program.members(Part::Sample).iter();
     let sample: String =
         sample.map(|member| format!("    sample.{} = any_number();\n", member.name)).collect();
+    let is_swept = program.precision == Precision::Single;
+    let swept = if is_swept {
+        "sweep.c shows for every number"
+    } else {
+        "nothing shows: 64 bits are not swept"
+    };
     include_str!("scripts/eva_main.c")
+        .replace("@SWEPT@", swept)
         .replace("@EXPONENTIAL@\n", &exponential)
         .replace("@BEGINS@\n", &asserted(subject, "begins"))
         .replace("@MEMORY@\n", &memory(subject))

@@ -29,6 +29,9 @@ const KEPT: &str = "and array asm at auto begin bool break by byte case catch ch
     protected pub public raise ref register repeat restrict retain return sample self short signed sizeof spmd state \
     static string struct super switch task template then this throw time to tod trait true try type typedef typename union \
     unsafe unsigned until use using var virtual void volatile wchar when where while with word xor yield answer infer int8 \
+    alignas alignof and_eq bitand bitor char16_t char32_t char8_t co_await co_return co_yield compl concept const_cast \
+    consteval constexpr constinit decltype dynamic_cast mutable noexcept not_eq nullptr or_eq reinterpret_cast \
+    requires static_assert static_cast thread_local typeid typeof typeof_unqual wchar_t xor_eq linux unix \
     real reset lreal sint usint uint dint udint lint ulint dword lword any";
 
 /// A name that is none of `taken`, by the rule; `taken` has it then.
@@ -72,5 +75,29 @@ impl Names {
         let outputs = parts.outputs.iter().map(|it| &it.name).zip(&self.outputs);
         let all = inputs.chain(outputs).map(|(name, called)| [name.as_str(), called.as_str()]);
         all.filter(|[name, called]| name != called)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::identifier_of;
+
+    /// The C compiled, and was none of C++ and of C23 with these names.
+    #[test]
+    fn words_of_cpp_and_of_c23_get_value_behind_them() {
+        for word in [
+            "mutable",
+            "compl",
+            "bitand",
+            "not_eq",
+            "nullptr",
+            "constexpr",
+            "wchar_t",
+            "typeof",
+            "linux",
+        ] {
+            assert_eq!(identifier_of(word), format!("{word}_value"));
+        }
+        assert_eq!(identifier_of("room"), "room");
     }
 }

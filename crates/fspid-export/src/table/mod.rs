@@ -5,8 +5,8 @@
 
 mod bound;
 
-use fspid_core::SelfTuner;
-use fspid_core::fuzzy::{OutOfRange, Supervisor};
+use fspid_core::fuzzy::{Defuzzifier, OutOfRange, Supervisor};
+use fspid_core::{Controller, SelfTuner};
 
 use crate::compose::Refusal;
 use crate::vectors::Draw;
@@ -29,6 +29,14 @@ pub struct Deviation {
     pub seen: f64,
     /// Root of the mean square of those.
     pub rms: f64,
+}
+
+/// True for rules that conclude labels whose centre of gravity is sampled: the proof of a bound then takes minutes.
+#[must_use]
+pub fn is_sampled(controller: &Controller<f64>) -> bool {
+    let Controller::SelfTuning(fspid) = controller else { return false };
+    let supervisor = fspid.tuner().supervisor();
+    supervisor.numbers().is_none() && supervisor.defuzzifier() != Defuzzifier::Exact
 }
 
 /// A supervisor's three outputs over a grid of its inputs.

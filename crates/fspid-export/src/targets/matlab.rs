@@ -8,6 +8,7 @@ use fspid_numeric::Real;
 
 use super::{File, Flown, Source, Written};
 use crate::compose::Refusal;
+use crate::program::Program;
 use crate::table::infer;
 use crate::vectors::Draw;
 use crate::write;
@@ -18,7 +19,8 @@ const SAMPLES: u32 = 101;
 const MEASURED: u32 = 20_000;
 
 pub(super) fn files<R: Real>(source: &Source<'_, R>) -> Result<Written, Refusal> {
-    let Source { program, prefix, heading, vectors, .. } = source;
+    let Source { program, heading, vectors, .. } = source;
+    let prefix = &function(source.prefix, program)?;
     let Flown { controller, .. } = source.flown.as_ref().ok_or(Refusal::NoController)?;
     let mut files = vec![
         File::text(format!("{prefix}.m"), write::matlab(program, prefix, heading)),
@@ -33,6 +35,28 @@ pub(super) fn files<R: Real>(source: &Source<'_, R>) -> Result<Written, Refusal>
         notes.extend(told);
     }
     Ok(Written { files, notes })
+}
+
+/// Refuses a name that is longer than MATLAB's are.
+pub(super) fn short(prefix: &str) -> Result<(), Refusal> {
+    // `namelengthmax`, with room for `_controller_check`.
+    const MOST: usize = 63 - 17;
+    if prefix.len() > MOST { Err(Refusal::LongName { most: MOST }) } else { Ok(()) }
+}
+
+/// A name that a function file may have: no word of the language, and nothing that the code here calls or that is often
+/// called beside it.
+fn function(prefix: &str, program: &Program) -> Result<String, Refusal> {
+    const TAKEN: &str = "break case catch classdef continue else elseif end for function global if otherwise parfor \
+        persistent return spmd switch try while arguments enumeration events import methods properties \
+        abs ans bitor char choose class configuration double eps error exit false fclose fis fopen fprintf fread i inf int32 \
+        isequal j logical nan numel pi pow2 printf single size sprintf str2double struct true typecast uint32 uint8 zeros \
+        ceil clear clc close cos disp exp eye feedback figure filter fix floor fuzzy gain hold input length load log lqr max \
+        mean min mod ones plot pid pidtune plant quit rand round save sign sim sin sqrt ss state step sum tan tf title who";
+    short(prefix)?;
+    let is_own = program.functions.iter().any(|function| function.name == prefix);
+    let is_taken = is_own || TAKEN.split_whitespace().any(|word| word == prefix);
+    Ok(if is_taken { format!("{prefix}_controller") } else { prefix.to_owned() })
 }
 
 /// The supervisor as a `.fis`, and what there is to say of it.
@@ -80,4 +104,28 @@ fn loss(exact: &Supervisor<f64>, sampled: &Supervisor<f64>) -> String {
         told(2),
         exact.range()
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `end.m` could not be read, and `pid.m` hid the toolbox's.
+    #[test]
+    fn a_name_that_matlab_has_taken_is_another_one_and_a_long_one_is_refused() {
+        let program = Program {
+            precision: crate::program::Precision::Double,
+            configuration: Vec::new(),
+            state: Vec::new(),
+            sample: Vec::new(),
+            answer: Vec::new(),
+            functions: Vec::new(),
+        };
+        let named = |prefix: &str| function(prefix, &program);
+        for taken in ["end", "for", "true", "abs", "double", "pi", "pid", "zeros", "bitor"] {
+            assert_eq!(named(taken), Ok(format!("{taken}_controller")));
+        }
+        assert_eq!(named("fspid"), Ok("fspid".to_owned()));
+        assert_eq!(named(&"a".repeat(47)), Err(Refusal::LongName { most: 46 }));
+    }
 }

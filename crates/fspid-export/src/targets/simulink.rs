@@ -8,6 +8,7 @@ use crate::write;
 
 pub(super) fn files<R: Real>(source: &Source<'_, R>) -> Result<Vec<File>, Refusal> {
     let Source { program, prefix, heading, .. } = source;
+    super::matlab::short(prefix)?;
     let written = write::c(program, prefix, heading);
     let function = write::simulink(program, prefix, heading).ok_or(Refusal::NoController)?;
     Ok(vec![

@@ -23,8 +23,7 @@ impl Heading<'_> {
             Precision::Single => "32",
             Precision::Double => "64",
         };
-        // A name may hold what ends a comment.
-        let name = self.name.replace(['*', '/', '\n', '\r', '\\'], " ");
+        let name = self.plain_name();
         let (first, source) = match self.angles {
             None => (format!("Fuzzy system {name}, numbers of {bits} bits."), "file"),
             Some(angles) => {
@@ -37,11 +36,51 @@ impl Heading<'_> {
                 (first, "scenario")
             }
         };
+        Self::with(&first, source, self.digest)
+    }
+
+    /// The lines of a table, which has digits of its own and no angles.
+    pub(super) fn of_table(&self) -> Vec<String> {
+        let first = format!(
+            "The supervisor of controller {}, numbers of 32 and 16 bits, in its own units.",
+            self.plain_name()
+        );
+        Self::with(&first, "scenario", self.digest)
+    }
+
+    /// The name without what ends a comment, moves a terminal's cursor or turns the text around.
+    pub(crate) fn plain_name(&self) -> String {
+        let is_odd = |c: char| "*/\\".contains(c) || is_unseen(c);
+        self.name.replace(is_odd, " ")
+    }
+
+    fn with(first: &str, source: &str, digest: &str) -> Vec<String> {
         let version = env!("CARGO_PKG_VERSION");
         vec![
-            first,
-            format!("Written by fspid {version} from the {source} {}.", self.digest),
+            first.to_owned(),
+            format!("Written by fspid {version} from the {source} {digest}."),
             "Licence: MIT or Apache-2.0, at your choice; the design is yours.".to_owned(),
         ]
+    }
+}
+
+/// True for what is not seen and changes how a text is: control characters, and marks of the direction of writing, which
+/// compilers refuse in a comment.
+fn is_unseen(c: char) -> bool {
+    let turns = matches!(c, '\u{200e}' | '\u{200f}' | '\u{061c}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    turns || c.is_control() || matches!(c, '\u{2028}' | '\u{2029}')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// rustc refuses a mark of the direction of writing in a comment.
+    #[test]
+    fn a_name_puts_nothing_unseen_into_a_comment() {
+        let name = "a\u{202e}b\u{1}c\u{7f}d*/e\\\nf";
+        let heading = Heading { name, digest: "0", precision: Precision::Single, angles: None };
+        assert!(heading.lines()[0].contains(" a b c d  e  f,"), "{:?}", heading.lines());
+        assert!(heading.of_table()[0].starts_with("The supervisor of controller a b"));
     }
 }

@@ -38,7 +38,7 @@ impl Width {
 /// The tables in C; every name that others see begins with `prefix` and `_table`.
 #[must_use]
 pub fn table(table: &SurfaceTable, prefix: &str, heading: &Heading<'_>) -> TableFiles {
-    let head = format!("/* {} */\n", heading.lines().join("\n * "));
+    let head = format!("/* {} */\n", heading.of_table().join("\n * "));
     let source = |width| head.clone() + &source(table, prefix, width);
     let (single, short) = (source(Width::Single), source(Width::Short));
     TableFiles { header: head.clone() + &header(table, prefix), single, short }
@@ -69,7 +69,8 @@ fn header(table: &SurfaceTable, prefix: &str) -> String {
     for (width, deviations) in [("f32", &table.single), ("i16", &table.short)] {
         for (name, Deviation { proved, seen, rms }) in OUTPUTS.iter().zip(deviations) {
             page.line(&format!(
-                " * {width} {name}: at most {proved:.3e}; seen {seen:.3e}, {rms:.3e}"
+                " * {width} {name}: at most {}; seen {seen:.3e}, {rms:.3e}",
+                above(*proved)
             ));
         }
     }
@@ -91,6 +92,11 @@ fn header(table: &SurfaceTable, prefix: &str) -> String {
         page.line(line);
     }
     page.text
+}
+
+/// A bound in four digits that are not below it: they are off by half of the fourth at most.
+fn above(bound: f64) -> String {
+    format!("{:.3e}", 1.0005 * bound)
 }
 
 fn source(table: &SurfaceTable, prefix: &str, width: Width) -> String {
@@ -289,3 +295,18 @@ int main(void)
     return different + beyond == 0U ? 0 : 1;
 }
 ";
+
+#[cfg(test)]
+mod tests {
+    use super::above;
+
+    /// A bound of 1.2344e-3 was told as 1.234e-3.
+    #[test]
+    fn a_bound_is_told_in_digits_that_are_not_below_it() {
+        for k in 0..100_000 {
+            let bound = f64::from(k) * 1.000_07e-7;
+            assert!(above(bound).parse::<f64>().is_ok_and(|told| told >= bound), "{bound}");
+        }
+        assert_eq!(above(0.0), "0.000e0");
+    }
+}

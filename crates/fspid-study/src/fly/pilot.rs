@@ -21,7 +21,10 @@ const HOLDING: [Faults; 3] = [Faults::NOT_FINITE, Faults::IMPLAUSIBLE, Faults::O
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ChoiceError {
     /// There are several, and none was named.
-    #[error("several controllers; choose one with --controller: {}", known.join(", "))]
+    #[error(
+        "several controllers; choose one with --controller: {}",
+        fspid_diagnostics::listed(known)
+    )]
     Several {
         /// Their names.
         known: Vec<String>,

@@ -1,6 +1,6 @@
 //! `fspid export` of a fuzzy system.
 
-use super::{Arguments, Numbers, Unit, answer, file_stem};
+use super::{Arguments, Numbers, Unit, answer, file_stem, folders};
 use crate::exit::{Failure, note};
 use fspid_export::program::Precision;
 use fspid_export::{SystemRequest, export_system};
@@ -21,7 +21,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let called = &loaded.system.parts().name;
     let name = if called.is_empty() { file_stem(&arguments.file) } else { called.clone() };
     let request = SystemRequest {
-        name: &name,
+        name: arguments.prefix.as_deref().unwrap_or(&name),
         target: arguments.to,
         precision: match arguments.numbers {
             Some(Numbers::Single) => Precision::Single,
@@ -30,6 +30,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         samples: arguments.samples as usize,
         digest: &digest,
     };
+    folders::check(arguments)?;
     let exported = export_system(&loaded.system, &request)
         .map_err(|refused| Failure::input(format_args!("{path}: {refused}")))?;
     answer(arguments, ["system", &name], &exported)
@@ -43,6 +44,8 @@ fn misplaced(arguments: &Arguments) -> Result<(), Failure> {
         "--set goes with a scenario or design"
     } else if arguments.evidence.is_some() {
         "--evidence goes with a scenario or design; a fuzzy system has vectors.csv and its check"
+    } else if arguments.points.is_some() {
+        "--points goes with --to table, which a scenario or design has"
     } else if matches!(arguments.angles, Unit::Degrees) {
         "--angles goes with a scenario or design; inputs and outputs of a fuzzy system have the units of its file"
     } else {

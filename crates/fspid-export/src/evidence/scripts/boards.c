@@ -46,7 +46,7 @@ int main(void)
     const uint32_t begin = TIMER[2];
     const unsigned wrong = @PREFIX@_selftest(&@PREFIX@_design);
     const uint32_t ticks = (begin - TIMER[2]) & 0xFFFFFFU;
-    printf("step %u to %u, mean %u; self test %u, answers %u\n", (unsigned)least, (unsigned)most,
+    printf("step %u to %u, mean %u; self test %u (in steps of 40), which answers %u (0: nothing is wrong)\n", (unsigned)least, (unsigned)most,
            (unsigned)(sum / count), (unsigned)(40U * ticks), wrong);
     return 0;
 }

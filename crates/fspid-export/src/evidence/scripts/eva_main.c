@@ -1,5 +1,5 @@
 /* From any memory within its bounds and for any finite sample: nothing overflows, and the memory is within
-   the same bounds afterwards. What is asked of the exponential, sweep.c shows for every number. */
+   the same bounds afterwards. What is asked of the exponential, @SWEPT@. */
 #include "@PREFIX@.h"
 @EXPONENTIAL@
 #include "@PREFIX@.c"

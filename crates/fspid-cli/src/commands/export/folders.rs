@@ -1,0 +1,72 @@
+//! Where an export is written to.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use super::Arguments;
+use crate::exit::Failure;
+use fspid_export::{Export, File};
+use fspid_study::output::{self, Contents, is_free, write_folders};
+
+/// Refuses folders that may not be written into, before anything is computed.
+pub(super) fn check(arguments: &Arguments) -> Result<(), Failure> {
+    free("--out", &arguments.out, arguments.force)?;
+    let Some(evidence) = &arguments.evidence else { return Ok(()) };
+    free("--evidence", evidence, arguments.force)?;
+    if whole(&arguments.out).starts_with(whole(evidence)) {
+        return Err(Failure::input(
+            "--out is in the folder of --evidence, which has files of the same names; each needs a folder of its own",
+        ));
+    }
+    Ok(())
+}
+
+/// Refuses a folder with files in it, and what is no folder.
+fn free(option: &str, folder: &Path, force: bool) -> Result<(), Failure> {
+    let name = folder.display();
+    match is_free(folder) {
+        Ok(false) if !force => Err(Failure::input(format_args!(
+            "{name} is not empty; choose another folder, or --force to write into it"
+        ))),
+        Ok(_) => Ok(()),
+        Err(error) if error.kind() == io::ErrorKind::NotADirectory => Err(Failure::input(
+            format_args!("{option} needs a folder, and {name} is a file or a link to nothing"),
+        )),
+        Err(error) => Err(Failure::input(format_args!(
+            "{name}: it cannot be seen what is in it: {}",
+            output::in_words(&error)
+        ))),
+    }
+}
+
+/// The path from the root, of what is not there yet too.
+fn whole(path: &Path) -> PathBuf {
+    let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    let is_there = path.ancestors().find_map(|above| Some((above, above.canonicalize().ok()?)));
+    is_there.map_or_else(
+        || path.clone(),
+        |(above, found)| {
+            path.strip_prefix(above).map_or_else(|_| path.clone(), |it| found.join(it))
+        },
+    )
+}
+
+/// Bytes of a file's name: `NAME_MAX` of Linux is 255, and a number stands in front while files are exchanged.
+const LONGEST: usize = 240;
+
+/// Writes all files, or none.
+pub(super) fn write(arguments: &Arguments, exported: &Export) -> Result<(), Failure> {
+    fn contents(files: &[File]) -> Contents<'_> {
+        files.iter().map(|it| (it.name.as_str(), it.bytes.as_slice())).collect()
+    }
+    let is_long = |it: &File| it.name.split('/').any(|name| name.len() > LONGEST);
+    if let Some(file) = exported.files.iter().chain(&exported.evidence).find(|it| is_long(it)) {
+        let name = &file.name;
+        return Err(Failure::input(format_args!(
+            "`{name}` is too long for a file, which {LONGEST} letters may name; --prefix NAME gives another"
+        )));
+    }
+    let mut folders = vec![(&*arguments.out, contents(&exported.files))];
+    folders.extend(arguments.evidence.as_deref().map(|it| (it, contents(&exported.evidence))));
+    Ok(write_folders(&folders)?)
+}
