@@ -85,14 +85,21 @@ fn description(version: u8, unit: &str) -> String {
     )
 }
 
+/// The sum that archives carry, bit by bit.
+fn crc32(bytes: &[u8]) -> u32 {
+    let turned = |sum: u32, _| (sum >> 1) ^ (0xedb8_8320 & (sum & 1).wrapping_neg());
+    !bytes.iter().fold(u32::MAX, |sum, byte| (0..8).fold(sum ^ u32::from(*byte), turned))
+}
+
 /// An archive of files as they are.
 fn zip(files: &[(&str, &[u8])]) -> Vec<u8> {
     let (mut bytes, mut directory) = (Vec::new(), Vec::new());
     for (name, content) in files {
         let [offset, size] = [bytes.len(), content.len()].map(|it| (it as u32).to_le_bytes());
         let name_size = (name.len() as u16).to_le_bytes();
+        let sum = crc32(content).to_le_bytes();
         let common =
-            [&[20, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0][..], &size, &size, &name_size, &[0, 0]];
+            [&[20, 0, 0, 0, 0, 0, 0, 0, 0, 0][..], &sum, &size, &size, &name_size, &[0, 0]];
         let common = common.concat();
         bytes.extend([b"PK\x03\x04", &common[..], name.as_bytes(), content].concat());
         let places = [&[0; 10][..], &offset, name.as_bytes()].concat();

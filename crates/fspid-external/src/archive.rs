@@ -171,8 +171,8 @@ mod tests {
         let packed = miniz_oxide::deflate::compress_to_vec(bytes, 9);
         let sizes = [packed.len() as u32, said].map(u32::to_le_bytes).concat();
         let name_size = (name.len() as u16).to_le_bytes();
-        let common =
-            [&[20, 0, 0, 0, 8, 0, 0, 0, 0, 0, 0, 0, 0, 0][..], &sizes, &name_size, &[0, 0]];
+        let sum = (crc32(bytes) as u32).to_le_bytes();
+        let common = [&[20, 0, 0, 0, 8, 0, 0, 0, 0, 0][..], &sum, &sizes, &name_size, &[0, 0]];
         let common = common.concat();
         let file = [b"PK\x03\x04", &common[..], name.as_bytes(), &packed].concat();
         let entry = [b"PK\x01\x02\x14\0", &common[..], &[0; 14], name.as_bytes()].concat();

@@ -8,7 +8,7 @@ use fspid_core::Faults;
 /// holds, so that a client that never reads them is not stopped.
 const MOST_TOLD: u64 = 16;
 
-/// Most characters of why a controller was lost: one that cannot be started says why at any length.
+/// Most bytes of why a controller was lost: one that cannot be started says why at any length.
 const MOST_OF_A_LOSS: usize = 200;
 
 /// What happened on a line, in numbers.
@@ -84,11 +84,12 @@ impl Log {
     /// The first is told whatever was told before it.
     pub(super) fn lost(&mut self, what: &str) {
         const HOW: &str = "its last command is held until a reset starts it anew";
-        let text: String = what.chars().take(MOST_OF_A_LOSS).collect();
+        let ends = (0..=MOST_OF_A_LOSS).rev().find(|at| what.is_char_boundary(*at));
+        let text = ends.and_then(|at| what.get(..at)).unwrap_or(what);
         self.summary.lost += 1;
         match self.summary.lost {
             1 => self.note(&format!("{text}; {HOW}")),
-            _ => self.tell(&text),
+            _ => self.tell(text),
         }
     }
 
@@ -138,7 +139,8 @@ mod tests {
             log.lost(&"\u{10ffff}".repeat(9999));
         }
         let told = log.take();
-        assert_eq!(told.len(), 2 + 16 + 1);
+        // The period, the rate and the first loss beside those that are counted, and that no more are told.
+        assert_eq!(told.len(), 3 + 16 + 1);
         assert!(told.iter().map(|note| note.len() + 1).sum::<usize>() < 4000);
         assert_eq!(log.summary.held + log.summary.faults, 2000);
         assert!(log.take().is_empty());
