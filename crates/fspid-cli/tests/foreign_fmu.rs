@@ -328,7 +328,7 @@ fn an_archive_that_means_harm_is_refused_and_writes_nothing_outside() {
     }
     // Without its bytes: a file system keeps none for it.
     let large = std::fs::File::create(folder.path().join("large.fmu")).expect("a file");
-    large.set_len((10 << 20) + 1).expect("room");
+    large.set_len((64 << 20) + 1).expect("room");
     let told = text(&flown(folder.path(), "large.fmu", &NAMED).stderr);
-    assert!(told.contains("it is larger than 10 MiB"), "{told}");
+    assert!(told.contains("it is larger than 64 MiB"), "{told}");
 }
