@@ -57,7 +57,7 @@ class FuzzySystem:
     >>> system.inputs
     ['error', 'change']
     >>> round(system(1.0, 0.5)["delta_kp"], 3)
-    1.25
+    1.518
     """
 
     def __init__(self, core: _core.FuzzySystem) -> None:

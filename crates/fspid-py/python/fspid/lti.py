@@ -34,7 +34,7 @@ def margins(loop: Any, denominator: Sequence[float] | None = None, *, delay_s: f
     --------
     >>> found = margins([11.7304, 22.578], [1.0, 4.9676, 12.941, 0.0])
     >>> found["stable"], round(found["phase_margin_deg"], 2)
-    (True, 63.42)
+    (True, 77.96)
     """
     numerator, bottom = polynomials(loop) if denominator is None else (list(loop), list(denominator))
     import json
