@@ -35,7 +35,7 @@ mod _core {
     #[pymodule_export]
     use super::lti::margins;
     #[pymodule_export]
-    use super::scenario::{Scenario, starter, starters};
+    use super::scenario::{Scenario, preset, preset_names};
     #[pymodule_export]
     use super::table::Table;
 

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-use fspid::scenario::file::{self, STARTERS, Study, starter_named};
+use fspid::scenario::file::{self, STARTERS, Study};
 use fspid::study::analysis::{Analysis, BreakPoint, Question};
 use fspid::study::certify::{self, Certification, Effort};
 use fspid::study::report;
@@ -243,19 +243,41 @@ impl Scenario {
     }
 }
 
-/// A commented scenario to begin with.
+/// A scenario that comes with fspid.
 #[pyfunction]
-pub(crate) fn starter(py: Python<'_>, name: &str) -> PyResult<&'static str> {
-    starter_named(name).map(|starter| starter.text).ok_or_else(|| {
-        let names: Vec<&str> = STARTERS.iter().map(|starter| starter.name).collect();
+pub(crate) fn preset(py: Python<'_>, name: &str) -> PyResult<&'static str> {
+    let known = presets();
+    known.iter().find(|preset| preset.name == name).map(|preset| preset.text).ok_or_else(|| {
+        let names: Vec<&str> = known.iter().map(|preset| preset.name.as_str()).collect();
         let known = file::known_words(name, &names);
         error::input(py, format_args!("there is no scenario `{name}`{known}"))
     })
 }
 
-/// Names of all scenarios to begin with, each with what it is about; rule tables and fuzzy systems are none.
-#[pyfunction]
-pub(crate) fn starters() -> Vec<(&'static str, &'static str)> {
-    let scenarios = STARTERS.iter().filter(|it| file::parse(it.text, it.name, None, &[]).is_ok());
-    scenarios.map(|starter| (starter.name, starter.about)).collect()
+/// Names of all scenarios that come with fspid, each with what it is about.
+#[pyfunction(name = "presets")]
+pub(crate) fn preset_names() -> Vec<(String, String)> {
+    presets().into_iter().map(|preset| (preset.name, preset.about)).collect()
+}
+
+struct Preset {
+    name: String,
+    about: String,
+    text: &'static str,
+}
+
+/// Those to begin with, and those of the paper; rule tables and fuzzy systems are none.
+fn presets() -> Vec<Preset> {
+    let named = |text| file::parse(text, "preset", None, &[]).ok().map(|study| study.scenario.name);
+    let starters = STARTERS.iter().filter(|it| named(it.text).is_some());
+    let starters = starters.map(|it| Preset {
+        name: it.name.to_owned(),
+        about: it.about.to_owned(),
+        text: it.text,
+    });
+    let of_the_paper = fspid_data::PAPER.iter().filter_map(|&(name, text)| {
+        let name = format!("paper/{}", name.strip_suffix(".toml")?);
+        Some(Preset { name, about: named(text)?, text })
+    });
+    starters.chain(of_the_paper).collect()
 }

@@ -41,6 +41,10 @@ def _with_absent(values: Mapping[str, Any], reasons: Mapping[str, str]) -> dict[
     }
 
 
+#: Drawings of a page that a notebook shows with an answer; the others are in ``figures``.
+_SHOWN = 2
+
+
 def _as_html(text: str) -> str:
     import html
 
@@ -87,6 +91,23 @@ class _Paged(Answer):
     """An answer with a page that opens offline."""
 
     _native: _core.Answer
+
+    @property
+    def figures(self) -> dict[str, str]:
+        """Every drawing of the page as SVG, by its title."""
+        import html
+        import re
+
+        drawings = re.findall(r"<svg.*?</svg>", self._native.page or "", re.DOTALL)
+        titles = [re.search(r"<title[^>]*>(.*?)</title>", drawing, re.DOTALL) for drawing in drawings]
+        return {
+            html.unescape(title.group(1)) if title else str(number): drawing
+            for number, (title, drawing) in enumerate(zip(titles, drawings))
+        }
+
+    def _repr_html_(self) -> str:
+        first = list(self.figures.values())[:_SHOWN]
+        return "".join(first) + _as_html(self._native.text)
 
     def save(self, path: str | PathLike[str]) -> Path:
         """Write the report, one HTML file that opens offline.

@@ -68,12 +68,12 @@ class Scenario:
     @classmethod
     def preset(cls, name: str) -> Scenario:
         """A scenario that comes with fspid, by its name in :meth:`presets`."""
-        return cls.from_text(_core.starter(name))
+        return cls.from_text(_core.preset(name))
 
     @staticmethod
     def presets() -> dict[str, str]:
         """Names of the scenarios that come with fspid, each with what it is about."""
-        return dict(_core.starters())
+        return dict(_core.presets())
 
     def _beside(self, text: str) -> Scenario:
         return Scenario(self._core.beside(text))
