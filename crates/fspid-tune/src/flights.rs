@@ -93,8 +93,7 @@ impl Flights {
         measured: Vec<Requirement>,
     ) -> Self {
         let at_once = cases.first().map_or(1, |case| engine::at_once(case.template.study()));
-        let free: Vec<_> =
-            space.parameters().iter().map(|it| (it.path.text(), &it.free)).collect();
+        let free: Vec<_> = space.parameters().iter().map(|it| (it.path.text(), &it.free)).collect();
         let mut all = format!("{asked:?}\n{free:?}\n{measured:?}\n");
         cases.iter().for_each(|case| all.push_str(&case.fingerprint()));
         let digest = hex_digest(&all);

@@ -108,11 +108,7 @@ impl TuningProblem {
     ///
     /// # Errors
     /// [`TuneError::Stopped`], and others who could not fly.
-    pub fn scores_by(
-        &self,
-        points: &[Vec<f64>],
-        crew: Crew<'_>,
-    ) -> Result<Vec<Score>, TuneError> {
+    pub fn scores_by(&self, points: &[Vec<f64>], crew: Crew<'_>) -> Result<Vec<Score>, TuneError> {
         let flights = self.flights.flown(points, &|flight, s| self.read(flight, s), crew)?;
         let weights: Vec<f64> = self.flights.jobs().map(|(case, _)| case.weight).collect();
         Ok(flights.iter().map(|mine| Score::over(mine, &weights, &self.tuning)).collect())

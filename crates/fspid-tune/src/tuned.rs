@@ -75,11 +75,7 @@ impl Tuned {
     ///
     /// # Errors
     /// [`TuneError::Stopped`], and others who could not fly.
-    pub fn of(
-        problem: &TuningProblem,
-        search: &Search<'_>,
-        stop: Stop,
-    ) -> Result<Self, TuneError> {
+    pub fn of(problem: &TuningProblem, search: &Search<'_>, stop: Stop) -> Result<Self, TuneError> {
         let (start, best) = (search.trials()[0].clone(), search.best().clone());
         let front: Vec<Trial> = search.front().into_iter().cloned().collect();
         let objectives = problem.tuning().objectives.iter().map(|objective| {

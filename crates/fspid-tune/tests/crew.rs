@@ -7,8 +7,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use fspid_tune::contest::Then as After;
 use fspid_tune::{
-    Crew, Effort, Engine, Kept, Order, Search, Source, Then, Trial, TuneError, TuningProblem, Unfit,
-    Worker,
+    Crew, Effort, Engine, Kept, Order, Search, Source, Then, Trial, TuneError, TuningProblem,
+    Unfit, Worker,
 };
 use tempfile::TempDir;
 
@@ -150,8 +150,7 @@ fn a_contest_has_the_same_bytes_whoever_flies() {
     let there = place(&marked());
     let (one, other) = (Worker::new(there.source.clone()), Worker::new(there.source.clone()));
     let engine = Parted { workers: [&one, &other], size: 5 };
-    let held =
-        there.contest().hold(&there.out(), Crew::Others(&engine), &mut |_| After::GoOn);
+    let held = there.contest().hold(&there.out(), Crew::Others(&engine), &mut |_| After::GoOn);
     held.expect("an outcome");
     assert!(files(&there.out()) == files(&here.out()));
 }
@@ -196,7 +195,8 @@ fn a_search_that_is_stopped_within_a_generation_goes_on_with_the_same_bits() {
             // Some groups later each time, so that generations are cut anywhere.
             let left = AtomicUsize::new(3 + 4 * stops);
             let stopped = || {
-                left.try_update(Ordering::Relaxed, Ordering::Relaxed, |it| it.checked_sub(1)).is_err()
+                left.try_update(Ordering::Relaxed, Ordering::Relaxed, |it| it.checked_sub(1))
+                    .is_err()
             };
             let begun = place.begun(&tuning.problem, &effort(optimiser), Crew::Here(&stopped));
             let (mut search, _) = begun.unwrap_or_else(|error| panic!("{error}"));

@@ -126,7 +126,8 @@ impl Carrier {
 
     /// What it says next.
     fn answer(&self) -> Result<Value, TuneError> {
-        let gone = || TuneError::Engine { reason: "who carries flights to the engine is gone".into() };
+        let gone =
+            || TuneError::Engine { reason: "who carries flights to the engine is gone".into() };
         let line = loop {
             match self.answers.recv_timeout(PERIOD) {
                 Ok(line) => break line,

@@ -17,7 +17,8 @@ use fspid_study::output;
 use fspid_tune::baseline::Baseline;
 use fspid_tune::rule::{Form, Options, Rule, Verdict};
 use fspid_tune::{
-    Beginning, Crew, Effort, Kept, Search, Source, Then, TuneError, Tuned, TuningProblem, design, history,
+    Beginning, Crew, Effort, Kept, Search, Source, Then, TuneError, Tuned, TuningProblem, design,
+    history,
 };
 
 /// How often the state of a search is saved.

@@ -156,7 +156,9 @@ fn a_contest_has_the_same_bytes_on_any_number_of_threads() {
     let of = |threads: usize| {
         let place = place(&marked());
         let contest = place.contest();
-        let held = in_threads(threads, || contest.hold(&place.out(), Crew::UNSTOPPED, &mut |_| Then::GoOn));
+        let held = in_threads(threads, || {
+            contest.hold(&place.out(), Crew::UNSTOPPED, &mut |_| Then::GoOn)
+        });
         held.expect("threads").expect("an outcome");
         files(&place.out())
     };

@@ -8,10 +8,13 @@ from typing import Any
 
 from ..errors import Error, InputError
 from .job import Job
-from .window import POLL_S, Engine
+from .window import Engine
 
 #: How long an address may take to answer at all, s.
 _ANSWERS_WITHIN_S = 5.0
+
+#: How often a driver that waits looks whether Ctrl-C was pressed, s; Ray itself looks once a second.
+_POLL_S = 0.1
 
 
 class Ray(Engine):
@@ -53,8 +56,7 @@ class Ray(Engine):
         return self._task.remote(job, unit)
 
     def _ready(self, waiting: list[Any]) -> list[Any]:
-        # Ray itself looks at signals once a second.
-        ready: list[Any] = self._ray.wait(waiting, num_returns=1, timeout=POLL_S)[0]
+        ready: list[Any] = self._ray.wait(waiting, num_returns=1, timeout=_POLL_S)[0]
         return ready
 
     def _answer(self, task: Any) -> Any:

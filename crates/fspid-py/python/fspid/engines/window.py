@@ -11,9 +11,6 @@ if TYPE_CHECKING:
 
 Unit = TypeVar("Unit")
 
-#: How often a driver that waits looks whether Ctrl-C was pressed, s.
-POLL_S = 0.1
-
 #: Tasks that are given out for each processor: one flies, one waits.
 _TASKS_A_PROCESSOR = 2
 
@@ -88,6 +85,9 @@ class Engine(ABC):
                 if not waiting:
                     return
                 for task in self._ready(list(waiting)):
+                    if task not in waiting:
+                        # Of units that nobody waits for any more.
+                        continue
                     unit = waiting.pop(task)
                     try:
                         answer = self._answer(task)
