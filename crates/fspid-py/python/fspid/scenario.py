@@ -253,7 +253,7 @@ class Scenario:
         if engine == "local":
             engines.refuse(watch, options)
             return Design(self._core.tune(wanted), self)
-        with engines.flights(self._core, engine, watch, options) as (fly, tell):
+        with engines.crew(self._core, engine, watch, options) as (fly, tell):
             return Design(self._core.tune(wanted, fly, tell), self)
 
     def tune_by_rule(
@@ -352,7 +352,7 @@ class Scenario:
         if engine == "local":
             engines.refuse(watch, options)
             return Contest(self._core.contest(wanted))
-        with engines.flights(self._core, engine, watch, options) as (fly, tell):
+        with engines.crew(self._core, engine, watch, options) as (fly, tell):
             return Contest(self._core.contest(wanted, fly, tell))
 
     def __repr__(self) -> str:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from .flights import Flights
     from .window import Engine
 
-__all__ = ["NAMES", "Progress", "SearchProgress", "flights", "fly", "reach"]
+__all__ = ["NAMES", "Progress", "SearchProgress", "crew", "fly", "reach"]
 
 #: Names of the engines that Python starts.
 NAMES = ("ray", "dask")
@@ -89,7 +89,7 @@ def fly(
 
 
 @contextmanager
-def flights(
+def crew(
     scenario: _core.Scenario, engine: str, watch: Callable[[SearchProgress], None] | None, options: Mapping[str, Any]
 ) -> Iterator[tuple[Flights, Callable[..., None] | None]]:
     """What flies for tunings and contests of a scenario on an engine, and what is told of their progress."""

@@ -48,7 +48,8 @@ class Dask(Engine):
 
     @property
     def processors(self) -> int:
-        return max(1, sum(self._client.nthreads().values()))
+        threads: dict[str, int] = self._client.nthreads()
+        return max(1, sum(threads.values()))
 
     def share(self, job: Job) -> Any:
         # What is scattered lies on workers; without one there is nowhere to lay it.

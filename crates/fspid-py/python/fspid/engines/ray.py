@@ -34,6 +34,8 @@ class Ray(Engine):
         self._began = False
 
     def __enter__(self) -> Ray:
+        if self._address is not None and self._address not in ("auto", "local"):
+            _reach(self._address)
         self._began = not self._ray.is_initialized()
         if self._began:
             _begin(self._ray, self._address)
@@ -86,8 +88,6 @@ def _ray() -> Any:
 
 
 def _begin(ray: Any, address: str | None) -> None:
-    if address is not None and address not in ("auto", "local"):
-        _reach(address)
     try:
         ray.init(address=address, log_to_driver=False, logging_level="error", include_dashboard=False)
     except ValueError:
