@@ -56,7 +56,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "N", value_parser = count::<usize>(2, u64::MAX))]
     population: Option<usize>,
     /// Search for nothing: take the gains of a classical rule. `--rule list` tells them all.
-    #[arg(long, value_name = "NAME", conflicts_with_all = ["optimiser", "budget", "seed", "population", "anywhere", "history"])]
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["optimiser", "budget", "seed", "population", "anywhere", "history", "engine"])]
     rule: Option<String>,
     /// Terms that the rule shall give: p, pi or pid; by default what the rule is made for.
     #[arg(long, value_name = "TERMS", requires = "rule")]
