@@ -10,7 +10,7 @@ use std::time::Duration;
 use pyo3::prelude::*;
 
 /// How often somebody looks whether Ctrl-C was pressed.
-const PERIOD: Duration = Duration::from_millis(50);
+const PERIOD: Duration = Duration::from_millis(20);
 
 /// Does work that keeps nothing. Ctrl-C leaves it at once; what was begun ends by itself, and nobody hears of it.
 pub(crate) fn run<T: Send + 'static>(

@@ -68,8 +68,8 @@ relative = true
 
 [tuning]
 controller = "PID"
-budget = 60
-runs = 20
+budget = 40
+runs = 10
 
 [[tuning.objective]]
 measure = "iae_deg_s"
@@ -128,7 +128,7 @@ def here(scenario, tmp_path_factory):
 def contest_here(scenario, tmp_path_factory):
     """The folder of a contest that was held on this machine."""
     folder = tmp_path_factory.mktemp("contest") / "c"
-    scenario.contest(folder, budget=12)
+    scenario.contest(folder, budget=8)
     return files(folder)
 
 
@@ -282,7 +282,7 @@ def interrupted(process):
 def test_ctrl_c_does_not_wait_for_a_generation(call, path, tmp_path):
     # One that takes minutes.
     long = path.with_name("long.toml")
-    long.write_text(TEXT.replace("runs = 20", "runs = 2000"))
+    long.write_text(TEXT.replace("runs = 10", "runs = 2000"))
     process = driver(long, f"import os; os.chdir({str(tmp_path)!r}); scenario.{call}")
     time.sleep(2.0)
     assert process.poll() is None
@@ -307,7 +307,7 @@ def test_a_worker_of_ray_that_is_killed_within_a_generation_does_not_show(cluste
     killing = []
 
     def watch(progress):
-        if progress.candidates[0] >= 12 and not killing:
+        if progress.candidates[0] >= 6 and not killing:
             killing.append(threading.Timer(0.05, cluster.remove_node, [second, False]))
             killing[0].start()
 
@@ -332,7 +332,7 @@ def test_a_driver_that_is_killed_goes_on_where_it_was(cluster, scenario, path, h
 
 
 def test_a_contest_on_ray_has_the_same_files(cluster, scenario, contest_here, tmp_path):
-    scenario.contest(tmp_path / "c", budget=12, engine="ray")
+    scenario.contest(tmp_path / "c", budget=8, engine="ray")
     assert files(tmp_path / "c") == contest_here
 
 
@@ -364,7 +364,7 @@ def test_a_worker_of_dask_that_is_killed_does_not_show(scenario, here, contest_h
     killed = []
 
     def watch(progress):
-        if progress.candidates[0] >= 12 and not killed:
+        if progress.candidates[0] >= 6 and not killed:
             pid = next(iter(client.run(os.getpid).values()))
             killed.append(threading.Timer(0.05, os.kill, [pid, signal.SIGKILL]))
             killed[0].start()
@@ -375,6 +375,6 @@ def test_a_worker_of_dask_that_is_killed_does_not_show(scenario, here, contest_h
     ):
         found = tuned(scenario, tmp_path, engine="dask", client=client, watch=watch)
         killed[0].join()
-        scenario.contest(tmp_path / "c", budget=12, engine="dask", client=client)
+        scenario.contest(tmp_path / "c", budget=8, engine="dask", client=client)
     assert found == here
     assert files(tmp_path / "c") == contest_here
