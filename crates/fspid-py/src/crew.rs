@@ -68,7 +68,7 @@ impl Engine for Caller {
     fn fly(&self, order: &Order) -> Result<Vec<String>, TuneError> {
         self.call(|py| {
             let asked = (order.text(), order.flights(), order.at_once());
-            self.function.call1(py, asked)?.extract(py).map_err(PyErr::from)
+            self.function.call1(py, asked)?.extract(py)
         })
     }
 }
