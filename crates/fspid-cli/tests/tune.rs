@@ -191,6 +191,35 @@ fn a_search_that_was_killed_goes_on_to_the_same_design_and_history() {
     assert!(!state.exists());
 }
 
+/// It used to wait for the end of the generation that was flown.
+#[cfg(unix)]
+#[test]
+fn ctrl_c_does_not_wait_for_a_generation_and_the_search_goes_on() {
+    let folder = folder();
+    let folder = folder.path();
+    // A generation of minutes.
+    let effort = ["--optimiser", "de", "--budget", "900000", "--population", "300000"];
+    let arguments = [["tune", "pitch.toml"].as_slice(), &effort].concat();
+    let state = folder.join("pitch.toml.PID.state.json");
+    let mut patience = Duration::from_millis(250);
+    while !state.exists() {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_fspid"));
+        command.args(&arguments).current_dir(folder).stdout(Stdio::null()).stderr(Stdio::piped());
+        let child = command.spawn().expect("the program starts");
+        // One that has not flown its start yet keeps nothing, and is begun again.
+        std::thread::sleep(patience);
+        patience *= 2;
+        let interrupt = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+        assert!(interrupt.expect("kill").success());
+        let output = child.wait_with_output().expect("it ends");
+        // One that did not listen yet has no code.
+        assert!(matches!(output.status.code(), Some(130) | None), "{}", text(&output.stderr));
+    }
+    let state = std::fs::read_to_string(state).expect("the state");
+    let state: serde_json::Value = serde_json::from_str(&state).expect("JSON");
+    assert_eq!(state["trials"].as_array().map(Vec::len), Some(1), "the start alone");
+}
+
 #[test]
 fn what_is_wrong_is_told_before_anything_runs() {
     let folder = folder();

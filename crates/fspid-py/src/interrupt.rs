@@ -1,6 +1,8 @@
 //! Work beside the interpreter, which Ctrl-C ends.
 
 use std::panic::resume_unwind;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::Duration;
@@ -8,7 +10,7 @@ use std::time::Duration;
 use pyo3::prelude::*;
 
 /// How often somebody looks whether Ctrl-C was pressed.
-const PERIOD: Duration = Duration::from_millis(50);
+const PERIOD: Duration = Duration::from_millis(20);
 
 /// Does work that keeps nothing. Ctrl-C leaves it at once; what was begun ends by itself, and nobody hears of it.
 pub(crate) fn run<T: Send + 'static>(
@@ -31,6 +33,16 @@ pub(crate) fn run_until<T: Send + 'static>(
         Ok(())
     });
     raised.map_or(answer, Err)
+}
+
+/// The same with a flag that the work looks at.
+pub(crate) fn run_flagged<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce(&AtomicBool) -> T + Send + 'static,
+) -> PyResult<T> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let asked = Arc::clone(&stop);
+    run_until(py, || stop.store(true, Ordering::Relaxed), move || work(&asked))
 }
 
 /// Answers what the work does; what signals raise is told to `interrupted`, which may go on waiting.

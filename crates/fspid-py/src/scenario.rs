@@ -114,6 +114,17 @@ impl Scenario {
         Self::new(py, text, None, self.folder.clone(), Vec::new())
     }
 
+    /// From where it names files; None for one that can name none.
+    #[getter]
+    fn folder(&self) -> Option<PathBuf> {
+        self.folder.clone()
+    }
+
+    /// Files that it names, with all cases of its tuning and its contest, as they are named there.
+    fn files(&self, py: Python<'_>) -> PyResult<Vec<String>> {
+        self.source(py)?.files().map_err(|found| error::tune(py, &found))
+    }
+
     /// Its text, without its changes.
     #[getter]
     fn text(&self) -> &str {

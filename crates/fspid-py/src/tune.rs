@@ -1,18 +1,20 @@
 //! The free numbers of a scenario, chosen.
 
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::path::PathBuf;
+use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use fspid::campaign::local;
 use fspid::study::output;
 use fspid::tune::baseline::Baseline;
 use fspid::tune::rule::{Form, Options, Rule, Verdict};
-use fspid::tune::{Effort, Kept, Source, Then, TuneError, Tuned, TuningProblem, design, history};
+use fspid::tune::{
+    Crew, Effort, Kept, Search, Source, Then, TuneError, Tuned, TuningProblem, design, history,
+};
 use pyo3::prelude::*;
 
 use crate::answer::Answer;
+use crate::crew::Caller;
 use crate::scenario::Scenario;
 use crate::{error, interrupt};
 
@@ -39,23 +41,40 @@ pub(crate) struct Wanted {
 
 #[pymethods]
 impl Scenario {
-    /// Searches for its free numbers; the file is the design.
-    fn tune(&self, py: Python<'_>, wanted: Wanted) -> PyResult<Answer> {
-        let source = self.source(py)?;
-        let stop = Arc::new(AtomicBool::new(false));
-        let asked = Arc::clone(&stop);
-        let kept_beside = self.kept_beside();
-        let answer = interrupt::run_until(
-            py,
-            || stop.store(true, Ordering::Relaxed),
-            move || {
-                let threads = wanted.threads;
-                local::in_threads(threads, || {
-                    search(&source, &wanted, kept_beside.as_deref(), &asked)
+    /// Searches for its free numbers; the file is the design. `fly` flies in place of this machine's threads, and `tell` is
+    /// told of the progress then: candidates flown, and how many there will be.
+    #[pyo3(signature = (wanted, fly=None, tell=None))]
+    fn tune(
+        &self,
+        py: Python<'_>,
+        wanted: Wanted,
+        fly: Option<Py<PyAny>>,
+        tell: Option<Py<PyAny>>,
+    ) -> PyResult<Answer> {
+        let (source, kept_beside) = (self.source(py)?, self.kept_beside());
+        let tuning = Tuning { source, wanted, kept_beside };
+        let Some(fly) = fly else {
+            let answer = interrupt::run_flagged(py, move |stop| {
+                let is_asked = || stop.load(Ordering::Relaxed);
+                local::in_threads(tuning.wanted.threads, || {
+                    tuning.searched(Crew::Here(&is_asked), &mut |_| match is_asked() {
+                        true => Then::Stop,
+                        false => Then::GoOn,
+                    })
                 })?
-            },
-        )?;
-        answer.map_err(|found| error::tune(py, &found))
+            })?;
+            return answer.map_err(|found| error::tune(py, &found));
+        };
+        let caller = Caller::new(fly);
+        let told = |search: &Search<'_>| {
+            let progress = (search.spent(), search.effort().budget);
+            let called =
+                caller.call(|py| tell.as_ref().map(|it| it.call1(py, progress)).transpose());
+            if called.is_ok() { Then::GoOn } else { Then::Stop }
+        };
+        // On this thread, where Ctrl-C reaches what Python does.
+        let answer = py.detach(|| tuning.searched(Crew::Others(&caller), &mut { told }));
+        answer.map_err(|found| caller.raise(py, &found))
     }
 
     /// The gains of a classical rule; the file is the design.
@@ -99,44 +118,63 @@ fn beside(source: &Source) -> PathBuf {
     source.path.with_file_name(DESIGN)
 }
 
-fn search(
-    source: &Source,
-    wanted: &Wanted,
-    kept_beside: Option<&Path>,
-    asked: &AtomicBool,
-) -> Result<Answer, TuneError> {
-    let problem = TuningProblem::new(source, wanted.controller.as_deref())?;
-    if let Some(out) = &wanted.out {
-        design::check_place(source, out)?;
-    }
-    let effort = wanted.effort(&problem);
-    let mut place = Kept::beside(wanted.out.as_deref(), kept_beside, problem.controller());
-    let (mut search, _) = place.begun(&problem, &effort)?;
-    let mut saved = None::<Instant>;
-    let stop = place.search(&mut search, &mut |search| {
-        if asked.load(Ordering::Relaxed) {
-            return Then::Stop;
+/// A search that is asked for.
+struct Tuning {
+    source: Source,
+    wanted: Wanted,
+    kept_beside: Option<PathBuf>,
+}
+
+impl Tuning {
+    /// Searches to the end, and writes what was found; `then` is asked before each generation.
+    fn searched(
+        &self,
+        crew: Crew<'_>,
+        then: &mut dyn FnMut(&Search<'_>) -> Then,
+    ) -> Result<Answer, TuneError> {
+        let Self { source, wanted, kept_beside } = self;
+        let problem = TuningProblem::new(source, wanted.controller.as_deref())?;
+        if let Some(out) = &wanted.out {
+            design::check_place(source, out)?;
         }
-        let is_due = saved.is_none_or(|saved| saved.elapsed() >= SAVED_EVERY);
-        if search.spent() == 0 || !is_due {
-            return Then::GoOn;
+        let effort = wanted.effort(&problem);
+        let kept_beside = kept_beside.as_deref();
+        let mut place = Kept::beside(wanted.out.as_deref(), kept_beside, problem.controller());
+        let (mut search, _) = place.begun(&problem, &effort, crew)?;
+        let mut saving = Saving::default();
+        let stop = place.search(&mut search, &mut |search| match then(search) {
+            Then::GoOn if search.spent() > 0 && saving.is_due() => Then::Save,
+            then => then,
+        })?;
+        let tuned = Tuned::of(&problem, &search, stop);
+        let tuned = tuned.map_err(|error| place.left(&search, error))?;
+        if let Some(path) = &wanted.history {
+            history::write(path, &problem, &search)?;
         }
-        saved = Some(Instant::now());
-        Then::Save
-    })?;
-    if let Some(path) = &wanted.history {
-        history::write(path, &problem, &search)?;
+        let heading = tuned.heading(&effort.command(source, wanted.controller.as_deref()));
+        let text = design::text(source, problem.space(), &search.best().point, &heading)?;
+        if let Some(out) = &wanted.out {
+            output::write(out, &text)?;
+        }
+        // What cannot be removed is refused by the next search there, in words.
+        let _ = place.remove();
+        let answer = Answer::new(tuned.text(), &tuned.json(), tuned.is_allowed());
+        Ok(answer.with_files(vec![(DESIGN.to_owned(), text)]))
     }
-    let tuned = Tuned::of(&problem, &search, stop);
-    let heading = tuned.heading(&effort.command(source, wanted.controller.as_deref()));
-    let text = design::text(source, problem.space(), &search.best().point, &heading)?;
-    if let Some(out) = &wanted.out {
-        output::write(out, &text)?;
+}
+
+/// When the state of a search is saved: at once, and then every few seconds.
+#[derive(Default)]
+pub(crate) struct Saving(Option<Instant>);
+
+impl Saving {
+    pub(crate) fn is_due(&mut self) -> bool {
+        let is_due = self.0.is_none_or(|saved| saved.elapsed() >= SAVED_EVERY);
+        if is_due {
+            self.0 = Some(Instant::now());
+        }
+        is_due
     }
-    // What cannot be removed is refused by the next search there, in words.
-    let _ = place.remove();
-    let answer = Answer::new(tuned.text(), &tuned.json(), tuned.is_allowed());
-    Ok(answer.with_files(vec![(DESIGN.to_owned(), text)]))
 }
 
 impl Wanted {

@@ -49,3 +49,16 @@ def cli(tmp_path: Path):  # type: ignore[no-untyped-def]
         return subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False).stdout
 
     return run
+
+
+@pytest.fixture(scope="session")
+def cluster():  # type: ignore[no-untyped-def]
+    """A cluster of Ray on this machine, one processor in its head; tests add nodes and kill them."""
+    ray = pytest.importorskip("ray")
+    from ray.cluster_utils import Cluster
+
+    cluster = Cluster(initialize_head=True, head_node_args={"num_cpus": 1, "include_dashboard": False})
+    ray.init(address=cluster.address, log_to_driver=False, logging_level="error")
+    yield cluster
+    ray.shutdown()
+    cluster.shutdown()

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 import fspid
 from fspid.engines import Progress
-from fspid.engines.job import Job, WrongBuild
+from fspid.engines.job import ShardJob, WrongBuild
 
 from conftest import ROOT
 
@@ -31,7 +33,7 @@ def planned(scenario, folder):
 
 def test_a_job_flies_shards_where_the_drivers_folder_is_not_seen(scenario, here, tmp_path):
     campaign = planned(scenario, tmp_path)
-    job = Job.of(campaign)
+    job = ShardJob.of(campaign)
     for number in campaign.missing():
         campaign.put(number, job.fly(number))
     campaign.merge()
@@ -48,7 +50,7 @@ def test_files_that_a_scenario_names_travel_with_it(tmp_path):
     path = tmp_path / "work" / "scenarios" / "campaign.toml"
     path.write_text(text)
     campaign = fspid.Scenario.from_file(path).plan_campaign(tmp_path / "c", runs=4, shard_runs=2)
-    job = Job.of(campaign)
+    job = ShardJob.of(campaign)
     assert [name for name, _ in job.files] == ["../../plants/ours.toml"]
     # A worker elsewhere sees none of it.
     (tmp_path / "plants" / "ours.toml").unlink()
@@ -59,7 +61,7 @@ def test_files_that_a_scenario_names_travel_with_it(tmp_path):
 
 
 def test_a_worker_of_another_build_flies_nothing(scenario, tmp_path):
-    job = Job.of(planned(scenario, tmp_path))._replace(build="another")
+    job = replace(ShardJob.of(planned(scenario, tmp_path)), build="another")
     with pytest.raises(WrongBuild, match="install the same wheel everywhere"):
         job.fly(0)
 
@@ -67,8 +69,8 @@ def test_a_worker_of_another_build_flies_nothing(scenario, tmp_path):
 def test_what_is_no_part_of_the_campaign_is_not_taken_in(scenario, tmp_path):
     campaign = planned(scenario, tmp_path)
     other = scenario.plan_campaign(tmp_path / "other", runs=RUNS, seed=2, shard_runs=SHARD_RUNS)
-    part = Job.of(campaign).fly(1)
-    for number, wrong in [(0, part), (1, part[:-1]), (1, b""), (1, Job.of(other).fly(1))]:
+    part = ShardJob.of(campaign).fly(1)
+    for number, wrong in [(0, part), (1, part[:-1]), (1, b""), (1, ShardJob.of(other).fly(1))]:
         with pytest.raises(fspid.Error, match="is not shard"):
             campaign.put(number, wrong)
     assert campaign.missing() == list(range(campaign.shards))
@@ -102,13 +104,8 @@ def test_an_address_without_a_cluster_is_told_within_ten_seconds(engine, address
     assert time.monotonic() - begun < 30.0
 
 
-def test_a_node_of_ray_that_is_killed_does_not_show(scenario, here, tmp_path):
-    ray = pytest.importorskip("ray")
-    from ray.cluster_utils import Cluster
-
-    cluster = Cluster(initialize_head=True, head_node_args={"num_cpus": 1, "include_dashboard": False})
+def test_a_node_of_ray_that_is_killed_does_not_show(cluster, scenario, here, tmp_path):
     second = cluster.add_node(num_cpus=1)
-    ray.init(address=cluster.address, log_to_driver=False, logging_level="error")
     killed = []
 
     def watch(progress):
@@ -116,11 +113,7 @@ def test_a_node_of_ray_that_is_killed_does_not_show(scenario, here, tmp_path):
             cluster.remove_node(second, allow_graceful=False)
             killed.append(progress.flown)
 
-    try:
-        campaign = scenario.campaign(tmp_path / "c", runs=RUNS, shard_runs=SHARD_RUNS, engine="ray", watch=watch)
-    finally:
-        ray.shutdown()
-        cluster.shutdown()
+    campaign = scenario.campaign(tmp_path / "c", runs=RUNS, shard_runs=SHARD_RUNS, engine="ray", watch=watch)
     assert killed == [3]
     assert campaign.file.read_bytes() == here
 

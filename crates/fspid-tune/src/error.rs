@@ -124,6 +124,12 @@ pub enum TuneError {
         "interrupted; the search begins anew, because a scenario from standard input has no place beside it: add --out design.toml, and it goes on"
     )]
     NotKept,
+    /// Others who should have flown, and could not.
+    #[error("{reason}")]
+    Engine {
+        /// Why.
+        reason: String,
+    },
     /// Nothing that the search tried can be flown.
     #[error("none of {tried} candidates could be flown in every case; the best one: {reason}")]
     NothingFlies {

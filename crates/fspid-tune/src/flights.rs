@@ -1,14 +1,20 @@
 //! Points of a space flown on cases: what tuning and contest have in common.
 
+use std::ops::Range;
+
 use fspid_campaign::Draws;
-use fspid_campaign::engine::{self, FlightResult, Judging, Memory, Stability};
+use fspid_campaign::engine::{self, FlightResult, Judging, Memory};
 use fspid_campaign::sample::Sampling;
 use fspid_scenario::dispersion::Drawn;
 use fspid_scenario::file::{Study, Template};
 use fspid_scenario::requirement::{AskedIn, Requirement};
 use fspid_scenario::tuning::Case;
 use rayon::prelude::*;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use sha2::{Digest as _, Sha256};
 
+use crate::crew::{Crew, Order, Part};
 use crate::error::TuneError;
 use crate::source::Source;
 use crate::space::Space;
@@ -55,32 +61,63 @@ impl FlownCase {
     }
 }
 
+/// Who flights are flown for.
+#[derive(Clone, Debug)]
+pub(crate) struct Asked {
+    /// Name of the controller.
+    pub(crate) controller: String,
+    pub(crate) part: Part,
+    pub(crate) judging: Judging,
+}
+
 /// All flights that a point of a space has.
 #[derive(Clone, Debug)]
 pub(crate) struct Flights {
+    asked: Asked,
     space: Space,
     cases: Vec<FlownCase>,
     /// Judged with the scenario's own, after them.
     measured: Vec<Requirement>,
-    judging: Judging,
     at_once: usize,
+    digest: String,
 }
 
+/// A flight: its point, its case and the number of its run.
+type Job<'a> = (&'a [f64], &'a FlownCase, usize);
+
 impl Flights {
-    pub(crate) fn new(space: Space, cases: Vec<FlownCase>, measured: Vec<Requirement>) -> Self {
+    pub(crate) fn new(
+        asked: Asked,
+        space: Space,
+        cases: Vec<FlownCase>,
+        measured: Vec<Requirement>,
+    ) -> Self {
         let at_once = cases.first().map_or(1, |case| engine::at_once(case.template.study()));
-        let judging = Judging { stability: Stability::Analysed, loads: false };
-        Self { space, cases, measured, judging, at_once }
+        let free: Vec<_> = space.parameters().iter().map(|it| (it.path.text(), &it.free)).collect();
+        let mut all = format!("{asked:?}\n{free:?}\n{measured:?}\n");
+        cases.iter().for_each(|case| all.push_str(&case.fingerprint()));
+        let digest = hex_digest(&all);
+        Self { asked, space, cases, measured, at_once, digest }
     }
 
-    /// The same, judged in another way.
-    pub(crate) fn with(self, judging: Judging) -> Self {
-        Self { judging, ..self }
+    /// Digest of everything that decides about the flights but the points.
+    pub(crate) fn digest(&self) -> &str {
+        &self.digest
+    }
+
+    /// Name of the controller, and what is flown for.
+    pub(crate) fn asked_by(&self) -> (&str, Part) {
+        (&self.asked.controller, self.asked.part)
+    }
+
+    /// How many flights fly best together.
+    pub(crate) fn at_once(&self) -> usize {
+        self.at_once.max(1)
     }
 
     /// True where loops are asked what a constant load does to them.
     pub(crate) fn judges_loads(&self) -> bool {
-        self.judging.loads
+        self.asked.judging.loads
     }
 
     pub(crate) fn space(&self) -> &Space {
@@ -106,29 +143,61 @@ impl Flights {
         self.cases.iter().flat_map(|case| (0..case.runs.len()).map(move |run| (case, run)))
     }
 
-    /// What a function reads off all flights of each point, on all threads of the pool that this is called
-    /// in. It is given the flight, or why there is none, and how long it should have been, s.
-    pub(crate) fn flown<T: Send + Clone>(
+    /// What a function reads off all flights of each point. It is given the flight, or why there is none, and how long it
+    /// should have been, s. Others who fly read the same.
+    ///
+    /// # Errors
+    /// [`TuneError::Stopped`], and others who could not fly.
+    pub(crate) fn flown<T: Send + Clone + Serialize + DeserializeOwned>(
         &self,
         points: &[Vec<f64>],
         read: &(impl Fn(Result<&FlightResult, String>, f64) -> T + Sync),
-    ) -> Vec<Vec<T>> {
-        // Flights of one case fly best together: plants of the same order, the same steps.
-        let jobs: Vec<_> = self
-            .jobs()
-            .flat_map(|(case, run)| points.iter().map(move |point| (point, case, run)))
-            .collect();
-        let groups = jobs.par_chunks(self.at_once.max(1));
-        let fly = |memory: &mut Memory, group: &[(&Vec<f64>, &FlownCase, usize)]| {
-            let studies = group.iter().map(|&(point, case, run)| self.study(point, case, run));
-            fly(memory, studies.collect(), self.judging, read)
+        crew: Crew<'_>,
+    ) -> Result<Vec<Vec<T>>, TuneError> {
+        let all = 0..self.count() * points.len();
+        let flown: Vec<T> = match crew {
+            Crew::Here(stops) => self.block(points, all, read, stops)?,
+            // Nothing to fly is nobody's task.
+            Crew::Others(_) if all.is_empty() => Vec::new(),
+            Crew::Others(engine) => {
+                let order = Order::of(self, points);
+                order.taken_in(engine.fly(&order)?)?
+            }
         };
-        let flown: Vec<Vec<T>> = groups.map_init(Memory::default, fly).collect();
         let mut of_point = vec![Vec::with_capacity(self.count()); points.len()];
-        for (index, flight) in flown.into_iter().flatten().enumerate() {
+        for (index, flight) in flown.into_iter().enumerate() {
             of_point[index % points.len()].push(flight);
         }
-        of_point
+        Ok(of_point)
+    }
+
+    /// The same of some flights in the order in which they are flown: every point on the first run of the first case,
+    /// then on the next run.
+    ///
+    /// # Errors
+    /// [`TuneError::Stopped`].
+    pub(crate) fn block<T: Send>(
+        &self,
+        points: &[Vec<f64>],
+        flights: Range<usize>,
+        read: &(impl Fn(Result<&FlightResult, String>, f64) -> T + Sync),
+        stops: &(dyn Fn() -> bool + Sync),
+    ) -> Result<Vec<T>, TuneError> {
+        // Flights of one case fly best together: plants of the same order, the same steps.
+        let jobs = self
+            .jobs()
+            .flat_map(|(case, run)| points.iter().map(move |point| (point.as_slice(), case, run)));
+        let jobs: Vec<Job<'_>> = jobs.skip(flights.start).take(flights.len()).collect();
+        let fly = |memory: &mut Memory, group: &[Job<'_>]| {
+            if stops() {
+                return Err(TuneError::Stopped);
+            }
+            let studies = group.iter().map(|&(point, case, run)| self.study(point, case, run));
+            Ok(fly(memory, studies.collect(), self.asked.judging, read))
+        };
+        let groups = jobs.par_chunks(self.at_once()).map_init(Memory::default, fly);
+        let flown: Vec<Vec<T>> = groups.collect::<Result<_, _>>()?;
+        Ok(flown.into_iter().flatten().collect())
     }
 
     /// The scenario of one flight, or why there is none.
@@ -150,6 +219,11 @@ impl Flights {
         study.requirements.extend(self.measured.iter().cloned());
         Ok(study)
     }
+}
+
+/// SHA-256 of a text, in hexadecimal digits.
+pub(crate) fn hex_digest(text: &str) -> String {
+    Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 fn fly<T>(

@@ -6,6 +6,7 @@ use fspid_optimise::Stop;
 use fspid_scenario::file::unread_in_words;
 use fspid_study::output;
 
+use crate::crew::Crew;
 use crate::error::TuneError;
 use crate::problem::TuningProblem;
 use crate::search::{Effort, Search, State};
@@ -84,12 +85,13 @@ impl Kept {
         &mut self,
         problem: &'a TuningProblem,
         effort: &Effort,
+        crew: Crew<'a>,
     ) -> Result<(Search<'a>, Beginning), TuneError> {
-        let anew = || Search::begin(problem, effort.clone());
+        let anew = || Search::begin(problem, effort.clone(), crew);
         let Some(path) = self.path.clone().filter(|path| path.exists()) else {
             return Ok((anew()?, Beginning::Anew));
         };
-        match (resumed(&path, problem, effort), self.unfit) {
+        match (resumed(&path, (problem, crew), effort), self.unfit) {
             (Ok(search), _) => Ok((search, Beginning::Resumed(path))),
             (Err(_), Unfit::Replaced) => Ok((anew()?, Beginning::Anew)),
             (Err(TuneError::State { path, reason }), Unfit::Left) => {
@@ -103,8 +105,8 @@ impl Kept {
     /// Searches to the end; `then` is asked before each generation.
     ///
     /// # Errors
-    /// [`TuneError::Stopped`] where `then` says so, [`TuneError::NotKept`] if the state could not be kept then, and a
-    /// state that somebody asked for and that cannot be written.
+    /// [`TuneError::Stopped`] where `then` or the crew says so, [`TuneError::NotKept`] if the state could not be kept then, a
+    /// crew that could not fly, and a state that somebody asked for and that cannot be written.
     pub fn search(
         &self,
         search: &mut Search<'_>,
@@ -116,16 +118,23 @@ impl Kept {
                 Then::Save => {
                     self.save(search)?;
                 }
-                Then::Stop => {
-                    return Err(match self.save(search)? {
-                        true => TuneError::Stopped,
-                        false => TuneError::NotKept,
-                    });
-                }
+                Then::Stop => return Err(self.left(search, TuneError::Stopped)),
             }
-            if let Some(stop) = search.advance() {
-                return Ok(stop);
+            match search.advance() {
+                Ok(None) => {}
+                Ok(Some(stop)) => return Ok(stop),
+                Err(error) => return Err(self.left(search, error)),
             }
+        }
+    }
+
+    /// What is told of a search that does not go on, and why: its state is saved.
+    #[must_use]
+    pub fn left(&self, search: &Search<'_>, why: TuneError) -> TuneError {
+        match (self.save(search), why) {
+            (Ok(false), TuneError::Stopped) => TuneError::NotKept,
+            (Err(error), TuneError::Stopped) => error,
+            (_, why) => why,
         }
     }
 
@@ -157,12 +166,12 @@ impl Kept {
 
 fn resumed<'a>(
     path: &Path,
-    problem: &'a TuningProblem,
+    who: (&'a TuningProblem, Crew<'a>),
     effort: &Effort,
 ) -> Result<Search<'a>, TuneError> {
     let name = path.display().to_string();
     let wrong = |reason: String| TuneError::State { path: name.clone(), reason };
     let text = std::fs::read_to_string(path).map_err(|error| wrong(unread_in_words(&error)))?;
     let state: State = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
-    Search::resume(problem, effort, state, &name)
+    Search::resume(who, effort, state, &name)
 }

@@ -14,7 +14,9 @@
 
 pub mod anfis;
 pub mod baseline;
+mod bits;
 pub mod contest;
+mod crew;
 pub mod design;
 mod error;
 mod flights;
@@ -28,6 +30,7 @@ mod source;
 mod space;
 mod tuned;
 
+pub use crew::{Crew, Engine, Order, Worker};
 pub use error::TuneError;
 pub use kept::{Beginning, Kept, Then, Unfit};
 pub use problem::{TuningProblem, controllers_with_marks};

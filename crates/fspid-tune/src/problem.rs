@@ -1,15 +1,17 @@
 //! What is flown for a candidate, and what it is worth.
 
-use fspid_campaign::engine::{Judging, Stability};
+use std::ops::Range;
+
+use fspid_campaign::engine::{FlightResult, Judging, Stability};
 use fspid_scenario::file::Study;
 use fspid_scenario::requirement::Requirement;
 use fspid_scenario::tuning::{TunableParameter, Tuning};
 use fspid_sim::Controller;
 use fspid_study::analysis::AtRest;
-use sha2::{Digest as _, Sha256};
 
+use crate::crew::{Crew, Part};
 use crate::error::TuneError;
-use crate::flights::{Dispersed, Flights, FlownCase, each_once, flown_cases};
+use crate::flights::{Asked, Dispersed, Flights, FlownCase, each_once, flown_cases, hex_digest};
 use crate::score::{FlightScore, Score};
 use crate::source::Source;
 use crate::space::Space;
@@ -48,7 +50,8 @@ impl TuningProblem {
         let measured = measured(&tuning);
         let loads = tuning.removes_constant_load && has_integral(study, &controller);
         let judging = Judging { stability: Stability::Analysed, loads };
-        let flights = Flights::new(Space::new(parameters), cases, measured).with(judging);
+        let asked = Asked { controller: controller.clone(), part: Part::Tuning, judging };
+        let flights = Flights::new(asked, Space::new(parameters), cases, measured);
         Ok(Self { controller, tuning, flights, digest })
     }
 
@@ -97,9 +100,32 @@ impl TuningProblem {
     /// What candidates are worth, in their order, on all threads of the pool that this is called in.
     #[must_use]
     pub fn scores(&self, points: &[Vec<f64>]) -> Vec<Score> {
-        let flights = self.flown(points);
+        // Nobody stops these threads, so that there is no error.
+        self.scores_by(points, Crew::UNSTOPPED).unwrap_or_default()
+    }
+
+    /// What candidates are worth, in their order, whoever flies them.
+    ///
+    /// # Errors
+    /// [`TuneError::Stopped`], and others who could not fly.
+    pub fn scores_by(&self, points: &[Vec<f64>], crew: Crew<'_>) -> Result<Vec<Score>, TuneError> {
+        let flights = self.flights.flown(points, &|flight, s| self.read(flight, s), crew)?;
         let weights: Vec<f64> = self.flights.jobs().map(|(case, _)| case.weight).collect();
-        flights.iter().map(|mine| Score::over(mine, &weights, &self.tuning)).collect()
+        Ok(flights.iter().map(|mine| Score::over(mine, &weights, &self.tuning)).collect())
+    }
+
+    /// Some flights of candidates, for whoever asks.
+    pub(crate) fn block(
+        &self,
+        points: &[Vec<f64>],
+        flights: Range<usize>,
+    ) -> Result<Vec<FlightScore>, TuneError> {
+        self.flights.block(points, flights, &|flight, s| self.read(flight, s), &|| false)
+    }
+
+    /// The flights of its candidates.
+    pub(crate) fn its_flights(&self) -> &Flights {
+        &self.flights
     }
 
     /// What is said of a candidate's loop at rest, as often as it differs: its gains there, and a constant load that it
@@ -123,19 +149,29 @@ impl TuningProblem {
     }
 
     /// Why flights of a candidate have no value, each with its case.
-    #[must_use]
-    pub fn reasons_of_loss(&self, point: &[f64]) -> Vec<String> {
-        self.reasons_where(point, |flight| flight.values.is_empty())
+    ///
+    /// # Errors
+    /// As those of [`scores_by`](Self::scores_by).
+    pub fn reasons_of_loss(&self, point: &[f64], crew: Crew<'_>) -> Result<Vec<String>, TuneError> {
+        self.reasons_where(point, |flight| flight.values.is_empty(), crew)
     }
 
     /// Why flights of a candidate have no value or break requirements, each with its case.
-    #[must_use]
-    pub fn reasons(&self, point: &[f64]) -> Vec<String> {
-        self.reasons_where(point, |_| true)
+    ///
+    /// # Errors
+    /// As those of [`scores_by`](Self::scores_by).
+    pub fn reasons(&self, point: &[f64], crew: Crew<'_>) -> Result<Vec<String>, TuneError> {
+        self.reasons_where(point, |_| true, crew)
     }
 
-    fn reasons_where(&self, point: &[f64], tells: fn(&FlightScore) -> bool) -> Vec<String> {
-        let flights = self.flown(std::slice::from_ref(&point.to_vec()));
+    fn reasons_where(
+        &self,
+        point: &[f64],
+        tells: fn(&FlightScore) -> bool,
+        crew: Crew<'_>,
+    ) -> Result<Vec<String>, TuneError> {
+        let points = [point.to_vec()];
+        let flights = self.flights.flown(&points, &|flight, s| self.read(flight, s), crew)?;
         let mut told = Vec::new();
         for ((case, run), flight) in self.flights.jobs().zip(flights.into_iter().flatten()) {
             let which = match case.runs() {
@@ -146,20 +182,20 @@ impl TuningProblem {
                 told.extend(flight.reasons.iter().map(|reason| format!("    {which}: {reason}")));
             }
         }
-        told
+        Ok(told)
     }
 
-    /// All flights of each candidate.
-    fn flown(&self, points: &[Vec<f64>]) -> Vec<Vec<FlightScore>> {
+    /// What a flight is worth, or why there is none.
+    fn read(&self, flight: Result<&FlightResult, String>, duration_s: f64) -> FlightScore {
         let measured = self.tuning.objectives.len() + self.tuning.limits.len();
-        self.flights.flown(points, &|flight, duration_s| match flight {
+        match flight {
             Ok(flight) => {
                 let asked = flight.judgements.len().saturating_sub(measured);
                 let score = FlightScore::of(flight, flight.judgements.split_at(asked), duration_s);
                 score.with_load(flight, duration_s)
             }
             Err(reason) => FlightScore::refused(reason),
-        })
+        }
     }
 }
 
@@ -241,6 +277,5 @@ fn digest(parameters: &[TunableParameter], tuning: &Tuning, cases: &[FlownCase])
         all.push_str("a constant load is removed\n");
     }
     cases.iter().for_each(|case| all.push_str(&case.fingerprint()));
-    let bytes = Sha256::digest(all.as_bytes());
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+    hex_digest(&all)
 }

@@ -9,6 +9,8 @@ use fspid_study::metrics::Verdict;
 use fspid_study::simulation::WRONG_WAY;
 use serde::{Deserialize, Serialize};
 
+use crate::bits;
+
 /// Cost above which candidates break a requirement or cannot be flown; what is allowed costs no more, however
 /// bad it is.
 pub const FORBIDDEN: f64 = 1e12;
@@ -22,11 +24,13 @@ const LEAST_OF_LOAD: f64 = 1e-3;
 const UNKNOWN: f64 = 10.0;
 
 /// What one flight is worth.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct FlightScore {
     /// How far requirements are broken, 0 where they are met.
+    #[serde(with = "bits")]
     pub(crate) violation: f64,
     /// Values of the measures of objectives and limits, in their order; nothing for a flight that is lost.
+    #[serde(with = "bits")]
     pub(crate) values: Vec<f64>,
     /// Why there is no value, or which requirements are broken.
     pub(crate) reasons: Vec<String>,

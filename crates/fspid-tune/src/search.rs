@@ -8,6 +8,7 @@ use fspid_scenario::file::known_words;
 use fspid_study::shell::word;
 use serde::{Deserialize, Serialize};
 
+use crate::crew::Crew;
 use crate::error::TuneError;
 use crate::problem::TuningProblem;
 use crate::score::Score;
@@ -134,6 +135,7 @@ enum Running {
 /// A search for the best numbers of a problem.
 pub struct Search<'a> {
     problem: &'a TuningProblem,
+    crew: Crew<'a>,
     effort: Effort,
     running: Running,
     generation: u64,
@@ -145,17 +147,21 @@ impl<'a> Search<'a> {
     /// A search at its beginning; the start is flown.
     ///
     /// # Errors
-    /// An effort that is none, or a start without a cost (unless candidates begin anywhere).
-    pub fn begin(problem: &'a TuningProblem, effort: Effort) -> Result<Self, TuneError> {
+    /// An effort that is none, a start without a cost (unless candidates begin anywhere), a crew that does not fly.
+    pub fn begin(
+        problem: &'a TuningProblem,
+        effort: Effort,
+        crew: Crew<'a>,
+    ) -> Result<Self, TuneError> {
         effort.check(problem.tuning().objectives.len())?;
         let start = problem.space().start();
-        let score = problem.scores(std::slice::from_ref(&start)).pop();
+        let score = problem.scores_by(std::slice::from_ref(&start), crew)?.pop();
         let Some(score) = score.filter(|score| effort.anywhere || !score.values.is_empty()) else {
-            return Err(TuneError::Start { reasons: problem.reasons_of_loss(&start) });
+            return Err(TuneError::Start { reasons: problem.reasons_of_loss(&start, crew)? });
         };
         let running = started(problem, &effort, &start);
         let trials = vec![Trial { generation: 0, point: start, score }];
-        Ok(Self { problem, effort, running, generation: 0, trials, best: 0 })
+        Ok(Self { problem, crew, effort, running, generation: 0, trials, best: 0 })
     }
 
     /// A search that goes on where its state was saved.
@@ -163,7 +169,7 @@ impl<'a> Search<'a> {
     /// # Errors
     /// A state of another search, or one that no search can have been in; `path` is told.
     pub fn resume(
-        problem: &'a TuningProblem,
+        (problem, crew): (&'a TuningProblem, Crew<'a>),
         effort: &Effort,
         state: State,
         path: &str,
@@ -194,6 +200,7 @@ impl<'a> Search<'a> {
         };
         let mut search = Self {
             problem,
+            crew,
             effort: state.effort,
             running,
             generation: state.generation,
@@ -222,20 +229,24 @@ impl<'a> Search<'a> {
     }
 
     /// Flies one more generation; answers why the search is over, if it is.
-    pub fn advance(&mut self) -> Option<Stop> {
+    ///
+    /// # Errors
+    /// [`TuneError::Stopped`], and others who could not fly: the search is where it was, and flies the same generation when
+    /// it is asked again.
+    pub fn advance(&mut self) -> Result<Option<Stop>, TuneError> {
         let left = self.effort.budget.saturating_sub(self.spent());
         if left == 0 {
-            return Some(Stop::Budget);
+            return Ok(Some(Stop::Budget));
         }
         let mut points = match &mut self.running {
             Running::One(optimiser) => optimiser.ask(),
             Running::Front(front) => front.ask(),
         };
         if points.is_empty() {
-            return Some(self.stop().unwrap_or(Stop::Collapsed));
+            return Ok(Some(self.stop().unwrap_or(Stop::Collapsed)));
         }
         points.truncate(left);
-        let scores = self.problem.scores(&points);
+        let scores = self.problem.scores_by(&points, self.crew)?;
         match &mut self.running {
             Running::One(optimiser) => {
                 optimiser.tell(&scores.iter().map(|score| score.cost).collect::<Vec<_>>());
@@ -251,7 +262,12 @@ impl<'a> Search<'a> {
         let trials = points.into_iter().zip(scores);
         self.trials.extend(trials.map(|(point, score)| Trial { generation, point, score }));
         self.find_best(from);
-        (self.spent() >= self.effort.budget).then_some(Stop::Budget)
+        Ok((self.spent() >= self.effort.budget).then_some(Stop::Budget))
+    }
+
+    /// Who flies.
+    pub(crate) fn crew(&self) -> Crew<'a> {
+        self.crew
     }
 
     fn stop(&self) -> Option<Stop> {

@@ -25,6 +25,23 @@ impl Source {
         Ok(Template::load(&self.path, &self.overrides)?)
     }
 
+    /// Files that the scenario names, with all cases of its tuning and its contest, as they are named there.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it, or with a case.
+    pub fn files(&self) -> Result<Vec<String>, TuneError> {
+        let template = self.template()?;
+        let study = template.study();
+        let mut files = study.files.clone();
+        let tuned = study.tuning.iter().flat_map(|tuning| &tuning.cases);
+        for case in tuned.chain(study.contest.iter().flat_map(|contest| &contest.cases)) {
+            files.extend(self.case(case)?.study().files.iter().cloned());
+        }
+        files.sort_unstable();
+        files.dedup();
+        Ok(files)
+    }
+
     /// Reads the scenario with the changes of a case.
     pub(crate) fn case(&self, case: &Case) -> Result<Template, TuneError> {
         let mut overrides = self.overrides.clone();

@@ -7,6 +7,7 @@ use fspid_scenario::tuning::{Free, Over};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
+use crate::error::TuneError;
 use crate::problem::TuningProblem;
 use crate::search::{Search, Trial, stop_in_words};
 
@@ -70,9 +71,11 @@ pub struct Number {
 }
 
 impl Tuned {
-    /// Of a search that is over.
-    #[must_use]
-    pub fn of(problem: &TuningProblem, search: &Search<'_>, stop: Stop) -> Self {
+    /// Of a search that is over; a best one that is not allowed is flown again for its reasons.
+    ///
+    /// # Errors
+    /// [`TuneError::Stopped`], and others who could not fly.
+    pub fn of(problem: &TuningProblem, search: &Search<'_>, stop: Stop) -> Result<Self, TuneError> {
         let (start, best) = (search.trials()[0].clone(), search.best().clone());
         let front: Vec<Trial> = search.front().into_iter().cloned().collect();
         let objectives = problem.tuning().objectives.iter().map(|objective| {
@@ -81,7 +84,7 @@ impl Tuned {
         });
         let mut reasons = match best.score.is_allowed() {
             true => Vec::new(),
-            false => problem.reasons(&best.point),
+            false => problem.reasons(&best.point, search.crew())?,
         };
         let limits = problem.tuning().limits.iter().zip(&best.score.limited);
         reasons.extend(limits.filter(|(limit, mean)| !limit.is_met_by(**mean)).map(
@@ -90,7 +93,7 @@ impl Tuned {
                 format!("    mean over the flights: {name} {}, {limits}", shown(Some(*mean)))
             },
         ));
-        Self {
+        Ok(Self {
             controller: problem.controller().to_owned(),
             effort: search.effort().clone(),
             stop,
@@ -108,7 +111,7 @@ impl Tuned {
             objectives: objectives.collect(),
             limits: problem.tuning().limits.clone(),
             over: problem.tuning().over,
-        }
+        })
     }
 
     /// True where every flight of the best candidate came back and met its requirements.

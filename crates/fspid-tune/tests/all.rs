@@ -2,6 +2,7 @@
 
 mod anfis;
 mod contest;
+mod crew;
 mod designs;
 mod problem;
 mod rules;

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use fspid_tune::Source;
 use fspid_tune::contest::{Contest, Options, Then};
+use fspid_tune::{Crew, Source};
 use serde_json::Value;
 
 /// The contest that a design holds, as its JSON answer.
@@ -13,7 +13,7 @@ fn held(name: &str) -> Value {
     let contest = Contest::new(&source, &Options::default());
     let contest = contest.unwrap_or_else(|error| panic!("{error}"));
     let out = tempfile::tempdir().expect("a folder");
-    let outcome = contest.hold(out.path(), &mut |_| Then::GoOn);
+    let outcome = contest.hold(out.path(), Crew::UNSTOPPED, &mut |_| Then::GoOn);
     outcome.unwrap_or_else(|error| panic!("{error}")).json()
 }
 

@@ -4,7 +4,7 @@
 use fspid_scenario::file;
 use fspid_scenario::units::degrees;
 use fspid_study::simulation::Simulation;
-use fspid_tune::{Effort, FORBIDDEN, Search, Source, TuningProblem};
+use fspid_tune::{Crew, Effort, FORBIDDEN, Search, Source, TuningProblem};
 
 const SCENARIO: &str = r#"schema = 1
 name = "to be tuned"
@@ -65,6 +65,10 @@ fn problem(changes: &[(&str, &str)]) -> TuningProblem {
     std::fs::write(&path, text).expect("written");
     let source = Source { path, overrides: Vec::new() };
     TuningProblem::new(&source, None).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn reasons(problem: &TuningProblem, point: &[f64]) -> Vec<String> {
+    problem.reasons(point, Crew::UNSTOPPED).expect("flown")
 }
 
 /// A place in the unit cube where the proportional gain is `kp`.
@@ -129,14 +133,14 @@ fn a_lost_flight_costs_more_than_a_broken_requirement_and_that_more_than_any_all
     let costs: Vec<f64> = scores.iter().map(|score| score.cost).collect();
     assert!(costs.is_sorted(), "{costs:?}");
     assert!(
-        problem.reasons(&points[1])[0].contains("overshoot_pct"),
+        reasons(&problem, &points[1])[0].contains("overshoot_pct"),
         "{:?}",
-        problem.reasons(&points[1])
+        reasons(&problem, &points[1])
     );
     assert!(
-        problem.reasons(&points[3])[0].contains("diverged"),
+        reasons(&problem, &points[3])[0].contains("diverged"),
         "{:?}",
-        problem.reasons(&points[3])
+        reasons(&problem, &points[3])
     );
 }
 
@@ -151,8 +155,8 @@ fn a_search_spends_its_budget_and_no_more_and_keeps_its_best() {
             population: None,
             anywhere: false,
         };
-        let mut search = Search::begin(&problem, effort).expect("it begins");
-        while search.advance().is_none() {}
+        let mut search = Search::begin(&problem, effort, Crew::UNSTOPPED).expect("it begins");
+        while search.advance().expect("flown").is_none() {}
         assert_eq!(search.spent(), 33, "{optimiser}");
         let least = search.trials().iter().map(|trial| trial.score.cost).fold(f64::MAX, f64::min);
         assert_eq!(search.best().score.cost, least, "{optimiser}");
@@ -170,8 +174,8 @@ fn no_entry_of_a_front_beats_another_and_the_front_beats_every_candidate() {
         population: Some(20),
         anywhere: false,
     };
-    let mut search = Search::begin(&problem, effort).expect("it begins");
-    while search.advance().is_none() {}
+    let mut search = Search::begin(&problem, effort, Crew::UNSTOPPED).expect("it begins");
+    while search.advance().expect("flown").is_none() {}
     let front = search.front();
     let objectives = |index: usize| &front[index].score.objectives;
     for index in 1..front.len() {
@@ -265,7 +269,7 @@ fn a_candidate_that_keeps_a_constant_load_is_refused_unless_the_file_ignores_loa
     lost[1] = 0.0;
     let scores = asked.scores(&[well.clone(), lost.clone()]);
     assert!(scores[0].is_allowed() && !scores[1].is_allowed(), "{scores:?}");
-    let reasons = asked.reasons(&lost);
+    let reasons = reasons(&asked, &lost);
     assert!(reasons[0].contains("no integral at rest (ki = 0): a constant load"), "{reasons:?}");
     assert!(asked.removes_constant_load());
     let told = asked.at_rest(&lost);

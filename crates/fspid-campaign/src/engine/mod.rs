@@ -67,10 +67,14 @@ pub struct Judging {
 /// Most memory for traces that are being measured, in numbers: 16 MiB a thread.
 const MOST_NUMBERS: usize = 2 << 20;
 
-/// How many studies are best flown at once: as many as there are lanes, fewer where flights are long.
+/// How many studies are best flown at once: as many as there are lanes, fewer where flights are long, one where they fly
+/// one by one in any case, so that who asks them to stop waits for one.
 #[must_use]
 pub fn at_once(study: &Study) -> usize {
     let scenario = &study.scenario;
+    if scenario.plant.linear().is_none() || !scenario.externals.is_empty() {
+        return 1;
+    }
     let numbers = scenario.timing.rows() * scenario.flyers().count() * recorder::COLUMNS;
     (MOST_NUMBERS / numbers.max(1)).clamp(1, fspid_sim::batch::LANES)
 }

@@ -4,14 +4,14 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 
+use super::cluster::{Cluster, with_crew};
 use super::progress::{Telling, answer_after, duration, tell};
 use super::{Format, interrupt, json_text};
 use crate::argument::{Folder, InFile, count};
 use crate::exit::{Failure, note, print};
-use fspid_campaign::local;
 use fspid_diagnostics::digits::{counted, grouped};
 use fspid_tune::contest::{Contest, Options, Progress, Then};
-use fspid_tune::{Source, TuneError};
+use fspid_tune::{Crew, Source, TuneError};
 
 /// How often the state of a search is saved.
 const SAVED_EVERY: Duration = Duration::from_secs(2);
@@ -45,6 +45,8 @@ pub(crate) struct Arguments {
     /// How many threads; 0 for as many as the machine has. The result is the same.
     #[arg(long, default_value_t = 0)]
     threads: usize,
+    #[command(flatten)]
+    cluster: Cluster,
     /// Say nothing of the progress.
     #[arg(long)]
     quiet: bool,
@@ -61,17 +63,18 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     contest.warnings().iter().for_each(|it| note(format_args!("warning: {it}")));
     let telling = if arguments.quiet { Telling::Nothing } else { Telling::for_standard_error() };
     interrupt::watch();
-    let held = local::in_threads(arguments.threads, || {
-        let expected = match telling {
-            Telling::Nothing => Vec::new(),
-            Telling::Line | Telling::Lines => expected(&contest),
+    let carrier = arguments.cluster.carrier(&source)?;
+    let held = with_crew(carrier.as_ref(), arguments.threads, |crew| {
+        let expected = match (telling, crew) {
+            (Telling::Nothing, _) | (_, Crew::Others(_)) => Vec::new(),
+            (Telling::Line | Telling::Lines, Crew::Here(_)) => expected(&contest, crew)?,
         };
         let mut watch = Watch::new(telling, expected);
-        let held = contest.hold(&arguments.out, &mut |progress| watch.then(progress));
+        let held = contest.hold(&arguments.out, crew, &mut |progress| watch.then(progress));
         watch.end();
         held
     });
-    let outcome = held.map_err(Failure::input)?.map_err(failure)?;
+    let outcome = held?.map_err(failure)?;
     let answer = match arguments.format {
         Format::Text => outcome.text(),
         Format::Json => json_text(&outcome.json()),
@@ -96,13 +99,13 @@ fn failure(error: TuneError) -> Failure {
 }
 
 /// How long a candidate of each controller takes, s, by flying some; tells how long all of them will.
-fn expected(contest: &Contest) -> Vec<(String, f64)> {
+fn expected(contest: &Contest, crew: Crew<'_>) -> Result<Vec<(String, f64)>, TuneError> {
     let each = |(name, _): (&str, usize)| {
         let begun = Instant::now();
-        contest.rehearse(name, REHEARSED);
-        (name.to_owned(), begun.elapsed().as_secs_f64() / REHEARSED as f64)
+        contest.rehearse(name, REHEARSED, crew)?;
+        Ok((name.to_owned(), begun.elapsed().as_secs_f64() / REHEARSED as f64))
     };
-    let expected: Vec<(String, f64)> = contest.searches().map(each).collect();
+    let expected = contest.searches().map(each).collect::<Result<Vec<_>, TuneError>>()?;
     let seconds: f64 = contest.searches().zip(&expected).map(|((_, n), (_, s))| n as f64 * s).sum();
     if let Some((_, candidates)) = contest.searches().next() {
         note(format_args!(
@@ -112,7 +115,7 @@ fn expected(contest: &Contest) -> Vec<(String, f64)> {
             duration(seconds)
         ));
     }
-    expected
+    Ok(expected)
 }
 
 /// Tells how far the contest is, and when states are to be saved.

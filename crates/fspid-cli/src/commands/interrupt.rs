@@ -28,7 +28,7 @@ fn heard() {
     let at_once = AT_ONCE.lock().ok().and_then(|told| told.clone());
     let again = || ASKED.swap(true, Ordering::Relaxed).then(|| ENDED.to_owned());
     let Some(told) = at_once.or_else(again) else {
-        note("stopping after this generation; Ctrl-C again ends at once");
+        note("stopping; Ctrl-C again ends at once");
         return;
     };
     let failure = Failure::interrupted(told);

@@ -7,6 +7,7 @@ pub(crate) mod bench;
 pub(crate) mod campaign;
 pub(crate) mod certify;
 pub(crate) mod check;
+pub(crate) mod cluster;
 pub(crate) mod contest;
 pub(crate) mod convert;
 mod drawings;

@@ -6,18 +6,19 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use serde_json::json;
 
+use super::cluster::{Carrier, Cluster, with_crew};
 use super::progress::{Telling, answer_after, duration, tell};
 use super::{Format, interrupt, json_text};
 use crate::argument::{InFile, OutFile, count, is_standard, written};
 use crate::exit::{Failure, note, print, wrote};
-use fspid_campaign::local;
 use fspid_diagnostics::digits::grouped;
 use fspid_scenario::file::known_words;
 use fspid_study::output;
 use fspid_tune::baseline::Baseline;
 use fspid_tune::rule::{Form, Options, Rule, Verdict};
 use fspid_tune::{
-    Beginning, Effort, Kept, Search, Source, Then, TuneError, Tuned, TuningProblem, design, history,
+    Beginning, Crew, Effort, Kept, Search, Source, Then, TuneError, Tuned, TuningProblem, design,
+    history,
 };
 
 /// How often the state of a search is saved.
@@ -55,7 +56,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "N", value_parser = count::<usize>(2, u64::MAX))]
     population: Option<usize>,
     /// Search for nothing: take the gains of a classical rule. `--rule list` tells them all.
-    #[arg(long, value_name = "NAME", conflicts_with_all = ["optimiser", "budget", "seed", "population", "anywhere", "history"])]
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["optimiser", "budget", "seed", "population", "anywhere", "history", "engine"])]
     rule: Option<String>,
     /// Terms that the rule shall give: p, pi or pid; by default what the rule is made for.
     #[arg(long, value_name = "TERMS", requires = "rule")]
@@ -78,6 +79,8 @@ pub(crate) struct Arguments {
     /// How many threads; 0 for as many as the machine has. The result is the same.
     #[arg(long, default_value_t = 0)]
     threads: usize,
+    #[command(flatten)]
+    cluster: Cluster,
     /// Say nothing of the progress.
     #[arg(long)]
     quiet: bool,
@@ -93,9 +96,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return by_rule(arguments, &source, rule);
     }
     interrupt::watch();
+    let carrier = arguments.cluster.carrier(&source)?;
+    let tuning = Tuning { arguments, source: &source, carrier: carrier.as_ref() };
     let tuned = match arguments.all {
-        false => vec![one(arguments, &source, arguments.controller.as_deref())?],
-        true => all(arguments, &source)?,
+        false => vec![tuning.one(arguments.controller.as_deref())?],
+        true => tuning.all()?,
     };
     match arguments.format {
         Format::Text => {
@@ -119,38 +124,50 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// Every controller with free numbers, one after the other, with the same effort.
-fn all(arguments: &Arguments, source: &Source) -> Result<Vec<Tuned>, Failure> {
-    let names = fspid_tune::controllers_with_marks(source).map_err(failure)?;
-    if names.is_empty() {
-        return one(arguments, source, None).map(|tuned| vec![tuned]);
-    }
-    names.iter().map(|name| one(arguments, source, Some(name))).collect()
+/// What is tuned, and by whom.
+struct Tuning<'a> {
+    arguments: &'a Arguments,
+    source: &'a Source,
+    carrier: Option<&'a Carrier>,
 }
 
-/// Tunes one controller, and writes its design.
-fn one(arguments: &Arguments, source: &Source, name: Option<&str>) -> Result<Tuned, Failure> {
-    let problem = TuningProblem::new(source, name).map_err(failure)?;
-    problem.warnings().iter().for_each(|it| note(format_args!("warning: {it}")));
-    let out = arguments.out.as_ref().map(|out| design_file(arguments, out, problem.controller()));
-    if let Some(out) = &out {
-        design::check_place(source, out).map_err(failure)?;
+impl Tuning<'_> {
+    /// Every controller with free numbers, one after the other, with the same effort.
+    fn all(&self) -> Result<Vec<Tuned>, Failure> {
+        let names = fspid_tune::controllers_with_marks(self.source).map_err(failure)?;
+        if names.is_empty() {
+            return self.one(None).map(|tuned| vec![tuned]);
+        }
+        names.iter().map(|name| self.one(Some(name))).collect()
     }
-    let effort = effort(arguments, &problem);
-    let mut place = kept(arguments, out.as_deref(), problem.controller());
-    let tuned =
-        local::in_threads(arguments.threads, || search(arguments, &problem, &effort, &mut place));
-    let (tuned, best) = tuned.map_err(Failure::input)?.map_err(failure)?;
-    if let Some(out) = &out {
-        let heading = tuned.heading(&effort.command(source, name));
-        let text = design::text(source, problem.space(), &best, &heading).map_err(failure)?;
-        output::write(out, text)?;
-        wrote(out);
+
+    /// Tunes one controller, and writes its design.
+    fn one(&self, name: Option<&str>) -> Result<Tuned, Failure> {
+        let Self { arguments, source, .. } = self;
+        let problem = TuningProblem::new(source, name).map_err(failure)?;
+        problem.warnings().iter().for_each(|it| note(format_args!("warning: {it}")));
+        let out = arguments.out.as_ref();
+        let out = out.map(|out| design_file(arguments, out, problem.controller()));
+        if let Some(out) = &out {
+            design::check_place(source, out).map_err(failure)?;
+        }
+        let effort = effort(arguments, &problem);
+        let mut place = kept(arguments, out.as_deref(), problem.controller());
+        let tuned = with_crew(self.carrier, arguments.threads, |crew| {
+            search(arguments, (&problem, crew), &effort, &mut place)
+        });
+        let (tuned, best) = tuned?.map_err(failure)?;
+        if let Some(out) = &out {
+            let heading = tuned.heading(&effort.command(source, name));
+            let text = design::text(source, problem.space(), &best, &heading).map_err(failure)?;
+            output::write(out, text)?;
+            wrote(out);
+        }
+        if let Err(path) = place.remove() {
+            note(format_args!("warning: {} could not be removed", path.display()));
+        }
+        Ok(tuned)
     }
-    if let Err(path) = place.remove() {
-        note(format_args!("warning: {} could not be removed", path.display()));
-    }
-    Ok(tuned)
 }
 
 /// Where the design of a controller is written.
@@ -234,11 +251,11 @@ fn effort(arguments: &Arguments, problem: &TuningProblem) -> Effort {
 /// Searches to the end; what was found, and the best point.
 fn search(
     arguments: &Arguments,
-    problem: &TuningProblem,
+    (problem, crew): (&TuningProblem, Crew<'_>),
     effort: &Effort,
     place: &mut Kept,
 ) -> Result<(Tuned, Vec<f64>), TuneError> {
-    let (mut search, beginning) = place.begun(problem, effort)?;
+    let (mut search, beginning) = place.begun(problem, effort, crew)?;
     match beginning {
         Beginning::Anew => {}
         Beginning::Resumed(path) => note(format_args!(
@@ -275,7 +292,7 @@ fn search(
     if let Some(path) = &arguments.history {
         history::write(path, problem, &search)?;
     }
-    let tuned = Tuned::of(problem, &search, stop);
+    let tuned = Tuned::of(problem, &search, stop).map_err(|error| place.left(&search, error))?;
     Ok((tuned, search.best().point.clone()))
 }
 

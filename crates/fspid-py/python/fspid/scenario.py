@@ -6,15 +6,17 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from . import _core
+from . import _core, engines
 from ._toml import changes, text_of
 from .answers import Analysis, Answer, Certification, Contest, Design, Flight, Verification
 from .campaign import Campaign
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from os import PathLike
 
     from .controllers import Controller
+    from .engines import SearchProgress
 
 
 class Scenario:
@@ -207,11 +209,14 @@ class Scenario:
         out: str | PathLike[str] | None = None,
         history: str | PathLike[str] | None = None,
         threads: int = 0,
+        engine: str = "local",
+        watch: Callable[[SearchProgress], None] | None = None,
+        **options: Any,
     ) -> Design:
         """Choose the numbers that are marked free, so that flights become good.
 
-        The same seed gives the same design on any number of threads. Ctrl-C stops after the generation that is flown;
-        with ``out``, or for a scenario of a file, the same call then goes on where it was.
+        The same seed gives the same design on any number of threads, and on engines. Ctrl-C stops at once; with ``out``, or
+        for a scenario of a file, the same call then goes on after the last whole generation.
 
         Parameters
         ----------
@@ -227,6 +232,12 @@ class Scenario:
             Files for the design (TOML) and for every candidate (Parquet).
         threads : int
             0 for as many as the machine has.
+        engine : {"local", "ray", "dask"}
+            Who flies: ``engine="ray", address="10.0.0.1:6379"``, ``engine="dask", client=client``. The design is the same.
+        watch : callable, optional
+            Is told of the progress on an engine before each generation.
+        **options
+            What the engine takes: ``address``, ``client``.
         """
         wanted = {
             "controller": controller,
@@ -239,7 +250,11 @@ class Scenario:
             "history": None if history is None else Path(history),
             "threads": threads,
         }
-        return Design(self._core.tune(wanted), self)
+        if engine == "local":
+            engines.refuse(watch, options)
+            return Design(self._core.tune(wanted), self)
+        with engines.crew(self._core, engine, watch, options) as (fly, tell):
+            return Design(self._core.tune(wanted, fly, tell), self)
 
     def tune_by_rule(
         self,
@@ -316,6 +331,9 @@ class Scenario:
         seeds: int | None = None,
         budget: int | None = None,
         threads: int = 0,
+        engine: str = "local",
+        watch: Callable[[SearchProgress], None] | None = None,
+        **options: Any,
     ) -> Contest:
         """Tune all controllers alike, and judge them on what none of them was tuned on.
 
@@ -327,8 +345,15 @@ class Scenario:
             How often each controller is tuned, and with how many candidates; by default as the scenario says.
         threads : int
             0 for as many as the machine has.
+        engine, watch, **options
+            Who flies, as for :meth:`tune`. Every file is the same.
         """
-        return Contest(self._core.contest(Path(out), seeds, budget, threads))
+        wanted = {"out": Path(out), "seeds": seeds, "budget": budget, "threads": threads}
+        if engine == "local":
+            engines.refuse(watch, options)
+            return Contest(self._core.contest(wanted))
+        with engines.crew(self._core, engine, watch, options) as (fly, tell):
+            return Contest(self._core.contest(wanted, fly, tell))
 
     def __repr__(self) -> str:
         return f"<Scenario {self.name!r}: {', '.join(self.controllers)}>"

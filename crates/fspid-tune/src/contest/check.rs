@@ -5,8 +5,9 @@ use fspid_scenario::file::{Study, Template};
 use fspid_scenario::tuning::{Contest as Rules, Tuning};
 
 use super::{Contest, Entrant, Options, flight};
+use crate::crew::Part;
 use crate::error::TuneError;
-use crate::flights::{Dispersed, Flights, FlownCase, flown_case};
+use crate::flights::{Asked, Dispersed, Flights, FlownCase, flown_case};
 use crate::problem::{TuningProblem, tunable_parameters_of};
 use crate::search::Effort;
 use crate::source::Source;
@@ -155,6 +156,7 @@ fn entrant(
     let flown: Vec<FlownCase> = flown.collect::<Result<_, _>>()?;
     let objectives = study.tuning.as_ref().map_or(&[][..], |tuning| &tuning.objectives);
     let measured = flight::measured(objectives);
-    let flights = Flights::new(Space::new(parameters), flown, measured).with(JUDGING);
+    let asked = Asked { controller: name.to_owned(), part: Part::Judging, judging: JUDGING };
+    let flights = Flights::new(asked, Space::new(parameters), flown, measured);
     Ok(Entrant { name: name.to_owned(), problem, flights })
 }

@@ -8,7 +8,9 @@ use fspid_scenario::tuning::Objective;
 use fspid_scenario::units::degrees;
 use fspid_study::judgement::{Judgement, NotEvaluated};
 use fspid_study::metrics::{Absent, Verdict};
+use serde::{Deserialize, Serialize};
 
+use crate::bits;
 use crate::score::FlightScore;
 
 /// Measures that are told of every flight: name, unit.
@@ -42,14 +44,17 @@ pub(crate) const LOST: &str =
 pub(crate) const FAILED: &str = "is lost, leaves the range of its aircraft's data where its scenario does not allow that, breaks a requirement, or is of a loop that is unstable at rest";
 
 /// A flight.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Flight {
     /// The measures of [`MEASURES`]; none where the flight does not have one.
+    #[serde(with = "bits")]
     pub measures: [Option<f64>; MEASURES.len()],
     /// What counts in means: infinite for a lost flight, the length of its window for a step that did not
     /// settle; none where nothing was asked, as of overshoot without a step.
+    #[serde(with = "bits")]
     pub(crate) counted: [Option<f64>; MEASURES.len()],
     /// What the objectives of the tuning cost; none without objectives, or where one has no value.
+    #[serde(with = "bits")]
     pub cost: Option<f64>,
     /// The verdict in words.
     pub verdict: String,

@@ -37,9 +37,11 @@ mod tuning;
 mod two_way;
 mod words;
 
+use std::ops::Range;
 use std::path::Path;
 
 use fspid_campaign::Folder;
+use fspid_campaign::engine::FlightResult;
 use fspid_scenario::tuning::{Contest as Rules, Tuning};
 use fspid_study::output;
 
@@ -53,6 +55,7 @@ pub use summary::{Mirror, Part, Spread, Summary};
 pub use tuning::{Found, Progress};
 pub use two_way::{TwoWay, holm};
 
+use crate::crew::Crew;
 use crate::error::TuneError;
 use crate::flights::{Flights, each_once};
 use crate::problem::TuningProblem;
@@ -123,32 +126,70 @@ impl Contest {
     }
 
     /// Flies the start of a controller's tuning so many times, for whoever wants to know how long a candidate takes.
-    pub fn rehearse(&self, controller: &str, candidates: usize) {
+    ///
+    /// # Errors
+    /// [`TuneError::Stopped`], and others who could not fly.
+    pub fn rehearse(
+        &self,
+        controller: &str,
+        candidates: usize,
+        crew: Crew<'_>,
+    ) -> Result<(), TuneError> {
         let entrant = self.entrants.iter().find(|entrant| entrant.name == controller);
         if let Some(problem) = entrant.and_then(|entrant| entrant.problem.as_ref()) {
-            let _ = problem.scores(&vec![problem.space().start(); candidates]);
+            problem.scores_by(&vec![problem.space().start(); candidates], crew)?;
+        }
+        Ok(())
+    }
+
+    /// The flights that a controller is judged on.
+    pub(crate) fn flights_of(&self, controller: &str) -> Option<&Flights> {
+        let entrant = self.entrants.iter().find(|entrant| entrant.name == controller);
+        entrant.map(|entrant| &entrant.flights)
+    }
+
+    /// Some flights that a controller is judged on, for whoever asks.
+    pub(crate) fn block(
+        &self,
+        controller: &str,
+        points: &[Vec<f64>],
+        flights: Range<usize>,
+    ) -> Result<Vec<Flight>, TuneError> {
+        let Some(mine) = self.flights_of(controller) else {
+            return Ok(Vec::new());
+        };
+        mine.block(points, flights, &|flight, s| self.read(flight, s), &|| false)
+    }
+
+    /// What is told of a flight.
+    fn read(&self, flight: Result<&FlightResult, String>, duration_s: f64) -> Flight {
+        let objectives =
+            self.tuning.as_ref().map_or(&[][..], |tuning| tuning.objectives.as_slice());
+        match flight {
+            Ok(flight) => Flight::of(flight, objectives, duration_s),
+            Err(reason) => Flight::refused(reason),
         }
     }
 
     /// Tunes what is to be tuned, judges all, and writes `contest.parquet`, `contest.json` and `contest.html` into
     /// the folder, designs below it. Designs that are there already are not searched again.
     ///
-    /// `tell` is called before each generation and for each design that was there. Runs on the threads of the pool
-    /// that it is called in.
+    /// `tell` is called before each generation and for each design that was there.
     ///
     /// # Errors
-    /// Another process in the folder, a start without a cost, files that cannot be written, or
+    /// Another process in the folder, a start without a cost, files that cannot be written, others who could not fly, or
     /// [`TuneError::Stopped`].
     pub fn hold(
         &self,
         folder: &Path,
+        crew: Crew<'_>,
         tell: &mut dyn FnMut(&Progress) -> Then,
     ) -> Result<Outcome, TuneError> {
         let designs = folder.join(DESIGNS);
         output::make_folder(&designs)?;
         let _lock = Folder::new(folder).lock(true)?;
-        let found = self.tuned(&designs, tell)?;
-        let judged = self.judged(found);
+        let found = self.tuned(&designs, crew, tell)?;
+        let judged = self.judged(found, crew)?;
         table::write(&folder.join("contest.parquet"), &judged, &self.digest)?;
         let outcome = Outcome::new(judged, self.setting(folder));
         output::write(&folder.join("contest.json"), format!("{:#}\n", outcome.json()))?;
@@ -160,6 +201,7 @@ impl Contest {
     fn tuned(
         &self,
         folder: &Path,
+        crew: Crew<'_>,
         tell: &mut dyn FnMut(&Progress) -> Then,
     ) -> Result<Vec<Vec<Found>>, TuneError> {
         let tuned = self.entrants.iter().filter(|it| it.problem.is_some()).count();
@@ -176,7 +218,7 @@ impl Contest {
                 let search = (number, all);
                 let effort = effort.clone();
                 let task = Task { source: &self.source, problem, effort, folder, stem, search };
-                mine.push(task.done(tell).map_err(|error| of_entrant(error, &entrant.name))?);
+                mine.push(task.done(crew, tell).map_err(|error| of_entrant(error, &entrant.name))?);
             }
             found.push(mine);
         }
@@ -184,9 +226,7 @@ impl Contest {
     }
 
     /// All designs flown on all cases.
-    fn judged(&self, found: Vec<Vec<Found>>) -> Judged {
-        let objectives =
-            self.tuning.as_ref().map_or(&[][..], |tuning| tuning.objectives.as_slice());
+    fn judged(&self, found: Vec<Vec<Found>>, crew: Crew<'_>) -> Result<Judged, TuneError> {
         let contestants = self.entrants.iter().zip(found).map(|(entrant, found)| {
             let is_tuned = entrant.problem.is_some();
             let found: Vec<Option<Found>> = match is_tuned {
@@ -195,18 +235,16 @@ impl Contest {
             };
             let point = |it: &Option<Found>| it.as_ref().map_or(Vec::new(), |it| it.point.clone());
             let points: Vec<Vec<f64>> = found.iter().map(point).collect();
-            let flown = entrant.flights.flown(&points, &|flight, duration_s| match flight {
-                Ok(flight) => Flight::of(flight, objectives, duration_s),
-                Err(reason) => Flight::refused(reason),
-            });
+            let flown = entrant.flights.flown(&points, &|flight, s| self.read(flight, s), crew)?;
             let designs = found.into_iter().zip(flown);
-            Contestant {
+            Ok(Contestant {
                 name: entrant.name.clone(),
                 is_tuned,
                 designs: designs.map(|(found, flights)| Design { found, flights }).collect(),
-            }
+            })
         });
-        Judged { contestants: contestants.collect(), cases: self.cases(), against: self.against }
+        let contestants = contestants.collect::<Result<_, TuneError>>()?;
+        Ok(Judged { contestants, cases: self.cases(), against: self.against })
     }
 
     fn cases(&self) -> Vec<Case> {
@@ -257,7 +295,10 @@ fn bare(name: &str) -> String {
 
 fn of_entrant(error: TuneError, controller: &str) -> TuneError {
     match error {
-        TuneError::Stopped | TuneError::Output(_) | TuneError::History(_) => error,
+        TuneError::Stopped
+        | TuneError::Engine { .. }
+        | TuneError::Output(_)
+        | TuneError::History(_) => error,
         reason => {
             TuneError::Entrant { controller: controller.to_owned(), reason: Box::new(reason) }
         }

@@ -6,6 +6,7 @@ use fspid_campaign::Plan;
 use fspid_study::output;
 use serde::{Deserialize, Serialize};
 
+use crate::crew::Crew;
 use crate::design;
 use crate::error::TuneError;
 use crate::kept::{Kept, Then, Unfit};
@@ -80,8 +81,12 @@ impl Task<'_> {
     /// What was found before, or is found now.
     ///
     /// # Errors
-    /// A start without a cost, or files that cannot be written.
-    pub(crate) fn done(&self, tell: &mut dyn FnMut(&Progress) -> Then) -> Result<Found, TuneError> {
+    /// A start without a cost, files that cannot be written, others who could not fly.
+    pub(crate) fn done(
+        &self,
+        crew: Crew<'_>,
+        tell: &mut dyn FnMut(&Progress) -> Then,
+    ) -> Result<Found, TuneError> {
         if let Some(found) = self.kept() {
             return match tell(&self.progress(found.candidates, true)) {
                 Then::Stop => Err(TuneError::Stopped),
@@ -89,10 +94,11 @@ impl Task<'_> {
             };
         }
         let mut place = Kept::at(Some(self.path("state.json")), Unfit::Replaced);
-        let (mut search, _) = place.begun(self.problem, &self.effort)?;
+        let (mut search, _) = place.begun(self.problem, &self.effort, crew)?;
         let stop =
             place.search(&mut search, &mut |search| tell(&self.progress(search.spent(), false)))?;
         let tuned = Tuned::of(self.problem, &search, stop);
+        let tuned = tuned.map_err(|error| place.left(&search, error))?;
         let found = self.found(&tuned);
         let heading =
             tuned.heading(&self.effort.command(self.source, Some(self.problem.controller())));

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use fspid_campaign::local::in_threads;
 use fspid_tune::contest::{Contest, Options, Outcome, Quantity, Standing, Then};
-use fspid_tune::{Source, TuneError};
+use fspid_tune::{Crew, Source, TuneError};
 use tempfile::TempDir;
 
 const LOOP: &str = r#"
@@ -100,12 +100,12 @@ fn pid(name: &str, gains: &str) -> String {
     )
 }
 
-struct Place {
+pub(crate) struct Place {
     folder: TempDir,
-    source: Source,
+    pub(crate) source: Source,
 }
 
-fn place(text: &str) -> Place {
+pub(crate) fn place(text: &str) -> Place {
     let folder = TempDir::new().expect("a folder");
     let path = folder.path().join("contest.toml");
     fs::write(&path, text).expect("a file");
@@ -113,16 +113,16 @@ fn place(text: &str) -> Place {
 }
 
 impl Place {
-    fn out(&self) -> PathBuf {
+    pub(crate) fn out(&self) -> PathBuf {
         self.folder.path().join("out")
     }
 
-    fn contest(&self) -> Contest {
+    pub(crate) fn contest(&self) -> Contest {
         Contest::new(&self.source, &Options::default()).expect("a contest")
     }
 
-    fn held(&self) -> Outcome {
-        self.contest().hold(&self.out(), &mut |_| Then::GoOn).expect("an outcome")
+    pub(crate) fn held(&self) -> Outcome {
+        self.contest().hold(&self.out(), Crew::UNSTOPPED, &mut |_| Then::GoOn).expect("an outcome")
     }
 
     fn refused(&self, options: &Options) -> String {
@@ -131,7 +131,7 @@ impl Place {
 }
 
 /// Names and bytes of all files of a folder but the lock.
-fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
+pub(crate) fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
     let mut all = Vec::new();
     for folder in [folder.to_owned(), folder.join("designs")] {
         for entry in fs::read_dir(folder).expect("a folder") {
@@ -146,7 +146,7 @@ fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
     all
 }
 
-fn marked() -> String {
+pub(crate) fn marked() -> String {
     let fixed = pid("fixed", "kp = 0.8\nki = 0.4\nkd = 0.16");
     format!("{LOOP}{MARKED}{fixed}{TUNING}{}", cases(""))
 }
@@ -156,7 +156,9 @@ fn a_contest_has_the_same_bytes_on_any_number_of_threads() {
     let of = |threads: usize| {
         let place = place(&marked());
         let contest = place.contest();
-        let held = in_threads(threads, || contest.hold(&place.out(), &mut |_| Then::GoOn));
+        let held = in_threads(threads, || {
+            contest.hold(&place.out(), Crew::UNSTOPPED, &mut |_| Then::GoOn)
+        });
         held.expect("threads").expect("an outcome");
         files(&place.out())
     };
@@ -188,14 +190,14 @@ fn a_contest_that_was_stopped_goes_on_with_the_same_bytes() {
     for stop_after in [2, 7, 11] {
         let place = place(&marked());
         let mut calls = 0;
-        let stopped = place.contest().hold(&place.out(), &mut |_| {
+        let stopped = place.contest().hold(&place.out(), Crew::UNSTOPPED, &mut |_| {
             calls += 1;
             if calls == stop_after { Then::Stop } else { Then::GoOn }
         });
         assert!(matches!(stopped, Err(TuneError::Stopped)), "{stop_after}");
         assert!(!place.out().join("contest.html").exists());
         let mut was_there = 0;
-        let went_on = place.contest().hold(&place.out(), &mut |progress| {
+        let went_on = place.contest().hold(&place.out(), Crew::UNSTOPPED, &mut |progress| {
             was_there += usize::from(progress.was_there);
             Then::GoOn
         });
@@ -215,7 +217,7 @@ fn designs_of_another_scenario_are_not_taken() {
     fs::write(&place.source.path, marked().replace("weight = 0.05", "weight = 0.5"))
         .expect("a file");
     let mut was_there = 0;
-    let again = place.contest().hold(&place.out(), &mut |progress| {
+    let again = place.contest().hold(&place.out(), Crew::UNSTOPPED, &mut |progress| {
         was_there += usize::from(progress.was_there);
         Then::GoOn
     });
@@ -513,7 +515,7 @@ fn a_start_that_does_not_fly_is_told_with_its_controller() {
         "set = [\"actuator.delay_samples=40\"]",
     );
     let place = place(&text);
-    let told = place.contest().hold(&place.out(), &mut |_| Then::GoOn);
+    let told = place.contest().hold(&place.out(), Crew::UNSTOPPED, &mut |_| Then::GoOn);
     let told = told.map(|_| ()).expect_err("a problem").to_string();
     assert!(told.starts_with("controller \"PID, marked\": the start has no cost"), "{told}");
 }

@@ -9,6 +9,7 @@ use fspid_campaign::{Campaign, Folder, shard};
 use fspid_study::{output, shell};
 use serde_json::{Value, json};
 
+use super::super::cluster::check_package;
 use crate::argument::count;
 use crate::exit::{Failure, note};
 
@@ -72,20 +73,7 @@ impl Cluster {
     /// By the driver of the Python package.
     fn driven(&self, engine: &str, place: &Path) -> Result<Asked, Failure> {
         let python = &self.python;
-        let install = format!("pip install 'fspid[{engine}]'");
-        let knows = Command::new(python)
-            .args(["-c", "import fspid.engines"])
-            .stderr(Stdio::null())
-            .status();
-        match knows {
-            Ok(status) if status.success() => {}
-            Ok(_) => {
-                return Err(Failure::input(format_args!(
-                    "{python} has no package fspid: {install}, or name a Python that has it with --python"
-                )));
-            }
-            Err(error) => return Err(Failure::input(format_args!("--python {python}: {error}"))),
-        }
+        check_package(python, engine)?;
         let mut driver = Command::new(python);
         driver.args(["-m", "fspid.engines", engine]).arg(place).stdout(Stdio::null());
         if let Some(address) = &self.address {

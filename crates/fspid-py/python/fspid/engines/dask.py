@@ -1,60 +1,83 @@
-"""Shards as tasks of Dask's scheduler, for sites that have one."""
+"""Tasks of Dask's scheduler, for sites that have one."""
 
 from __future__ import annotations
 
 import importlib
-import itertools
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..errors import Error, InputError
 from .job import Job
-from .progress import Progress
-
-if TYPE_CHECKING:
-    from ..campaign import Campaign
+from .window import Engine, Lost
 
 #: How long an address may take to answer at all, s.
 _ANSWERS_WITHIN_S = 5
 
-#: Tasks that are given out for each thread of a worker: one flies, one waits.
-_TASKS_A_THREAD = 2
 
-
-def fly(
-    campaign: Campaign,
-    *,
-    client: Any = None,
-    address: str | None = None,
-    window: int | None = None,
-    watch: Callable[[Progress], None] | None = None,
-) -> None:
-    """Fly what is missing of a campaign on Dask; merges nothing.
+class Dask(Engine):
+    """Dask's scheduler.
 
     Parameters
     ----------
-    campaign : Campaign
-        The campaign, planned in its folder.
     client : distributed.Client, optional
         A client that is there already.
     address : str, optional
         ``tcp://host:port`` of a scheduler in place of ``client``.
-    window : int, optional
-        How many shards are given out at a time; by default two for each thread of a worker.
-    watch : callable, optional
-        Is told of the progress after each shard.
     """
-    if client is not None:
-        _fly(client, campaign, window, watch)
-        return
-    if address is None:
-        raise InputError("Dask needs a client or the address of a scheduler")
-    try:
-        own = _distributed().Client(address, timeout=_ANSWERS_WITHIN_S, set_as_default=False)
-    except (OSError, ValueError) as reason:
-        raise InputError(f"there is no Dask scheduler at {address}: {reason}") from reason
-    with own:
-        _fly(own, campaign, window, watch)
+
+    def __init__(self, address: str | None = None, *, client: Any = None) -> None:
+        super().__init__()
+        if client is None and address is None:
+            raise InputError("Dask needs a client or the address of a scheduler")
+        self._distributed = _distributed()
+        self._client, self._address = client, address
+        self._own: Any = None
+
+    def __enter__(self) -> Dask:
+        if self._client is None:
+            try:
+                self._own = self._distributed.Client(self._address, timeout=_ANSWERS_WITHIN_S, set_as_default=False)
+            except (OSError, ValueError) as reason:
+                raise InputError(f"there is no Dask scheduler at {self._address}: {reason}") from reason
+            self._client = self._own
+        self._done = self._distributed.as_completed()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._own is not None:
+            self._own.close()
+
+    @property
+    def processors(self) -> int:
+        threads: dict[str, int] = self._client.nthreads()
+        return max(1, sum(threads.values()))
+
+    def share(self, job: Job) -> Any:
+        # What is scattered lies on workers; without one there is nowhere to lay it.
+        return self._client.scatter([job], broadcast=True)[0]
+
+    def _give(self, job: Any, unit: Any) -> Any:
+        task = self._client.submit(_flown, job, unit, pure=False, retries=0)
+        self._done.add(task)
+        return task
+
+    def _ready(self, waiting: list[Any]) -> list[Any]:
+        # It looks at signals ten times a second.
+        ready: list[Any] = self._done.next_batch()
+        return ready
+
+    def _answer(self, task: Any) -> Any:
+        try:
+            return task.result()
+        except self._distributed.scheduler.KilledWorker as lost:
+            # The scheduler gives up on a task whose workers went away a few times; a task is never given up here.
+            raise Lost from lost
+
+    def _cancel(self, waiting: list[Any]) -> None:
+        self._client.cancel(waiting)
+
+
+def _flown(job: Job, unit: Any) -> Any:
+    return job.fly(unit)
 
 
 def _distributed() -> Any:
@@ -62,45 +85,3 @@ def _distributed() -> Any:
         return importlib.import_module("distributed")
     except ImportError as missing:
         raise Error("this needs Dask: pip install 'fspid[dask]'") from missing
-
-
-def _fly(client: Any, campaign: Campaign, window: int | None, watch: Callable[[Progress], None] | None) -> None:
-    distributed = _distributed()
-    missing = campaign.missing()
-    progress = Progress(campaign.shards, campaign.shards - len(missing))
-    [job] = client.scatter([Job.of(campaign)], broadcast=True)
-    threads = sum(client.nthreads().values())
-    at_once = window or max(2, _TASKS_A_THREAD * threads)
-    queue = iter(missing)
-    numbers: dict[Any, int] = {}
-
-    def give(number: int) -> Any:
-        future = client.submit(_shard, job, number, pure=False, retries=0)
-        numbers[future.key] = number
-        return future
-
-    first = [give(number) for number in itertools.islice(queue, at_once)]
-    done = distributed.as_completed(first)
-    try:
-        for future in done:
-            number = numbers.pop(future.key)
-            try:
-                part = future.result()
-            except distributed.scheduler.KilledWorker:
-                # The scheduler gives up on a task whose workers went away a few times; a shard is never given up.
-                progress.lost += 1
-                done.add(give(number))
-                continue
-            campaign.put(number, part)
-            progress.flown += 1
-            if watch is not None:
-                watch(progress)
-            following = next(queue, None)
-            if following is not None:
-                done.add(give(following))
-    finally:
-        client.cancel(list(done.futures))
-
-
-def _shard(job: Job, number: int) -> bytes:
-    return job.fly(number)

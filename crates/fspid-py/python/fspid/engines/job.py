@@ -1,10 +1,14 @@
-"""What a worker needs to fly any shard of a campaign: the plan and the files that its scenario names."""
+"""What a worker needs to fly for somebody else: texts, and the files that a scenario names."""
 
 from __future__ import annotations
 
 import tempfile
+import threading
+from abc import ABC, abstractmethod
+from collections.abc import Iterable
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from .. import _core
 from ..errors import Error
@@ -17,15 +21,16 @@ class WrongBuild(Error):
     """A worker has another build of fspid than the driver, whose bits may differ."""
 
 
-class Job(NamedTuple):
-    """A campaign as it travels to workers, which need to see no folder of the driver.
+@dataclass(frozen=True)
+class Job(ABC):
+    """What is flown, as it travels to workers, which need to see no folder of the driver.
 
     Attributes
     ----------
     id : str
-        What tells the campaign from every other.
-    plan : str
-        The plan, as ``campaign.json`` has it.
+        What tells it from every other.
+    text : str
+        The plan of a campaign as ``campaign.json`` has it, or a scenario.
     files : tuple of (str, bytes)
         Files that the scenario names.
     build : str
@@ -33,31 +38,90 @@ class Job(NamedTuple):
     """
 
     id: str
-    plan: str
+    text: str
     files: tuple[tuple[str, bytes], ...]
     build: str
 
-    @classmethod
-    def of(cls, campaign: Campaign) -> Job:
-        """The job of a campaign."""
-        folder = campaign._core.scenario_folder
-        files = tuple((name, (Path(folder) / name).read_bytes()) for name in campaign._core.files)
-        return cls(campaign.id, campaign._core.plan_text, files, build())
-
-    def fly(self, number: int) -> bytes:
-        """Fly a shard here, on one thread, and answer its part: a whole Parquet file."""
+    def fly(self, unit: Any) -> Any:
+        """Fly a part of it here, on one thread."""
         if self.build != build():
             raise WrongBuild(
                 f"this worker has fspid {_core.VERSION} of another build than the driver, so that bits may differ;"
                 " install the same wheel everywhere"
             )
-        core = _unpacked(self)
-        core.shard(number, 1)
-        path = Path(core.part(number))
+        # Held until it has flown: another thread may be given another job.
+        here = _Here.of(self)
+        return self._flown(here.flyer, unit)
+
+    @abstractmethod
+    def _unpacked(self, root: Path, scenario: Path) -> Any:
+        """Who flies, of the texts in a folder, in which the scenario's own lies."""
+
+    @abstractmethod
+    def _flown(self, flyer: Any, unit: Any) -> Any: ...
+
+
+class ShardJob(Job):
+    """A campaign: a unit is the number of a shard, its answer the shard's whole Parquet file."""
+
+    @classmethod
+    def of(cls, campaign: Campaign) -> ShardJob:
+        """The job of a campaign."""
+        core = campaign._core
+        return cls(campaign.id, core.plan_text, _files(core.scenario_folder, core.files), build())
+
+    def _unpacked(self, root: Path, scenario: Path) -> _core.Campaign:
+        campaign = root / "campaign"
+        (campaign / "shards").mkdir(parents=True)
+        (campaign / "campaign.json").write_text(_moved(self.text), encoding="utf-8")
+        return _core.Campaign.planned(campaign)
+
+    def _flown(self, flyer: _core.Campaign, unit: int) -> bytes:
+        flyer.shard(unit, 1)
+        path = Path(flyer.part(unit))
         try:
             return path.read_bytes()
         finally:
             path.unlink(missing_ok=True)
+
+
+@dataclass(frozen=True)
+class FlightsJob(Job):
+    """A tuning or a contest: a unit is an order with the flights of it that are wanted, the first and that behind the last.
+
+    Attributes
+    ----------
+    changes : tuple of str
+        Changes of the scenario, as ``--set`` takes them.
+    """
+
+    changes: tuple[str, ...]
+
+    @classmethod
+    def of(cls, scenario: _core.Scenario) -> FlightsJob:
+        """The job of a scenario."""
+        import hashlib
+
+        files, changes = _files(scenario.folder, scenario.files()), tuple(scenario.overrides)
+        # Files of cases too, which the digest of the scenario leaves out.
+        name = hashlib.sha256(repr((scenario.text, changes, files)).encode()).hexdigest()
+        return cls(name, scenario.text, files, build(), changes)
+
+    def _unpacked(self, root: Path, scenario: Path) -> _core.Worker:
+        path = scenario / "scenario.toml"
+        path.write_text(self.text, encoding="utf-8")
+        return _core.Worker(path, list(self.changes))
+
+    def _flown(self, flyer: _core.Worker, unit: tuple[str, int, int]) -> tuple[float, str]:
+        import time
+
+        begun = time.perf_counter()
+        answer = flyer.fly(*unit)
+        return time.perf_counter() - begun, answer
+
+
+def _files(folder: str | Path | None, names: Iterable[str]) -> tuple[tuple[str, bytes], ...]:
+    return tuple((name, (Path(folder or ".") / name).read_bytes()) for name in names)
 
 
 def build() -> str:
@@ -72,32 +136,36 @@ def build() -> str:
 
 _build: str | None = None
 
-#: The campaign that this process flies, and the folder in which it is unpacked: shards come one after the other.
-_here: tuple[str, tempfile.TemporaryDirectory[str], _core.Campaign] | None = None
-
 #: How deep a scenario lies, so that ``../`` in names of files stays within the folder.
 _DEPTH = 8
 
 
-def _unpacked(job: Job) -> _core.Campaign:
-    global _here
-    if _here is not None and _here[0] == job.id:
-        return _here[2]
-    root = tempfile.TemporaryDirectory(prefix="fspid-")
-    scenario = Path(root.name).joinpath(*["scenario"] * _DEPTH)
-    campaign = Path(root.name) / "campaign"
-    scenario.mkdir(parents=True)
-    (campaign / "shards").mkdir(parents=True)
-    for name, data in job.files:
-        place = (scenario / name).resolve()
-        # What lies elsewhere has to be there already; the campaign's digest tells whether it is the same.
-        if place.is_relative_to(Path(root.name).resolve()):
-            place.parent.mkdir(parents=True, exist_ok=True)
-            place.write_bytes(data)
-    (campaign / "campaign.json").write_text(_moved(job.plan), encoding="utf-8")
-    core = _core.Campaign.planned(campaign)
-    _here = (job.id, root, core)
-    return core
+class _Here:
+    """The job that this process flies, unpacked: units come one after the other, and threads share it."""
+
+    _now: ClassVar[_Here | None] = None
+    _lock: ClassVar[threading.Lock] = threading.Lock()
+
+    def __init__(self, job: Job) -> None:
+        self.job = job
+        self._root = tempfile.TemporaryDirectory(prefix="fspid-")
+        root = Path(self._root.name)
+        scenario = root.joinpath(*["scenario"] * _DEPTH)
+        scenario.mkdir(parents=True)
+        for name, data in job.files:
+            place = (scenario / name).resolve()
+            # What lies elsewhere has to be there already; a digest tells whether it is the same.
+            if place.is_relative_to(root.resolve()):
+                place.parent.mkdir(parents=True, exist_ok=True)
+                place.write_bytes(data)
+        self.flyer: Any = job._unpacked(root, scenario)
+
+    @classmethod
+    def of(cls, job: Job) -> _Here:
+        with cls._lock:
+            if cls._now is None or cls._now.job.id != job.id or type(cls._now.job) is not type(job):
+                cls._now = cls(job)
+            return cls._now
 
 
 def _moved(plan: str) -> str:

@@ -1,4 +1,4 @@
-"""How far a campaign on an engine is."""
+"""How far a campaign, a tuning or a contest on an engine is."""
 
 from __future__ import annotations
 
@@ -52,6 +52,32 @@ class Progress:
             words.append(f"{self.shards_s:.2g} a second")
             if not self.done:
                 words.append(f"about {self.left_s:.0f} s left")
+        if self.lost:
+            words.append(f"{self.lost} given out again")
+        return ", ".join(words)
+
+
+class SearchProgress:
+    """Candidates of a search that are flown; of a contest, also which of its searches.
+
+    Attributes
+    ----------
+    candidates : tuple of int
+        Candidates flown, the start not counted, and how many there will be.
+    search : tuple of int
+        Number of the search, from 1, and how many there are.
+    lost : int
+        How often a task was given out again because who flew it went away, as far as the engine tells.
+    """
+
+    def __init__(self, candidates: tuple[int, int], search: tuple[int, int] = (1, 1), lost: int = 0) -> None:
+        self.candidates = candidates
+        self.search = search
+        self.lost = lost
+
+    def __str__(self) -> str:
+        words = [f"tuning {self.search[0]} of {self.search[1]}"] if self.search[1] > 1 else []
+        words.append(f"{self.candidates[0]} of {self.candidates[1]} candidates")
         if self.lost:
             words.append(f"{self.lost} given out again")
         return ", ".join(words)

@@ -1,56 +1,80 @@
-"""Shards as tasks of Ray: a bounded window of them, unlimited retries for lost workers, none for wrong answers."""
+"""Tasks of Ray: unlimited retries for lost workers, none for wrong answers."""
 
 from __future__ import annotations
 
 import importlib
 import socket
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..errors import Error, InputError
 from .job import Job
-from .progress import Progress
-
-if TYPE_CHECKING:
-    from ..campaign import Campaign
+from .window import Engine
 
 #: How long an address may take to answer at all, s.
 _ANSWERS_WITHIN_S = 5.0
 
-#: Tasks that are given out for each processor: one flies, one waits.
-_TASKS_A_PROCESSOR = 2
+#: How often a driver that waits looks whether Ctrl-C was pressed, s; Ray itself looks once a second.
+_POLL_S = 0.1
 
 
-def fly(
-    campaign: Campaign,
-    *,
-    address: str | None = None,
-    window: int | None = None,
-    watch: Callable[[Progress], None] | None = None,
-) -> None:
-    """Fly what is missing of a campaign on Ray; merges nothing.
+class Ray(Engine):
+    """Ray, which is left as it was found.
 
     Parameters
     ----------
-    campaign : Campaign
-        The campaign, planned in its folder.
     address : str, optional
         ``host:port`` of a cluster, ``ray://host:port`` of one that is reached from outside, or ``auto``; a Ray of this
         machine is started if left out and none runs.
-    window : int, optional
-        How many shards are given out at a time; by default two for each processor.
-    watch : callable, optional
-        Is told of the progress after each shard.
     """
-    ray = _ray()
-    began = not ray.is_initialized()
-    if began:
-        _begin(ray, address)
-    try:
-        _fly(ray, campaign, window, watch)
-    finally:
-        if began:
-            ray.shutdown()
+
+    def __init__(self, address: str | None = None) -> None:
+        super().__init__()
+        self._ray = _ray()
+        self._address = address
+        self._began = False
+
+    def __enter__(self) -> Ray:
+        if self._address is not None and self._address not in ("auto", "local"):
+            _reach(self._address)
+        self._began = not self._ray.is_initialized()
+        if self._began:
+            _begin(self._ray, self._address)
+        # Who flies may go away as often as it likes; what cannot be flown ends all.
+        self._task = self._ray.remote(num_cpus=1, max_retries=-1, retry_exceptions=False)(_flown)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._began:
+            self._ray.shutdown()
+
+    @property
+    def processors(self) -> int:
+        return max(1, int(self._ray.cluster_resources().get("CPU", 1.0)))
+
+    def share(self, job: Job) -> Any:
+        return self._ray.put(job)
+
+    def _give(self, job: Any, unit: Any) -> Any:
+        return self._task.remote(job, unit)
+
+    def _ready(self, waiting: list[Any]) -> list[Any]:
+        ready: list[Any] = self._ray.wait(waiting, num_returns=1, timeout=_POLL_S)[0]
+        return ready
+
+    def _answer(self, task: Any) -> Any:
+        try:
+            return self._ray.get(task)
+        except self._ray.exceptions.RayTaskError as error:
+            cause = getattr(error, "cause", None)
+            raise cause if isinstance(cause, Error) else Error(f"a worker could not fly: {error}") from error
+
+    def _cancel(self, waiting: list[Any]) -> None:
+        for task in waiting:
+            self._ray.cancel(task, force=True)
+
+
+def _flown(job: Job, unit: Any) -> Any:
+    return job.fly(unit)
 
 
 def _ray() -> Any:
@@ -64,8 +88,6 @@ def _ray() -> Any:
 
 
 def _begin(ray: Any, address: str | None) -> None:
-    if address is not None and address not in ("auto", "local"):
-        _reach(address)
     try:
         ray.init(address=address, log_to_driver=False, logging_level="error", include_dashboard=False)
     except ValueError:
@@ -84,42 +106,3 @@ def _reach(address: str) -> None:
         socket.create_connection((host, int(port)), timeout=_ANSWERS_WITHIN_S).close()
     except (OSError, OverflowError) as reason:
         raise InputError(f"there is no Ray cluster at {address}: {reason}") from reason
-
-
-def _fly(ray: Any, campaign: Campaign, window: int | None, watch: Callable[[Progress], None] | None) -> None:
-    missing = campaign.missing()
-    progress = Progress(campaign.shards, campaign.shards - len(missing))
-    # Who flies a shard may go away as often as it likes; a shard that cannot be flown stops the campaign.
-    task = ray.remote(num_cpus=1, max_retries=-1, retry_exceptions=False)(_shard)
-    job = ray.put(Job.of(campaign))
-    at_once = window or max(2, int(_TASKS_A_PROCESSOR * ray.cluster_resources().get("CPU", 1.0)))
-    waiting: dict[Any, int] = {}
-    queue = iter(missing)
-    try:
-        while True:
-            while len(waiting) < at_once and (number := next(queue, None)) is not None:
-                waiting[task.remote(job, number)] = number
-            if not waiting:
-                return
-            for done in ray.wait(list(waiting), num_returns=1)[0]:
-                campaign.put(waiting.pop(done), _answer(ray, done))
-                progress.flown += 1
-                if watch is not None:
-                    watch(progress)
-    finally:
-        for task_ in waiting:
-            ray.cancel(task_, force=True)
-
-
-def _shard(job: Job, number: int) -> bytes:
-    return job.fly(number)
-
-
-def _answer(ray: Any, done: Any) -> bytes:
-    """The part that a task answers; what went wrong in it goes on as it was raised there."""
-    try:
-        part: bytes = ray.get(done)
-    except ray.exceptions.RayTaskError as error:
-        cause = getattr(error, "cause", None)
-        raise cause if isinstance(cause, Error) else Error(f"a worker could not fly its shard: {error}") from error
-    return part
