@@ -11,7 +11,7 @@ use crate::error::CampaignError;
 use crate::folder::Folder;
 use crate::plan::Plan;
 use crate::range::Range;
-use crate::table::{ColumnTable, Reader, Writer};
+use crate::table::{ColumnTable, Reader, Schema, Writer};
 
 /// Key of the metadata that names the campaign.
 pub const CAMPAIGN_KEY: &str = "fspid.campaign";
@@ -99,7 +99,7 @@ fn is_whole(path: &Path, campaign: &Campaign, range: Range) -> bool {
     };
     let rows = range.end.saturating_sub(range.first) * campaign.rows().of_run() as u64;
     part.range == range
-        && part.refusal(campaign).is_none()
+        && part.refusal(campaign.plan(), campaign.rows().schema()).is_none()
         && part.reader.rows() as u64 == rows
         && part.reader.verify().is_ok()
 }
@@ -160,15 +160,14 @@ impl Part {
     }
 
     /// Why this is no part of a campaign, if it is none.
-    pub(crate) fn refusal(&self, campaign: &Campaign) -> Option<String> {
-        let plan = campaign.plan();
+    pub(crate) fn refusal(&self, plan: &Plan, schema: &Schema) -> Option<String> {
         for (key, value) in provenance(plan) {
             let found = self.reader.metadata_value(&key).unwrap_or("nothing");
             if found != value {
                 return Some(format!("{key} is {found}; this campaign's is {value}"));
             }
         }
-        if self.reader.schema() != campaign.rows().schema() {
+        if **self.reader.schema() != *schema {
             return Some("its columns are others".to_owned());
         }
         if self.range.end > plan.runs {
