@@ -5,6 +5,7 @@ use std::io::BufWriter;
 use std::path::Path;
 
 use fspid_study::output;
+use rayon::prelude::*;
 
 use crate::campaign::{Campaign, Progress};
 use crate::error::CampaignError;
@@ -58,7 +59,7 @@ pub fn fly(
     Ok(Done::Flown)
 }
 
-/// Shards whose parts are not there, or not whole.
+/// Shards whose parts are not there, or not whole. Every cell is read, on the threads of the pool that this is called in.
 #[must_use]
 pub fn missing(folder: &Folder, campaign: &Campaign) -> Vec<u64> {
     let plan = campaign.plan();
@@ -66,7 +67,7 @@ pub fn missing(folder: &Folder, campaign: &Campaign) -> Vec<u64> {
         plan.shard(*number)
             .is_some_and(|range| is_whole(&folder.shard_path(range), campaign, range))
     };
-    (0..plan.shards()).filter(|number| !is_there(number)).collect()
+    (0..plan.shards()).into_par_iter().filter(|number| !is_there(number)).collect()
 }
 
 /// Takes in the part of a shard that was flown elsewhere, if it is what it should be in every cell.

@@ -78,7 +78,8 @@ class Campaign:
         watch : callable, optional
             Is told of the progress on an engine after each shard.
         **options
-            What the engine takes: ``address``, ``window``, ``client``.
+            What the engine takes: ``address``, ``window``, ``client``; ``store`` such as ``s3://bucket/prefix``, where
+            workers then put parts by themselves, with ``store_options`` for fsspec.
 
         Returns
         -------

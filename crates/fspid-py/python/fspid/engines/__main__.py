@@ -16,6 +16,7 @@ def main() -> int:
     parser.add_argument("engine", choices=NAMES, help="who flies")
     parser.add_argument("folder", help="the campaign's folder, in which it is planned")
     parser.add_argument("--address", help="where the cluster is")
+    parser.add_argument("--store", help="where workers put parts: s3://BUCKET/PREFIX, gs://…, file://…")
     parser.add_argument("--quiet", action="store_true", help="say nothing while flying")
     asked = parser.parse_args()
 
@@ -26,7 +27,7 @@ def main() -> int:
     quiet = asked.quiet or not sys.stderr.isatty()
     try:
         campaign = Campaign.from_folder(asked.folder)
-        fly(campaign, asked.engine, address=asked.address, watch=None if quiet else watch)
+        fly(campaign, asked.engine, store=asked.store, address=asked.address, watch=None if quiet else watch)
         print(campaign.merge())
     except FileError as error:
         print(f"fspid: {error}", file=sys.stderr)

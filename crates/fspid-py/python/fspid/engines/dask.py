@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from ..errors import Error, InputError
 from .job import Job
 from .progress import Progress
+from .store import Flight, FolderParts, Receipt, Store, StoreParts
 
 if TYPE_CHECKING:
     from ..campaign import Campaign
@@ -23,6 +24,7 @@ _TASKS_A_THREAD = 2
 
 def fly(
     campaign: Campaign,
+    parts: FolderParts | StoreParts,
     *,
     client: Any = None,
     address: str | None = None,
@@ -35,6 +37,8 @@ def fly(
     ----------
     campaign : Campaign
         The campaign, planned in its folder.
+    parts : FolderParts or StoreParts
+        Where parts are, and go.
     client : distributed.Client, optional
         A client that is there already.
     address : str, optional
@@ -45,7 +49,7 @@ def fly(
         Is told of the progress after each shard.
     """
     if client is not None:
-        _fly(client, campaign, window, watch)
+        _fly(client, Flight(campaign, parts, window, watch))
         return
     if address is None:
         raise InputError("Dask needs a client or the address of a scheduler")
@@ -54,7 +58,7 @@ def fly(
     except (OSError, ValueError) as reason:
         raise InputError(f"there is no Dask scheduler at {address}: {reason}") from reason
     with own:
-        _fly(own, campaign, window, watch)
+        _fly(own, Flight(campaign, parts, window, watch))
 
 
 def _distributed() -> Any:
@@ -64,9 +68,10 @@ def _distributed() -> Any:
         raise Error("this needs Dask: pip install 'fspid[dask]'") from missing
 
 
-def _fly(client: Any, campaign: Campaign, window: int | None, watch: Callable[[Progress], None] | None) -> None:
+def _fly(client: Any, asked: Flight) -> None:
+    campaign, parts, window, watch = asked
     distributed = _distributed()
-    missing = campaign.missing()
+    missing = parts.missing()
     progress = Progress(campaign.shards, campaign.shards - len(missing))
     [job] = client.scatter([Job.of(campaign)], broadcast=True)
     threads = sum(client.nthreads().values())
@@ -75,7 +80,7 @@ def _fly(client: Any, campaign: Campaign, window: int | None, watch: Callable[[P
     numbers: dict[Any, int] = {}
 
     def give(number: int) -> Any:
-        future = client.submit(_shard, job, number, pure=False, retries=0)
+        future = client.submit(_shard, job, number, parts.store, pure=False, retries=0)
         numbers[future.key] = number
         return future
 
@@ -85,13 +90,13 @@ def _fly(client: Any, campaign: Campaign, window: int | None, watch: Callable[[P
         for future in done:
             number = numbers.pop(future.key)
             try:
-                part = future.result()
+                answer = future.result()
             except distributed.scheduler.KilledWorker:
                 # The scheduler gives up on a task whose workers went away a few times; a shard is never given up.
                 progress.lost += 1
                 done.add(give(number))
                 continue
-            campaign.put(number, part)
+            parts.take(number, answer)
             progress.flown += 1
             if watch is not None:
                 watch(progress)
@@ -102,5 +107,5 @@ def _fly(client: Any, campaign: Campaign, window: int | None, watch: Callable[[P
         client.cancel(list(done.futures))
 
 
-def _shard(job: Job, number: int) -> bytes:
-    return job.fly(number)
+def _shard(job: Job, number: int, store: Store | None) -> bytes | Receipt:
+    return job.do(number, store)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from .. import _core
 from ..errors import Error
+from .store import Receipt, Store
 
 if TYPE_CHECKING:
     from ..campaign import Campaign
@@ -58,6 +59,16 @@ class Job(NamedTuple):
             return path.read_bytes()
         finally:
             path.unlink(missing_ok=True)
+
+
+    def put(self, number: int, store: Store) -> Receipt:
+        """Fly a shard here and put its part into a store."""
+        part = self.fly(number)
+        return store.put(Path(_unpacked(self).part(number)).name, part)
+
+    def do(self, number: int, store: Store | None) -> bytes | Receipt:
+        """Fly a shard; answers its part, or what was put into a store."""
+        return self.fly(number) if store is None else self.put(number, store)
 
 
 def build() -> str:

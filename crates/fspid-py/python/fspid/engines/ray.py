@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from ..errors import Error, InputError
 from .job import Job
 from .progress import Progress
+from .store import Flight, FolderParts, Receipt, Store, StoreParts
 
 if TYPE_CHECKING:
     from ..campaign import Campaign
@@ -17,12 +18,16 @@ if TYPE_CHECKING:
 #: How long an address may take to answer at all, s.
 _ANSWERS_WITHIN_S = 5.0
 
+#: How often the driver looks for tasks that are done, where many are waiting, s.
+_LOOK_EVERY_S = 0.1
+
 #: Tasks that are given out for each processor: one flies, one waits.
 _TASKS_A_PROCESSOR = 2
 
 
 def fly(
     campaign: Campaign,
+    parts: FolderParts | StoreParts,
     *,
     address: str | None = None,
     window: int | None = None,
@@ -34,6 +39,8 @@ def fly(
     ----------
     campaign : Campaign
         The campaign, planned in its folder.
+    parts : FolderParts or StoreParts
+        Where parts are, and go.
     address : str, optional
         ``host:port`` of a cluster, ``ray://host:port`` of one that is reached from outside, or ``auto``; a Ray of this
         machine is started if left out and none runs.
@@ -47,7 +54,7 @@ def fly(
     if began:
         _begin(ray, address)
     try:
-        _fly(ray, campaign, window, watch)
+        _fly(ray, Flight(campaign, parts, window, watch))
     finally:
         if began:
             ray.shutdown()
@@ -86,8 +93,9 @@ def _reach(address: str) -> None:
         raise InputError(f"there is no Ray cluster at {address}: {reason}") from reason
 
 
-def _fly(ray: Any, campaign: Campaign, window: int | None, watch: Callable[[Progress], None] | None) -> None:
-    missing = campaign.missing()
+def _fly(ray: Any, asked: Flight) -> None:
+    campaign, parts, window, watch = asked
+    missing = parts.missing()
     progress = Progress(campaign.shards, campaign.shards - len(missing))
     # Who flies a shard may go away as often as it likes; a shard that cannot be flown stops the campaign.
     task = ray.remote(num_cpus=1, max_retries=-1, retry_exceptions=False)(_shard)
@@ -98,11 +106,11 @@ def _fly(ray: Any, campaign: Campaign, window: int | None, watch: Callable[[Prog
     try:
         while True:
             while len(waiting) < at_once and (number := next(queue, None)) is not None:
-                waiting[task.remote(job, number)] = number
+                waiting[task.remote(job, number, parts.store)] = number
             if not waiting:
                 return
-            for done in ray.wait(list(waiting), num_returns=1)[0]:
-                campaign.put(waiting.pop(done), _answer(ray, done))
+            for done in _some(ray, list(waiting)):
+                parts.take(waiting.pop(done), _answer(ray, done))
                 progress.flown += 1
                 if watch is not None:
                     watch(progress)
@@ -111,15 +119,24 @@ def _fly(ray: Any, campaign: Campaign, window: int | None, watch: Callable[[Prog
             ray.cancel(task_, force=True)
 
 
-def _shard(job: Job, number: int) -> bytes:
-    return job.fly(number)
+def _some(ray: Any, waiting: list[Any]) -> list[Any]:
+    """What is done, one at least. Asking costs as much as there is waiting: so for an eighth of it, or what a tenth of a
+    second brings."""
+    done: list[Any] = []
+    while not done:
+        done = ray.wait(waiting, num_returns=max(1, len(waiting) // 8), timeout=_LOOK_EVERY_S)[0]
+    return done
 
 
-def _answer(ray: Any, done: Any) -> bytes:
-    """The part that a task answers; what went wrong in it goes on as it was raised there."""
+def _shard(job: Job, number: int, store: Store | None) -> bytes | Receipt:
+    return job.do(number, store)
+
+
+def _answer(ray: Any, done: Any) -> bytes | Receipt:
+    """What a task answers; what went wrong in it goes on as it was raised there."""
     try:
-        part: bytes = ray.get(done)
+        answer: bytes | Receipt = ray.get(done)
     except ray.exceptions.RayTaskError as error:
         cause = getattr(error, "cause", None)
         raise cause if isinstance(cause, Error) else Error(f"a worker could not fly its shard: {error}") from error
-    return part
+    return answer
