@@ -67,12 +67,15 @@ impl Flown {
 #[test]
 fn parts_say_what_the_merged_file_says() {
     let flown = flown(RUNS, 20);
-    let (parts, mut merged) =
-        (flown.of_parts(SummarySettings::default()), flown.merged(SummarySettings::default()));
-    assert_eq!(parts.head.shards.map(|it| (it.found, it.of)), Some((5, 5)));
-    assert_eq!(text(&parts), text(&merged));
-    merged.head.shards = parts.head.shards;
-    assert_eq!(parts, merged);
+    // All columns at once, and where they do not fit together, one after the other.
+    for exact_rows in [1 << 20, 2 * RUNS] {
+        let settings = SummarySettings { exact_rows, ..SKETCHED };
+        let (parts, mut merged) = (flown.of_parts(settings), flown.merged(settings));
+        assert_eq!(parts.head.shards.map(|it| (it.found, it.of)), Some((5, 5)));
+        assert_eq!(text(&parts), text(&merged));
+        merged.head.shards = parts.head.shards;
+        assert_eq!(parts, merged);
+    }
     let (parts, mut merged) = (flown.of_parts(SKETCHED), flown.merged(SKETCHED));
     assert_eq!(parts.head.digest, None);
     (merged.head.shards, merged.head.digest) = (parts.head.shards, None);

@@ -15,6 +15,7 @@ use super::sensitivity::{Factors, Selections};
 use super::source::Source;
 use super::{SummaryError, measures, requirements};
 use crate::sample::Sampling;
+use crate::statistics::Sketch;
 use crate::table::Column;
 
 /// What columns of numbers say of one controller, as they are read.
@@ -37,9 +38,10 @@ impl Summary {
     pub fn of(path: &Path, settings: SummarySettings) -> Result<Self, SummaryError> {
         Probability::of(0, 1, settings.confidence)?;
         let source = Source::open(path, settings)?;
-        let controllers = match source.is_exact() {
-            true => exact(&source)?,
-            false => from_sketches(&source)?,
+        let controllers = match (source.is_exact(), source.is_small()) {
+            (true, false) => by_columns(&source)?,
+            (true, true) => by_pieces::<Vec<f64>>(&source)?,
+            (false, _) => by_pieces::<Sketch>(&source)?,
         };
         let notes = notes(&source, &controllers);
         Ok(Self { head: source.head, controllers, notes })
@@ -47,7 +49,7 @@ impl Summary {
 }
 
 /// Column by column, with all values of one.
-fn exact(source: &Source) -> Result<Vec<ControllerSummary>, SummaryError> {
+fn by_columns(source: &Source) -> Result<Vec<ControllerSummary>, SummaryError> {
     let flights = flights::read(source)?;
     let asked = source.requirements();
     let tallies = asked.iter().map(|asked| requirements::tallies(source, asked));
@@ -58,9 +60,10 @@ fn exact(source: &Source) -> Result<Vec<ControllerSummary>, SummaryError> {
     controllers(source, flights, requirements::summaries(source, tallies)?, columns)
 }
 
-/// In one pass, with what adds up in place of the values.
-fn from_sketches(source: &Source) -> Result<Vec<ControllerSummary>, SummaryError> {
-    let partial = Partial::of_pieces(&source.pieces()).unwrap_or_else(|| Partial::of(source))?;
+/// In one pass, with what adds up.
+fn by_pieces<F: Finite>(source: &Source) -> Result<Vec<ControllerSummary>, SummaryError> {
+    let partial =
+        Partial::<F>::of_pieces(&source.pieces()).unwrap_or_else(|| Partial::of(source))?;
     let Partial { flights, tallies, cells, factors } = partial;
     let factors = factors.of_runs(source.head.runs);
     let columns = columns(source, &flights, &factors, cells.into_iter().map(Ok))?;

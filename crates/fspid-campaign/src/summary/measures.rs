@@ -22,6 +22,9 @@ const FENCE: f64 = 5.0;
 pub(super) trait Finite: Default + Send {
     fn add(&mut self, value: f64);
 
+    /// With those of later runs.
+    fn merge(&mut self, later: Self);
+
     /// What they say.
     fn said(self, confidence: f64) -> Result<Said, StatisticsError>;
 }
@@ -54,19 +57,17 @@ pub(super) fn read<F: Finite>(source: &Source, name: &str) -> Result<Vec<Cells<F
     Ok(cells)
 }
 
-impl Cells<Sketch> {
+impl<F: Finite> Cells<F> {
     /// With what later rows say.
     pub(super) fn merge(&mut self, later: Self) {
-        self.finite.merge(&later.finite);
+        self.finite.merge(later.finite);
         self.missing += later.missing;
         self.not_finite += later.not_finite;
         self.first.extend(later.first);
         later.lowest.into_iter().for_each(|found| self.keep_low(found));
         later.highest.into_iter().for_each(|found| self.keep_high(found));
     }
-}
 
-impl<F: Finite> Cells<F> {
     fn add(&mut self, run: u64, value: Option<f64>, first_runs: usize) {
         let finite = value.filter(|value| value.is_finite());
         if self.first.len() < first_runs {
@@ -130,6 +131,10 @@ impl Finite for Vec<f64> {
         self.push(value);
     }
 
+    fn merge(&mut self, later: Self) {
+        self.extend(later);
+    }
+
     fn said(self, confidence: f64) -> Result<Said, StatisticsError> {
         let moments = Moments::of(&self);
         Said::of(&Sorted::from(self), moments, confidence, |_| None)
@@ -139,6 +144,10 @@ impl Finite for Vec<f64> {
 impl Finite for Sketch {
     fn add(&mut self, value: f64) {
         Self::add(self, value);
+    }
+
+    fn merge(&mut self, later: Self) {
+        Self::merge(self, &later);
     }
 
     fn said(self, confidence: f64) -> Result<Said, StatisticsError> {

@@ -1,6 +1,6 @@
 //! What a piece of a campaign says, such that pieces add up: merging is associative in every bit.
 //!
-//! Counts are whole numbers, quantiles come from counts on a fixed grid, moments from exact sums, and what is named (the
+//! Values follow each other, or where they are too many: counts are whole numbers, quantiles come from counts on a fixed grid, moments from exact sums, and what is named (the
 //! worst, the highest, the first) is chosen by value, then by run. Pieces are merged in the order of their runs; how they
 //! are grouped, and by how many threads, does not show.
 
@@ -8,26 +8,25 @@ use rayon::prelude::*;
 
 use super::SummaryError;
 use super::flights::{self, Flights};
-use super::measures::{self, Cells};
+use super::measures::{self, Cells, Finite};
 use super::requirements::{self, Tally};
 use super::sensitivity::Factors;
 use super::source::{Piece, Source};
-use crate::statistics::Sketch;
 use crate::table::Column;
 
 /// What some of the rows say.
-pub(super) struct Partial {
+pub(super) struct Partial<F> {
     /// One a controller.
     pub(super) flights: Vec<Flights>,
     /// For each requirement, one a controller.
     pub(super) tallies: Vec<Vec<Tally>>,
     /// For each column of numbers, one a controller.
-    pub(super) cells: Vec<Vec<Cells<Sketch>>>,
+    pub(super) cells: Vec<Vec<Cells<F>>>,
     pub(super) factors: Factors,
 }
 
-impl Partial {
-    /// Of all rows of a source, with sketches in place of the values themselves.
+impl<F: Finite> Partial<F> {
+    /// Of all rows of a source.
     pub(super) fn of(source: &Source) -> Result<Self, SummaryError> {
         let asked = source.requirements();
         let tallies = asked.iter().map(|asked| requirements::tallies(source, asked));

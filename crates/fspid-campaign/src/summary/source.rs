@@ -32,6 +32,7 @@ pub(super) struct Source {
     /// Parts, where they are read one by one.
     parts: Vec<Seen>,
     exact: bool,
+    small: bool,
 }
 
 /// A requirement as its columns describe it.
@@ -69,6 +70,11 @@ impl Source {
         let exact = head.rows <= settings.exact_rows;
         if exact || head.shards.is_none() {
             head.digest = Some(files.verify()?);
+        }
+        // A part is opened once for all its columns rather than once for each, where all of them fit.
+        let cells = head.rows.saturating_mul(files.schema().columns().len() as u64);
+        let small = !parts.is_empty() && cells <= settings.exact_rows;
+        if exact && !small {
             parts.clear();
         }
         head.controllers = controllers(files.first())?;
@@ -77,7 +83,7 @@ impl Source {
             return Err(refusal(files.path(), NotMerged::Rows { found, runs, controllers }));
         }
         let runs = files.rows() / head.controllers.len().max(1);
-        Ok(Self { files, head, runs, first_runs: runs.min(SENSITIVITY_RUNS), parts, exact })
+        Ok(Self { files, head, runs, first_runs: runs.min(SENSITIVITY_RUNS), parts, exact, small })
     }
 
     /// Parts to be read one by one; none where all rows are read together.
@@ -92,6 +98,11 @@ impl Source {
     /// True where the values themselves are kept, false where they are too many.
     pub(super) fn is_exact(&self) -> bool {
         self.exact
+    }
+
+    /// True where the values of all columns of all parts fit.
+    pub(super) fn is_small(&self) -> bool {
+        self.small
     }
 
     /// The run of a row.
@@ -135,7 +146,7 @@ impl Piece<'_> {
         files.verify()?;
         let runs = files.rows() / self.head.controllers.len().max(1);
         let (head, first_runs) = (self.head.clone(), self.first_runs);
-        Ok(Source { files, head, runs, first_runs, parts: Vec::new(), exact: false })
+        Ok(Source { files, head, runs, first_runs, parts: Vec::new(), exact: false, small: false })
     }
 }
 
