@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Stores of parts against a server of S3 on this machine (moto), which is too heavy for every check: `stores.sh PYTHON` with a
-# Python that has the wheel of fspid. Installs beside it, 110 MB.
+# Python that has the wheel of fspid. Installs some 290 MB into a folder that goes again.
 set -euo pipefail
 cd "$(dirname "$0")/../../crates/fspid-py"
 python="$(command -v "${1:-python3}")"

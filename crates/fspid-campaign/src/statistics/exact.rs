@@ -19,7 +19,7 @@ const OF_SQUARES: usize = (2 * (1024 + 1074) + 40) / DIGIT_BITS + 2;
 /// # Source
 /// U. Kulisch, *Very fast and exact accumulation of products*, Computing 91 (2011): a register as long as the range of
 /// the doubles.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct ExactSums {
     count: u64,
     values: Digits<OF_VALUES>,
@@ -32,12 +32,6 @@ pub(super) struct MeanAndDeviation {
     pub(super) mean: f64,
     /// `None` for a single value.
     pub(super) deviation: Option<f64>,
-}
-
-impl Default for ExactSums {
-    fn default() -> Self {
-        Self { count: 0, values: Digits::default(), squares: Digits::default() }
-    }
 }
 
 impl ExactSums {
@@ -262,9 +256,8 @@ mod tests {
 
     #[test]
     fn digits_that_are_full_are_carried() {
-        let mut digits = Digits::<OF_VALUES>::default();
-        digits.terms = ROOM - 2;
-        digits.digits.iter_mut().for_each(|digit| *digit = i64::from(ROOM) << 30);
+        let full = vec![i64::from(ROOM) << 30; OF_VALUES];
+        let mut digits = Digits::<OF_VALUES> { digits: full, terms: ROOM - 2 };
         let before = digits.magnitude();
         digits.add(0, 0, true);
         assert_eq!((digits.terms, digits.magnitude()), (0, before));
