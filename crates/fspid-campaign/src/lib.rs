@@ -19,6 +19,7 @@ mod error;
 mod folder;
 pub mod local;
 mod merge;
+mod parts;
 mod plan;
 mod planning;
 mod range;

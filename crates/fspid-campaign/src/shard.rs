@@ -5,13 +5,14 @@ use std::io::BufWriter;
 use std::path::Path;
 
 use fspid_study::output;
+use rayon::prelude::*;
 
 use crate::campaign::{Campaign, Progress};
 use crate::error::CampaignError;
 use crate::folder::Folder;
 use crate::plan::Plan;
 use crate::range::Range;
-use crate::table::{ColumnTable, Reader, Writer};
+use crate::table::{ColumnTable, Reader, Schema, Writer};
 
 /// Key of the metadata that names the campaign.
 pub const CAMPAIGN_KEY: &str = "fspid.campaign";
@@ -58,7 +59,7 @@ pub fn fly(
     Ok(Done::Flown)
 }
 
-/// Shards whose parts are not there, or not whole.
+/// Shards whose parts are not there, or not whole. Every cell is read, on the threads of the pool that this is called in.
 #[must_use]
 pub fn missing(folder: &Folder, campaign: &Campaign) -> Vec<u64> {
     let plan = campaign.plan();
@@ -66,7 +67,7 @@ pub fn missing(folder: &Folder, campaign: &Campaign) -> Vec<u64> {
         plan.shard(*number)
             .is_some_and(|range| is_whole(&folder.shard_path(range), campaign, range))
     };
-    (0..plan.shards()).filter(|number| !is_there(number)).collect()
+    (0..plan.shards()).into_par_iter().filter(|number| !is_there(number)).collect()
 }
 
 /// Takes in the part of a shard that was flown elsewhere, if it is what it should be in every cell.
@@ -99,7 +100,7 @@ fn is_whole(path: &Path, campaign: &Campaign, range: Range) -> bool {
     };
     let rows = range.end.saturating_sub(range.first) * campaign.rows().of_run() as u64;
     part.range == range
-        && part.refusal(campaign).is_none()
+        && part.refusal(campaign.plan(), campaign.rows().schema()).is_none()
         && part.reader.rows() as u64 == rows
         && part.reader.verify().is_ok()
 }
@@ -160,15 +161,14 @@ impl Part {
     }
 
     /// Why this is no part of a campaign, if it is none.
-    pub(crate) fn refusal(&self, campaign: &Campaign) -> Option<String> {
-        let plan = campaign.plan();
+    pub(crate) fn refusal(&self, plan: &Plan, schema: &Schema) -> Option<String> {
         for (key, value) in provenance(plan) {
             let found = self.reader.metadata_value(&key).unwrap_or("nothing");
             if found != value {
                 return Some(format!("{key} is {found}; this campaign's is {value}"));
             }
         }
-        if self.reader.schema() != campaign.rows().schema() {
+        if **self.reader.schema() != *schema {
             return Some("its columns are others".to_owned());
         }
         if self.range.end > plan.runs {

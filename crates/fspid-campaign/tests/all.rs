@@ -2,6 +2,7 @@
 
 mod campaign;
 mod engine;
+mod parts;
 mod search;
 mod statistics;
 mod summary;

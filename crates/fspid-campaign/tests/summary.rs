@@ -349,7 +349,9 @@ fn files_that_are_no_merged_campaign_are_refused_with_the_reason() {
 #[test]
 fn damaged_and_foreign_files_and_what_is_no_confidence_are_refused() {
     let file = written(&table(20, &["A"], |run, _| good(run)), &metadata(20, "random"));
-    let summary = |confidence| Summary::of(&file.path, SummarySettings { confidence });
+    let summary = |confidence| {
+        Summary::of(&file.path, SummarySettings { confidence, ..SummarySettings::default() })
+    };
     assert!(matches!(summary(95.0), Err(SummaryError::Statistics(_))));
     assert!(matches!(summary(f64::NAN), Err(SummaryError::Statistics(_))));
     let whole = std::fs::read(&file.path).expect("read");
@@ -452,7 +454,7 @@ fn a_flown_campaign_is_summarised_as_its_rows_say() {
     let rows = reader.tables().next().expect("a row group").expect("readable");
     assert_eq!(summary.head.scenario.as_deref(), Some("747 pitch step, dispersed"));
     assert_eq!((summary.head.runs, summary.head.seed, summary.head.rows), (200, 7, 400));
-    assert_eq!(summary.head.digest, reader.digest());
+    assert_eq!(summary.head.digest, Some(reader.digest()));
     assert_eq!(summary.head.controllers, ["CPID", "FSPID"]);
     for (place, controller) in summary.controllers.iter().enumerate() {
         let failed: Vec<bool> = truths(&rows, "failed", place).into_iter().flatten().collect();

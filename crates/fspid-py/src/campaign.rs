@@ -206,14 +206,15 @@ impl Campaign {
         Table::of_rows(self.campaign.rows().schema(), rows).map_err(|it| error::input(py, it))
     }
 
-    /// How often it failed, and by how much, with a report.
-    fn summary(&self, py: Python<'_>, confidence: f64) -> PyResult<Answer> {
-        let path = self.folder.merged_path();
+    /// How often it failed, and by how much, with a report: of the merged file, or of the parts where there is none.
+    fn summary(&self, py: Python<'_>, confidence: f64, incomplete: bool) -> PyResult<Answer> {
+        let path = self.folder.path().to_owned();
+        let settings = SummarySettings { confidence, incomplete, ..SummarySettings::default() };
         let answer = interrupt::run(py, move || {
-            let summary = Summary::of(&path, SummarySettings { confidence })?;
-            let folder = path.parent().map(|folder| folder.display().to_string());
-            let settings = report::Settings { summary: SummarySettings { confidence }, folder };
-            let page = report::page_of(&path, &summary, &settings)?;
+            let summary = Summary::of(&path, settings)?;
+            let folder = Some(path.display().to_string());
+            let page_settings = report::Settings { summary: settings, folder };
+            let page = report::page_of(&path, &summary, &page_settings)?;
             let answer = Answer::new(summary::text(&summary), &summary::json(&summary), true);
             Ok::<_, SummaryError>(answer.with_page(page))
         })?;

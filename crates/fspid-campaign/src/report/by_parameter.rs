@@ -1,8 +1,8 @@
 //! Which flights failed, over the parameters of their runs: read from the file in two passes.
 
 use crate::rows::{FAILED, PARAMETER};
-use crate::summary::SummaryError;
-use crate::table::{ColumnTable, Reader, Values};
+use crate::summary::{Files, SummaryError};
+use crate::table::{ColumnTable, Values};
 
 /// Flights that failed, and all of them, in a box.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -95,13 +95,13 @@ impl Event {
 /// # Errors
 /// A file that cannot be read.
 pub(super) fn counted(
-    reader: &Reader,
+    files: &Files,
     parameters: &[String],
     event: &Event,
     (controllers, bins): (usize, usize),
 ) -> Result<Option<Counted>, SummaryError> {
     let columns: Vec<String> = parameters.iter().map(|name| format!("{PARAMETER}{name}")).collect();
-    let Some(ends) = ends(reader, &columns)? else { return Ok(None) };
+    let Some(ends) = ends(files, &columns)? else { return Ok(None) };
     let axes = Axes { ends, pairs: pairs(parameters.len()) };
     let empty = ByParameter {
         alone: vec![vec![Counts::default(); bins]; parameters.len()],
@@ -112,7 +112,7 @@ pub(super) fn counted(
     let mut names: Vec<&str> = columns.iter().map(String::as_str).collect();
     names.push(event.column());
     let mut row = 0_usize;
-    for table in reader.columns(&names)? {
+    for table in files.columns(&names)? {
         let table = table?;
         let failed = event.happened(&table, row, controllers);
         let numbers: Vec<Vec<f64>> = columns.iter().map(|name| floats(&table, name)).collect();
@@ -163,10 +163,10 @@ fn place(value: f64, (lo, hi): (f64, f64), bins: usize) -> usize {
     (((value - lo) / (hi - lo) * bins as f64) as usize).min(bins.saturating_sub(1))
 }
 
-fn ends(reader: &Reader, columns: &[String]) -> Result<Option<Vec<(f64, f64)>>, SummaryError> {
+fn ends(files: &Files, columns: &[String]) -> Result<Option<Vec<(f64, f64)>>, SummaryError> {
     let mut found = vec![None::<(f64, f64)>; columns.len()];
     let names: Vec<&str> = columns.iter().map(String::as_str).collect();
-    for table in reader.columns(&names)? {
+    for table in files.columns(&names)? {
         let table = table?;
         for (found, name) in found.iter_mut().zip(columns) {
             for value in floats(&table, name).into_iter().filter(|value| value.is_finite()) {

@@ -7,7 +7,7 @@ use super::measures::{self, Measure};
 use super::words::{count, cut, number};
 use super::{Source, style};
 use crate::summary::words::number as four_digits;
-use crate::summary::{Extreme, MeasureSummary};
+use crate::summary::{Extreme, MeasureSummary, QuantileSummary};
 
 /// Most controllers in one figure.
 const MOST_ROWS: usize = 12;
@@ -157,16 +157,21 @@ fn numbers(it: &MeasureSummary) -> Vec<Datum> {
     let median = it.quantiles.iter().find(|it| (it.share - 0.5).abs() < 1e-9);
     let median = median.map(|it| {
         let [lower, upper] = [it.interval.lower, it.interval.upper].map(end);
-        format!("{} ({lower} to {upper})", four_digits(it.value))
+        format!("{} ({lower} to {upper})", it.in_words())
     });
+    let quantile = |share: f64| {
+        let found = it.quantiles.iter().find(|it| (it.share - share).abs() < 1e-9);
+        let words = found.map(QuantileSummary::in_words);
+        words.map_or_else(|| Datum::Absent("none".to_owned()), Datum::Number)
+    };
     vec![
         Datum::Number(count(it.count)),
         given(it.moments.map(|moments| moments.mean)),
         given(it.moments.and_then(|moments| moments.standard_deviation)),
-        given(value_at(it, 0.05)),
+        quantile(0.05),
         median.map_or_else(|| Datum::Absent("none".to_owned()), Datum::Number),
-        given(value_at(it, 0.95)),
-        given(value_at(it, 0.99)),
+        quantile(0.95),
+        quantile(0.99),
         extreme(it.lowest.first()),
         extreme(it.highest.first()),
     ]

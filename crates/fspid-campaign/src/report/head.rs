@@ -29,7 +29,10 @@ pub(super) fn lead(source: &Source<'_>) -> String {
         1 => "one parameter".to_owned(),
         many => format!("{many} parameters"),
     };
-    format!("{flown} of one scenario with {drawn} drawn anew for each, flown with {controllers}.")
+    let incomplete = head.incomplete().map_or_else(String::new, |it| format!("{it}. "));
+    format!(
+        "{incomplete}{flown} of one scenario with {drawn} drawn anew for each, flown with {controllers}."
+    )
 }
 
 pub(super) fn facts(source: &Source<'_>) -> Vec<(String, String)> {
@@ -47,9 +50,13 @@ pub(super) fn facts(source: &Source<'_>) -> Vec<(String, String)> {
         fact("flown by", cut(&head.program, 60)),
         fact("this page by", here),
         fact("campaign", head.campaign.clone()),
-        fact("digest of all rows (checked)", head.digest.to_string()),
+        match head.digest {
+            Some(digest) => fact("digest of all rows (checked)", digest.to_string()),
+            None => fact("digest", "each part has its own (checked)".to_owned()),
+        },
         fact("digest of the scenario", head.scenario_digest.clone()),
     ];
+    facts.extend(head.incomplete().map(|incomplete| fact("incomplete", incomplete)));
     if !head.changes.is_empty() {
         facts.push(fact("changes to the scenario", cut(&head.changes.join(", "), 400)));
     }
@@ -62,10 +69,14 @@ pub(super) fn commands(source: &Source<'_>) -> String {
     let folder = shell::word(source.folder);
     let set: String =
         head.changes.iter().map(|change| format!(" --set {}", shell::word(change))).collect();
-    let (runs, seed, sampling) = (head.runs, head.seed, head.sampling.name());
+    let (runs, seed, sampling) = (head.planned_runs, head.seed, head.sampling.name());
+    let file = match (head.shards, head.incomplete()) {
+        (None, _) => shell::word(&format!("{}/campaign.parquet", source.folder)),
+        (Some(_), None) => folder.clone(),
+        (Some(_), Some(_)) => format!("{folder} --incomplete"),
+    };
     format!(
-        "fspid campaign run SCENARIO.toml{set} --runs {runs} --seed {seed} --sampling {sampling} --out {folder}\nfspid campaign report {} --out campaign.html",
-        shell::word(&format!("{}/campaign.parquet", source.folder))
+        "fspid campaign run SCENARIO.toml{set} --runs {runs} --seed {seed} --sampling {sampling} --out {folder}\nfspid campaign report {file} --out campaign.html"
     )
 }
 

@@ -48,7 +48,7 @@ pub(super) fn chapter(source: &Source<'_>) -> Result<Option<Chapter>, SummaryErr
     }
     let bins = boxes(source.summary.head.runs);
     let all = source.summary.controllers.len();
-    let Some(counted) = counted(source.reader, &parameters, &what.event, (all, bins))? else {
+    let Some(counted) = counted(source.files, &parameters, &what.event, (all, bins))? else {
         return Ok(said("There is no map: a parameter does not differ from run to run."));
     };
     let maps = Maps { source, parameters: &parameters, counted: &counted, what: &what };

@@ -29,8 +29,7 @@ use fspid_page::analysis::{Item, Picture};
 use fspid_page::campaign::CampaignPage;
 use fspid_plot::{SeriesStyle, Svg};
 
-use crate::summary::{Summary, SummaryError, SummarySettings};
-use crate::table::Reader;
+use crate::summary::{Files, Found, Summary, SummaryError, SummarySettings};
 
 /// What can be chosen about a page.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -41,7 +40,7 @@ pub struct Settings {
     pub folder: Option<String>,
 }
 
-/// The page of the merged file at a path.
+/// The page of the merged file at a path, or of the parts in a campaign's folder.
 ///
 /// Runs are flown again on the threads of the pool that this is called in. If they cannot be (files that the
 /// scenario names are gone, another version of the program flew), the page says why in place of their figures.
@@ -61,20 +60,20 @@ pub fn page_of(
     summary: &Summary,
     settings: &Settings,
 ) -> Result<String, SummaryError> {
-    let reader = Reader::open(path)?;
-    if summary.head.digest != reader.digest() {
+    let found = Found::at(path, settings.summary)?;
+    if !found.is_of(summary) {
         // Figures and words of two files must not stand on one page.
         return page(path, settings);
     }
     let folder = settings.folder.as_deref().unwrap_or("DIR");
-    Ok(Source { summary, reader: &reader, folder }.page()?.render())
+    Ok(Source { summary, files: &found.files, folder }.page()?.render())
 }
 
 /// What a page is made from.
 #[derive(Clone, Copy)]
 struct Source<'a> {
     summary: &'a Summary,
-    reader: &'a Reader,
+    files: &'a Files,
     folder: &'a str,
 }
 

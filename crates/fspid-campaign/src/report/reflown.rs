@@ -13,7 +13,7 @@ use crate::campaign::Campaign;
 use crate::folder::Folder;
 use crate::merge::PLAN_KEY;
 use crate::plan::{Plan, SHARD_RUNS};
-use crate::table::Reader;
+use crate::summary::Files;
 
 /// Most runs that are flown again: 5 and 95 % then have 20 flights beyond them.
 const MOST_RUNS: u64 = 400;
@@ -60,7 +60,7 @@ pub(super) struct Reflown {
 /// Why that cannot be, in a sentence.
 pub(super) fn reflown(source: &Source<'_>, worst: &[Vec<u64>]) -> Result<Reflown, String> {
     let campaign = campaign(source)?;
-    compare(&campaign, source.reader)?;
+    compare(&campaign, source.files)?;
     let nominal = campaign.template().study();
     let grid = Grid::of(nominal)?;
     let runs = how_many(nominal, campaign.plan().runs);
@@ -98,7 +98,9 @@ fn campaign(source: &Source<'_>) -> Result<Campaign, String> {
             Plan::this_program()
         ));
     }
-    let home = source.reader.path().parent().unwrap_or(Path::new(""));
+    // Parts lie in a folder of their own.
+    let above = if head.shards.is_some() { 2 } else { 1 };
+    let home = source.files.path().ancestors().nth(above).unwrap_or(Path::new(""));
     let planned = Folder::new(home).plan().ok().filter(|plan| plan.id() == head.campaign);
     let plan = Plan {
         scenario_text: head.scenario_text.clone(),
@@ -107,7 +109,7 @@ fn campaign(source: &Source<'_>) -> Result<Campaign, String> {
         scenario_digest: head.scenario_digest.clone(),
         overrides: head.changes.clone(),
         sampling: head.sampling,
-        runs: head.runs,
+        runs: head.planned_runs,
         seed: head.seed,
         shard_runs: SHARD_RUNS,
         program: head.program.clone(),
@@ -122,17 +124,18 @@ fn campaign(source: &Source<'_>) -> Result<Campaign, String> {
     })
 }
 
-/// Refuses curves that are not those of the file: the first run must give the same bits.
-fn compare(campaign: &Campaign, reader: &Reader) -> Result<(), String> {
-    let again = campaign.fly_together(std::iter::once((0, campaign.drawn(0))));
+/// Refuses curves that are not those of the file: its first run must give the same bits.
+fn compare(campaign: &Campaign, files: &Files) -> Result<(), String> {
+    let run = files.run(0, campaign.rows().of_run());
+    let again = campaign.fly_together(std::iter::once((run, campaign.drawn(run))));
     let again = again.map_err(|error| error.to_string())?;
     let again = campaign.rows().table(&again).map_err(|error| error.to_string())?;
-    let table = reader.tables().next().and_then(Result::ok);
+    let table = files.first().tables().next().and_then(Result::ok);
     let stored = table.and_then(|table| table.slice(0..again.rows()).ok());
     if stored.as_ref() == Some(&again) {
         return Ok(());
     }
-    Err("run 0, flown again, does not give the numbers in the file".to_owned())
+    Err(format!("run {run}, flown again, does not give the numbers in the file"))
 }
 
 /// How many runs are flown again: few enough that a page takes seconds.

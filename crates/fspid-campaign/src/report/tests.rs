@@ -225,10 +225,11 @@ fn a_file_that_the_scenario_names_and_that_is_gone_is_told_of() {
 #[test]
 fn boxes_of_a_map_hold_the_runs_that_lie_in_them() {
     let flown = flown(&[HEAD, STEP, &pid("CPID"), &at_most(15.0), EFFECT, DAMPING], 60);
-    let reader = Reader::open(flown.folder.merged_path()).expect("a file");
+    let found = Found::at(&flown.folder.merged_path(), SummarySettings::default());
+    let files = found.expect("a file").files;
     let names = ["damping".to_owned(), "effect".to_owned()];
     let event = by_parameter::Event::Failed;
-    let counted = by_parameter::counted(&reader, &names, &event, (1, 3)).expect("readable");
+    let counted = by_parameter::counted(&files, &names, &event, (1, 3)).expect("readable");
     let counted = counted.expect("they differ");
     let campaign = crate::Campaign::new(flown.folder.plan().expect("a plan"), flown.folder.path());
     let campaign = campaign.expect("a campaign");
@@ -265,8 +266,8 @@ fn curves_are_those_of_the_run_as_it_is_flown_alone() {
     let flown = flown(&[HEAD, STEP, &pid("CPID"), &pid("other"), EFFECT], 9);
     let path = flown.folder.merged_path();
     let summary = Summary::of(&path, SummarySettings::default()).expect("a summary");
-    let reader = Reader::open(&path).expect("a file");
-    let source = Source { summary: &summary, reader: &reader, folder: "DIR" };
+    let found = Found::at(&path, SummarySettings::default()).expect("a file");
+    let source = Source { summary: &summary, files: &found.files, folder: "DIR" };
     let reflown = reflown::reflown(&source, &[vec![7], vec![]]).expect("flown again");
     let campaign = crate::Campaign::new(flown.folder.plan().expect("a plan"), flown.folder.path());
     let replay = crate::replay::replay(&campaign.expect("a campaign"), 7).expect("flown");
@@ -306,8 +307,9 @@ fn a_file_of_another_program_is_not_flown_again() {
     let summary = Summary::of(&flown.folder.merged_path(), SummarySettings::default());
     let mut summary = summary.expect("a summary");
     summary.head.program = "fspid 0.0.1".to_owned();
-    let reader = Reader::open(flown.folder.merged_path()).expect("a file");
-    let source = Source { summary: &summary, reader: &reader, folder: "DIR" };
+    let found = Found::at(&flown.folder.merged_path(), SummarySettings::default());
+    let found = found.expect("a file");
+    let source = Source { summary: &summary, files: &found.files, folder: "DIR" };
     let page = source.page().expect("a page").render();
     assert_says(&page, &["could not be flown again: they were flown by fspid 0.0.1"]);
     assert_says(&page, &[&Plan::this_program()]);

@@ -1,9 +1,11 @@
 //! How often which values occur, in bins whose edges are round numbers.
 
+use std::ops::Range;
+
 use serde::Serialize;
 
-use super::Sorted;
-use super::quantile::quantile_of;
+use super::Ordered;
+use super::quantile::quantile_between;
 
 /// Counts of values in adjoining bins of one width.
 ///
@@ -35,52 +37,41 @@ impl Histogram {
     /// D. Freedman, P. Diaconis, *On the histogram as a density estimator: L₂ theory*, Zeitschrift für
     /// Wahrscheinlichkeitstheorie 57 (1981).
     #[must_use]
-    pub fn of(sorted: &Sorted) -> Option<Self> {
-        let values = sorted.values();
-        Self::between(sorted, *values.first()?, *values.last()?)
+    pub fn of(sorted: &impl Ordered) -> Option<Self> {
+        let last = sorted.count().checked_sub(1)?;
+        Self::between(sorted, sorted.at(0)?, sorted.at(last)?)
     }
 
     /// Of the values between two limits, and around them up to the next round number; the others are counted as outside.
     ///
     /// `None` unless the limits are finite and the first is not above the second, and as for [`of`](Self::of).
     #[must_use]
-    pub fn between(sorted: &Sorted, lower: f64, upper: f64) -> Option<Self> {
+    pub fn between(sorted: &impl Ordered, lower: f64, upper: f64) -> Option<Self> {
         if !(lower <= upper && lower.is_finite() && upper.is_finite()) {
             return None;
         }
-        let values = sorted.values();
-        values.first()?;
-        let inside = values
-            .get(rank(values, |value| value < lower)..rank(values, |value| value <= upper))?;
-        let edges = Width::of(lower, upper, freedman_diaconis(inside))?.edges(lower, upper);
-        edges.iter().all(|edge| edge.is_finite()).then(|| Self::counted(values, edges))
+        sorted.at(0)?;
+        let inside = sorted.below(lower, false)..sorted.below(upper, true);
+        let wanted = freedman_diaconis(sorted, inside);
+        let edges = Width::of(lower, upper, wanted)?.edges(lower, upper);
+        edges.iter().all(|edge| edge.is_finite()).then(|| Self::counted(sorted, edges))
     }
 
-    fn counted(values: &[f64], edges: Vec<f64>) -> Self {
+    fn counted(sorted: &impl Ordered, edges: Vec<f64>) -> Self {
         let bins = edges.len() - 1;
-        let ranks: Vec<usize> = edges
-            .iter()
-            .enumerate()
-            .map(|(index, &edge)| {
-                rank(values, |value| value < edge || (index == bins && value <= edge))
-            })
-            .collect();
+        let ranks = edges.iter().enumerate().map(|(at, &edge)| sorted.below(edge, at == bins));
+        let ranks: Vec<usize> = ranks.collect();
         let counts = ranks.windows(2).map(|ends| (ends[1] - ends[0]) as u64).collect();
         let below = ranks.first().map_or(0, |&rank| rank as u64);
-        let above = ranks.last().map_or(0, |&rank| (values.len() - rank) as u64);
+        let above = ranks.last().map_or(0, |&rank| (sorted.count() - rank) as u64);
         Self { edges, counts, below, above }
     }
 }
 
-/// How many of the values, in ascending order, hold.
-fn rank(values: &[f64], holds: impl Fn(f64) -> bool) -> usize {
-    values.partition_point(|&value| holds(value))
-}
-
-/// Twice the distance of the quartiles over the cube root of the number; 0 without values.
-fn freedman_diaconis(values: &[f64]) -> f64 {
-    let quartile = |share| quantile_of(values, share).unwrap_or(0.0);
-    2.0 * (quartile(0.75) - quartile(0.25)) / libm::cbrt(values.len().max(1) as f64)
+/// Twice the distance of the quartiles of the values at some places over the cube root of their number; 0 without values.
+fn freedman_diaconis(sorted: &impl Ordered, places: Range<usize>) -> f64 {
+    let quartile = |share| quantile_between(sorted, places.clone(), share).unwrap_or(0.0);
+    2.0 * (quartile(0.75) - quartile(0.25)) / libm::cbrt(places.len().max(1) as f64)
 }
 
 /// A round width: 1, 2 or 5 times a power of ten, numbered in ascending order, 0 for 1.
@@ -160,6 +151,7 @@ impl Width {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::statistics::Sorted;
 
     fn of(values: &[f64]) -> Histogram {
         Histogram::of(&Sorted::of(values)).expect("a histogram")

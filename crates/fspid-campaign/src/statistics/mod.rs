@@ -13,12 +13,15 @@
 
 pub mod binomial;
 mod error;
+mod exact;
 mod finite;
 pub mod histogram;
 pub mod moments;
+mod ordered;
 pub mod quantile;
 pub mod rank;
 pub mod share;
+pub mod sketch;
 mod sorted;
 mod sum;
 mod tail;
@@ -27,4 +30,6 @@ pub use error::StatisticsError;
 pub use finite::{Finite, FinitePairs, finite, finite_pairs};
 pub use histogram::Histogram;
 pub use moments::Moments;
+pub use ordered::Ordered;
+pub use sketch::Sketch;
 pub use sorted::Sorted;

@@ -1,8 +1,10 @@
 //! Quantiles of a column and how sure they are.
 
+use std::ops::Range;
+
 use serde::Serialize;
 
-use super::Sorted;
+use super::Ordered;
 use super::error::{StatisticsError, confidence as checked_confidence, share as checked_share};
 use super::tail::{Chance, at_least, at_most};
 
@@ -24,18 +26,39 @@ pub struct Interval {
 /// # Source
 /// R. J. Hyndman, Y. Fan, *Sample quantiles in statistical packages*, The American Statistician 50 (1996), definition 7.
 #[must_use]
-pub fn quantile(sorted: &Sorted, share: f64) -> Option<f64> {
-    quantile_of(sorted.values(), checked_share(share).ok()?)
+pub fn quantile(sorted: &impl Ordered, share: f64) -> Option<f64> {
+    quantile_between(sorted, 0..sorted.count(), checked_share(share).ok()?)
 }
 
-/// The same of a slice in ascending order, for a share from 0 to 1.
-pub(super) fn quantile_of(values: &[f64], share: f64) -> Option<f64> {
-    let place = values.len().checked_sub(1)? as f64 * share;
+/// The same of the values at some places, for a share from 0 to 1.
+pub(super) fn quantile_between(
+    sorted: &impl Ordered,
+    places: Range<usize>,
+    share: f64,
+) -> Option<f64> {
+    let (index, along) = place(places.len(), share)?;
+    let low = sorted.at(places.start + index)?;
+    let high = sorted.at((places.start + index + 1).min(places.end - 1))?;
+    Some((low + along * (high - low)).clamp(low, high))
+}
+
+/// Between which places a quantile of so many values lies: the lower one, and how far it is to the next.
+fn place(count: usize, share: f64) -> Option<(usize, f64)> {
+    let place = count.checked_sub(1)? as f64 * share;
     let below = place.floor();
-    let index = below as usize;
-    let low = *values.get(index)?;
-    let high = values.get(index + 1).copied().unwrap_or(low);
-    Some((low + (place - below) * (high - low)).clamp(low, high))
+    Some((below as usize, place - below))
+}
+
+/// What the quantile of these values is at least and at most; the ends are equal where it is known exactly.
+#[must_use]
+pub fn bounds(sorted: &impl Ordered, share: f64) -> Option<[f64; 2]> {
+    let (index, along) = place(sorted.count(), checked_share(share).ok()?)?;
+    let low = sorted.bounds(index)?;
+    let high = sorted.bounds((index + 1).min(sorted.count() - 1))?;
+    let ends =
+        low.into_iter().zip(high).map(|(low, high)| (low + along * (high - low)).clamp(low, high));
+    let ends: Vec<f64> = ends.collect();
+    ends.try_into().ok()
 }
 
 /// Two-sided interval for the quantile of the population, from order statistics: exact for every distribution.
@@ -49,7 +72,11 @@ pub(super) fn quantile_of(values: &[f64], share: f64) -> Option<f64> {
 ///
 /// # Errors
 /// The share is not in [0, 1] or the confidence not inside (0, 1).
-pub fn interval(sorted: &Sorted, share: f64, confidence: f64) -> Result<Interval, StatisticsError> {
+pub fn interval(
+    sorted: &impl Ordered,
+    share: f64,
+    confidence: f64,
+) -> Result<Interval, StatisticsError> {
     let share = Chance::of(checked_share(share)?);
     let each = (1.0 - checked_confidence(confidence)?) / 2.0;
     Ok(Interval { lower: lower(sorted, share, each), upper: upper(sorted, share, each) })
@@ -66,7 +93,7 @@ pub fn interval(sorted: &Sorted, share: f64, confidence: f64) -> Result<Interval
 /// # Errors
 /// The share is not in [0, 1] or the confidence not inside (0, 1).
 pub fn upper_bound(
-    sorted: &Sorted,
+    sorted: &impl Ordered,
     share: f64,
     confidence: f64,
 ) -> Result<Option<f64>, StatisticsError> {
@@ -80,7 +107,7 @@ pub fn upper_bound(
 /// # Errors
 /// The share is not in [0, 1] or the confidence not inside (0, 1).
 pub fn lower_bound(
-    sorted: &Sorted,
+    sorted: &impl Ordered,
     share: f64,
     confidence: f64,
 ) -> Result<Option<f64>, StatisticsError> {
@@ -90,19 +117,18 @@ pub fn lower_bound(
 /// Rounding must not decide where a tail is exactly what is allowed.
 const ROUNDING: f64 = 1.0 + 1e-12;
 
-fn lower(sorted: &Sorted, share: Chance, tail: f64) -> Option<f64> {
-    let values = sorted.values();
-    let runs = values.len() as f64;
-    let rank = first(values.len(), |below| at_most(below as f64, runs, share) > tail * ROUNDING);
-    rank.checked_sub(1).and_then(|index| values.get(index)).copied()
+fn lower(sorted: &impl Ordered, share: Chance, tail: f64) -> Option<f64> {
+    let runs = sorted.count() as f64;
+    let rank = first(sorted.count(), |below| at_most(below as f64, runs, share) > tail * ROUNDING);
+    let [least, _] = sorted.bounds(rank.checked_sub(1)?)?;
+    Some(least)
 }
 
-fn upper(sorted: &Sorted, share: Chance, tail: f64) -> Option<f64> {
-    let values = sorted.values();
-    let runs = values.len() as f64;
-    let index =
-        first(values.len(), |index| at_least((index + 1) as f64, runs, share) <= tail * ROUNDING);
-    values.get(index).copied()
+fn upper(sorted: &impl Ordered, share: Chance, tail: f64) -> Option<f64> {
+    let (count, runs) = (sorted.count(), sorted.count() as f64);
+    let index = first(count, |index| at_least((index + 1) as f64, runs, share) <= tail * ROUNDING);
+    let [_, most] = sorted.bounds(index)?;
+    Some(most)
 }
 
 /// The first of `0..count` that holds, `count` if none does; once true it stays true.
@@ -118,6 +144,7 @@ fn first(count: usize, holds: impl Fn(usize) -> bool) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::statistics::Sorted;
 
     fn counted(count: u32) -> Sorted {
         (1..=count).map(f64::from).collect::<Vec<_>>().into()

@@ -15,12 +15,16 @@ use crate::table::{Digest, Kind};
 pub struct SummarySettings {
     /// Confidence of intervals and bounds, above 0 and below 1.
     pub confidence: f64,
+    /// Most rows whose values are sorted; of more, quantiles come from sketches.
+    pub exact_rows: u64,
+    /// True where parts may be missing: what is said is then of those that are there, and says so.
+    pub incomplete: bool,
 }
 
 impl Default for SummarySettings {
-    /// 95 %.
+    /// 95 %, [`EXACT_ROWS`](super::EXACT_ROWS), and all parts.
     fn default() -> Self {
-        Self { confidence: 0.95 }
+        Self { confidence: 0.95, exact_rows: super::EXACT_ROWS, incomplete: false }
     }
 }
 
@@ -50,22 +54,35 @@ pub struct Head {
     pub scenario_digest: String,
     /// Changes `path=value` to the scenario, for all runs.
     pub changes: Vec<String>,
-    /// How many runs.
+    /// How many runs: those that everything here is counted of.
     pub runs: u64,
+    /// How many runs were planned: as many, unless parts are missing.
+    pub planned_runs: u64,
+    /// From how many shards, where the parts were read and not the merged file.
+    pub shards: Option<Shards>,
     /// How many rows: runs times controllers.
     pub rows: u64,
     /// Seed of everything that was drawn.
     pub seed: u64,
     /// How points were chosen.
     pub sampling: Sampling,
-    /// Digest of the rows; they were read and have it.
-    pub digest: Digest,
+    /// Digest of the rows; they were read and have it. `None` where parts were read one by one: each has its own.
+    pub digest: Option<Digest>,
     /// Names of the controllers.
     pub controllers: Vec<String>,
     /// What differed from run to run.
     pub parameters: Vec<Parameter>,
     /// Confidence of all intervals but those of rank correlations, which have 95 %.
     pub confidence: f64,
+}
+
+/// Shards that were read, of those that were planned.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Shards {
+    /// How many are there as a whole.
+    pub found: u64,
+    /// How many were planned.
+    pub of: u64,
 }
 
 /// Something that differed from run to run.
@@ -216,6 +233,20 @@ pub struct QuantileSummary {
     /// beside the value.
     #[serde(flatten)]
     pub interval: Interval,
+    /// How far the value may be off, where it is from a sketch; the interval is widened by that already.
+    #[serde(flatten)]
+    pub sketch: Option<Sketched>,
+}
+
+/// How far a quantile from a sketch may be off: from that of the flights, which is in no doubt but for this.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Sketched {
+    /// Most that the share of the flights below the value differs from the share that was asked for; 0 where it is exact.
+    pub rank_error: f64,
+    /// The quantile of the flights is at least this.
+    pub at_least: f64,
+    /// It is at most this.
+    pub at_most: f64,
 }
 
 /// A failed run.
@@ -305,6 +336,22 @@ pub struct MeasureCount {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Note {
+    /// Parts are missing: nothing here is said of the whole campaign.
+    Incomplete {
+        /// Shards that are there.
+        shards: Shards,
+        /// Runs that are there.
+        runs: u64,
+        /// Runs that were planned.
+        planned_runs: u64,
+    },
+    /// Quantiles and histograms are from sketches, because there are more rows than are sorted.
+    FromSketches {
+        /// How many rows.
+        rows: u64,
+        /// Most that a quantile is off, as a part of its value.
+        relative_width: f64,
+    },
     /// Intervals assume independent runs, which these are not: usually the intervals are too wide for means and
     /// probabilities, which is not proven.
     RunsNotIndependent {

@@ -4,6 +4,9 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
+use super::data::Shards;
+use crate::error::CampaignError;
+use crate::range::Range;
 use crate::statistics::StatisticsError;
 use crate::table::{Kind, TableError};
 
@@ -21,6 +24,22 @@ pub enum SummaryError {
         path: PathBuf,
         /// What is different.
         reason: NotMerged,
+    },
+    /// The folder is none of a campaign, or its parts do not belong together.
+    #[error("{0}")]
+    Folder(Box<CampaignError>),
+    /// Parts are missing, which is to be told or to be allowed.
+    #[error(
+        "{} of {} shards are there; {missing} are missing ({runs} in all): fly them with `fspid campaign run`, or ask with --incomplete for what is there",
+        shards.found, shards.of
+    )]
+    Incomplete {
+        /// Shards that are there.
+        shards: Shards,
+        /// The first runs that are missing.
+        missing: Range,
+        /// How many runs are missing.
+        runs: u64,
     },
     /// The confidence is none.
     #[error("{0}")]

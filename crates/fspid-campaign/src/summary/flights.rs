@@ -6,7 +6,7 @@ use fspid_study::metrics::LEFT_RANGE;
 
 use super::data::{FailedRun, Severity, VerdictCount};
 use super::source::Source;
-use super::{FAILED_RUNS, NotMerged, SENSITIVITY_RUNS, SummaryError};
+use super::{FAILED_RUNS, NotMerged, SummaryError};
 use crate::rows::{
     CONTROLLER, CONTROLLER_LOST, DIVERGED_AT, FAILED, HIT_GROUND, REASONS, REFUSED, RUN, VERDICT,
 };
@@ -50,14 +50,14 @@ pub(super) fn read(source: &Source) -> Result<Vec<Flights>, SummaryError> {
         source.head.controllers.iter().map(|_| Flights::default()).collect();
     let names = [RUN, CONTROLLER, FAILED, VERDICT, REASONS, DIVERGED_AT];
     let mut row = 0;
-    for table in source.reader.columns(&names)? {
+    for table in source.files.columns(&names)? {
         let table = table?;
         let columns = Columns::of(&table)?;
         for index in 0..table.rows() {
             let place = row % source.controllers();
             let ending = columns.ending(source, row, index)?;
             if let Some(flights) = flights.get_mut(place) {
-                flights.add(&ending);
+                flights.add(&ending, source.first_runs);
             }
             row += 1;
         }
@@ -95,7 +95,7 @@ impl<'a> Columns<'a> {
         index: usize,
     ) -> Result<Ending<'a>, SummaryError> {
         let of_run = source.controllers().max(1);
-        let run = (row / of_run) as u64;
+        let run = source.run(row);
         let expected = source.head.controllers.get(row % of_run);
         let found = self.runs.get(index).copied().flatten();
         let controller = self.controllers.get(index).and_then(Option::as_ref);
@@ -129,7 +129,18 @@ impl Flights {
         known.chain(others.filter_map(|verdict| count(verdict))).collect()
     }
 
-    fn add(&mut self, ending: &Ending<'_>) {
+    /// With what later rows say.
+    pub(super) fn merge(&mut self, later: Self) {
+        for (verdict, flights) in later.verdicts {
+            *self.verdicts.entry(verdict).or_default() += flights;
+        }
+        self.failed += later.failed;
+        self.refused += later.refused;
+        self.first_failed.extend(later.first_failed);
+        later.worst.into_iter().for_each(|failed| self.keep(failed));
+    }
+
+    fn add(&mut self, ending: &Ending<'_>, first_runs: usize) {
         match self.verdicts.get_mut(ending.verdict) {
             Some(count) => *count += 1,
             None => {
@@ -138,7 +149,7 @@ impl Flights {
         }
         self.failed += u64::from(ending.failed);
         self.refused += u64::from(ending.verdict == REFUSED);
-        if self.first_failed.len() < SENSITIVITY_RUNS {
+        if self.first_failed.len() < first_runs {
             self.first_failed.push(f64::from(u8::from(ending.failed)));
         }
         if ending.failed {
@@ -162,16 +173,27 @@ impl Flights {
             }
             _ => Severity::RequirementsNotMet,
         };
-        let at_s = |at_s: Option<f64>| at_s.unwrap_or(f64::INFINITY);
-        // Rows come in the order of runs: of equally bad ones the first stay in front.
-        let place = self.worst.partition_point(|other| {
-            let earlier = at_s(other.diverged_at_s).total_cmp(&at_s(ending.diverged_at_s));
-            other.severity.cmp(&severity).then(earlier).is_le()
-        });
-        if place < FAILED_RUNS {
-            let Ending { run, diverged_at_s, .. } = *ending;
+        let Ending { run, diverged_at_s, .. } = *ending;
+        // Only what is kept has its reasons copied.
+        if self.place(severity, diverged_at_s) < FAILED_RUNS {
             let reasons = ending.reasons.unwrap_or_default().to_owned();
-            self.worst.insert(place, FailedRun { run, severity, diverged_at_s, reasons });
+            self.keep(FailedRun { run, severity, diverged_at_s, reasons });
+        }
+    }
+
+    /// Where a failed run comes among the worst. Rows come in the order of runs: of equally bad ones the first stay in front.
+    fn place(&self, severity: Severity, diverged_at_s: Option<f64>) -> usize {
+        let at_s = |at_s: Option<f64>| at_s.unwrap_or(f64::INFINITY);
+        self.worst.partition_point(|other| {
+            let earlier = at_s(other.diverged_at_s).total_cmp(&at_s(diverged_at_s));
+            other.severity.cmp(&severity).then(earlier).is_le()
+        })
+    }
+
+    fn keep(&mut self, failed: FailedRun) {
+        let place = self.place(failed.severity, failed.diverged_at_s);
+        if place < FAILED_RUNS {
+            self.worst.insert(place, failed);
             self.worst.truncate(FAILED_RUNS);
         }
     }

@@ -18,10 +18,11 @@ const SCHEMA: u64 = 1;
 /// campaign              id, 64 hexadecimal digits
 /// program               name and version of what flew it
 /// scenario              { name, digest, changes: [text], text }
-/// runs, rows            counts
+/// runs, rows            counts of what was read
+/// planned_runs, shards  only where parts were read: how many runs were planned, { found, of }
 /// seed                  text
 /// sampling              random | latin-hypercube | sobol
-/// digest                of the rows, 64 hexadecimal digits
+/// digest                of the rows, 64 hexadecimal digits; null where parts were read one by one
 /// confidence            of intervals and bounds
 /// parameters            [{ name, kind: float | integer | text, unit, meaning }]
 /// controllers           [{
@@ -32,7 +33,8 @@ const SCHEMA: u64 = 1;
 ///                          not_judged, worst: { run, value } }]
 ///   measures            [{ name, unit, meaning, count, missing, not_finite, bad: high | low, is_event,
 ///                          mean, standard_deviation, standard_error, minimum, maximum,
-///                          quantiles: [{ share, value, lower, upper }],
+///                          quantiles: [{ share, value, lower, upper,
+///                                       from sketches alone: rank_error, at_least, at_most }],
 ///                          histogram: { edges, counts, below, above },
 ///                          lowest, highest: [{ run, value }] }]
 ///   failed_runs         [{ run, severity: diverged | hit the ground | unstable | refused | requirements not met,
@@ -51,7 +53,7 @@ pub fn json(summary: &Summary) -> Value {
     let head = &summary.head;
     let notes = summary.notes.iter();
     let notes = notes.map(|it| NoteView { note: it.name(), text: it.to_string(), about: it });
-    json!({
+    let mut json = json!({
         "schema": SCHEMA,
         "campaign": head.campaign,
         "program": head.program,
@@ -65,12 +67,17 @@ pub fn json(summary: &Summary) -> Value {
         "rows": head.rows,
         "seed": head.seed.to_string(),
         "sampling": head.sampling,
-        "digest": head.digest.to_string(),
+        "digest": head.digest.map(|digest| digest.to_string()),
         "confidence": head.confidence,
         "parameters": head.parameters,
         "controllers": summary.controllers,
         "notes": notes.collect::<Vec<_>>(),
-    })
+    });
+    if let (Some(shards), Some(json)) = (head.shards, json.as_object_mut()) {
+        json.insert("planned_runs".to_owned(), json!(head.planned_runs));
+        json.insert("shards".to_owned(), json!(shards));
+    }
+    json
 }
 
 /// A note as a word, in words, and what it is about.

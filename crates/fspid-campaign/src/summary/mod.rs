@@ -9,16 +9,22 @@
 //! [`Summary::notes`].
 //!
 //! # Memory and order
-//! The file is read column by column. Quantiles and their intervals are exact order statistics: 8 bytes a row
-//! of one column at a time, and of the first [`SENSITIVITY_RUNS`] runs every parameter with its ranks. All sums
-//! run in the order of the file: the same file gives the same bits on every machine, with any number of threads.
+//! Up to [`EXACT_ROWS`] rows are read column by column. Quantiles and their intervals are exact order statistics: 8
+//! bytes a row of one column at a time, and of the first [`SENSITIVITY_RUNS`] runs every parameter with its ranks. All
+//! sums run in the order of the file: the same file gives the same bits on every machine, with any number of threads.
+//!
+//! More rows are read once, part by part on all threads, into what adds up: counts, exact sums, and a
+//! [`Sketch`](crate::statistics::Sketch) of each column, whose quantiles say how far they may be off. Memory is that
+//! of the sketches, some MB a column, whatever the number of rows; the bits do not depend on how the rows are cut.
 
 mod data;
 mod error;
+mod files;
 mod flights;
 mod json;
 mod make;
 mod measures;
+mod partial;
 mod probability;
 mod requirements;
 mod sensitivity;
@@ -29,10 +35,12 @@ pub mod words;
 pub use data::{
     Bad, ControllerSummary, Extreme, FailedRun, Head, Influence, Limits, MeasureCount,
     MeasureSummary, Note, Parameter, Probability, QuantileSummary, RequirementSummary, Sensitivity,
-    SensitivityTarget, Severity, Summary, SummarySettings, VerdictCount,
+    SensitivityTarget, Severity, Shards, Sketched, Summary, SummarySettings, VerdictCount,
 };
 pub use error::{NotMerged, SummaryError};
+pub(crate) use files::Files;
 pub use json::json;
+pub(crate) use source::Found;
 pub use text::text;
 
 /// Shares of the flights whose quantiles a summary has.
@@ -43,6 +51,9 @@ pub const EXTREMES: usize = 5;
 
 /// How many failed runs are named.
 pub const FAILED_RUNS: usize = 10;
+
+/// Most rows whose values are sorted for exact quantiles: half a gigabyte a column.
+pub const EXACT_ROWS: u64 = 1 << 26;
 
 /// Most runs that sensitivities are computed from: the first of the campaign.
 ///

@@ -7,37 +7,41 @@ use super::source::{Asked, Source};
 
 /// What came of a requirement with one controller.
 #[derive(Clone, Default)]
-struct Tally {
+pub(super) struct Tally {
     judged: u64,
     not_met: u64,
     without_value: u64,
     not_judged: u64,
-    worst: Option<Extreme>,
+    /// With how far outside the limits it is.
+    worst: Option<(f64, Extreme)>,
 }
 
-/// The requirements of each controller.
-pub(super) fn read(source: &Source) -> Result<Vec<Vec<RequirementSummary>>, SummaryError> {
+/// The requirements of each controller, from what came of each.
+pub(super) fn summaries(
+    source: &Source,
+    tallies: Vec<Vec<Tally>>,
+) -> Result<Vec<Vec<RequirementSummary>>, SummaryError> {
     let mut requirements = vec![Vec::new(); source.controllers()];
-    for asked in source.requirements() {
-        for (mine, tally) in requirements.iter_mut().zip(tallies(source, &asked)?) {
-            mine.push(tally.summary(&asked, source.head.confidence)?);
+    for (asked, tallies) in source.requirements().iter().zip(tallies) {
+        for (mine, tally) in requirements.iter_mut().zip(tallies) {
+            mine.push(tally.summary(asked, source.head.confidence)?);
         }
     }
     Ok(requirements)
 }
 
 /// Reads the two columns of a requirement.
-fn tallies(source: &Source, asked: &Asked) -> Result<Vec<Tally>, SummaryError> {
+pub(super) fn tallies(source: &Source, asked: &Asked) -> Result<Vec<Tally>, SummaryError> {
     let of_run = source.controllers();
     let mut tallies = vec![Tally::default(); of_run];
     let (met, value) = (asked.met(), asked.value());
     let mut row = 0;
-    for table in source.reader.columns(&[&met, &value])? {
+    for table in source.files.columns(&[&met, &value])? {
         let table = table?;
         for (met, value) in booleans(&table, &met)?.iter().zip(table.floats(&value)?) {
             if let Some(tally) = tallies.get_mut(row % of_run) {
                 tally.add(*met, *value);
-                let run = (row / of_run) as u64;
+                let run = source.run(row);
                 tally.keep(asked, value.map(|value| Extreme { run, value }));
             }
             row += 1;
@@ -59,16 +63,26 @@ impl Tally {
 
     /// Keeps a value if it is worse than those so far.
     fn keep(&mut self, asked: &Asked, found: Option<Extreme>) {
-        let Some(found) = found else {
-            return;
-        };
-        let Some(outside) = asked.outside(found.value) else {
-            return;
-        };
-        let before = self.worst.and_then(|worst| asked.outside(worst.value));
-        if before.is_none_or(|before| outside > before) {
+        if let Some(found) = found
+            && let Some(outside) = asked.outside(found.value)
+        {
+            self.keep_worse((outside, found));
+        }
+    }
+
+    fn keep_worse(&mut self, found: (f64, Extreme)) {
+        if self.worst.is_none_or(|(before, _)| found.0 > before) {
             self.worst = Some(found);
         }
+    }
+
+    /// With what later rows say.
+    pub(super) fn merge(&mut self, later: Self) {
+        self.judged += later.judged;
+        self.not_met += later.not_met;
+        self.without_value += later.without_value;
+        self.not_judged += later.not_judged;
+        later.worst.into_iter().for_each(|found| self.keep_worse(found));
     }
 
     fn summary(self, asked: &Asked, confidence: f64) -> Result<RequirementSummary, SummaryError> {
@@ -81,7 +95,7 @@ impl Tally {
             not_met: Probability::of(self.not_met, self.judged, confidence)?,
             without_value: self.without_value,
             not_judged: self.not_judged,
-            worst: self.worst,
+            worst: self.worst.map(|(_, worst)| worst),
         })
     }
 }

@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
+use super::SummaryError;
 use super::data::{Influence, Sensitivity, SensitivityTarget};
 use super::source::Source;
-use super::{SENSITIVITY_RUNS, SummaryError};
 use crate::rows::PARAMETER;
 use crate::statistics::rank::{Correlation, ranks, spearman_of_ranks};
 use crate::statistics::share::{Classes, Share};
@@ -26,6 +26,7 @@ struct Factor {
     /// Numbers, or numbers of texts in the order in which they first came; NaN where nothing was drawn.
     values: Vec<f64>,
     is_text: bool,
+    texts: Texts,
 }
 
 /// Which flights have a value, and the parameters of those ready for comparison.
@@ -70,11 +71,22 @@ impl Texts {
 impl Factors {
     /// Reads the parameters of the first runs; all controllers of a run have the same.
     pub(super) fn read(source: &Source) -> Result<Self, SummaryError> {
-        let used = source.runs.min(SENSITIVITY_RUNS);
+        let used = source.runs.min(source.first_runs);
         let parameters = &source.head.parameters;
         let factors = parameters.iter().map(|it| Factor::read(source, &it.name, used));
         let factors = factors.collect::<Result<_, _>>()?;
         Ok(Self { factors, all: source.head.runs, used })
+    }
+
+    /// With what was drawn for later runs.
+    pub(super) fn append(&mut self, later: Self) {
+        self.used += later.used;
+        self.factors.iter_mut().zip(later.factors).for_each(|(mine, theirs)| mine.append(theirs));
+    }
+
+    /// The same, of so many runs in all.
+    pub(super) fn of_runs(self, all: u64) -> Self {
+        Self { all, ..self }
     }
 
     /// What a column depends on, given for the runs that were read, NaN where a flight has none of it.
@@ -109,7 +121,8 @@ impl Factor {
         let (mut values, mut texts, mut is_text) =
             (Vec::with_capacity(runs), Texts::default(), false);
         let mut row = 0;
-        for cells in source.reader.column(&format!("{PARAMETER}{name}"))? {
+        let column = format!("{PARAMETER}{name}");
+        for cells in source.files.column(&column)? {
             let cells = cells?;
             is_text = matches!(cells, Values::Text(_));
             let first = (0..cells.len()).filter(|index| (row + index) % of_run == 0);
@@ -128,7 +141,21 @@ impl Factor {
             }
         }
         values.truncate(runs);
-        Ok(Self { name: name.to_owned(), values, is_text })
+        Ok(Self { name: name.to_owned(), values, is_text, texts })
+    }
+
+    /// With the values of later runs, whose texts get the numbers that they have here.
+    fn append(&mut self, later: Self) {
+        let mut names: Vec<(f64, String)> =
+            later.texts.0.into_iter().map(|(text, number)| (number, text)).collect();
+        names.sort_by(|one, other| one.0.total_cmp(&other.0));
+        let here: Vec<f64> = names.iter().map(|(_, text)| self.texts.number(text)).collect();
+        let value = |value: f64| match later.is_text {
+            true if value.is_finite() => here.get(value as usize).copied().unwrap_or(f64::NAN),
+            _ => value,
+        };
+        self.is_text |= later.is_text;
+        self.values.extend(later.values.into_iter().map(value));
     }
 
     /// The parameter of the flights that are present.
@@ -241,7 +268,7 @@ mod tests {
     use crate::statistics::{rank::spearman, share::first_order};
 
     fn factor(values: Vec<f64>, is_text: bool) -> Factor {
-        Factor { name: "x".to_owned(), values, is_text }
+        Factor { name: "x".to_owned(), values, is_text, texts: Texts::default() }
     }
 
     fn factors(factor: Factor) -> Factors {

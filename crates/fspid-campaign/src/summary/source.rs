@@ -1,28 +1,38 @@
-//! The merged file that a summary is made of: what it says of itself, and its columns.
+//! What a summary is made of: the merged file or the parts, what they say of themselves, and their columns.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use fspid_scenario::measure::Measure;
 use serde_json::Value;
 
-use super::data::{Head, Limits, Parameter};
-use super::{NotMerged, SummaryError, SummarySettings};
-use crate::merge::PLAN_KEY;
+use super::data::{Head, Limits, Parameter, Shards, Summary};
+use super::files::Files;
+use super::{NotMerged, SENSITIVITY_RUNS, SummaryError, SummarySettings};
+use crate::folder::Folder;
+use crate::merge::{PLAN_KEY, plan_text};
+use crate::parts::{Parts, Seen};
+use crate::range::Range;
 use crate::rows::{CONTROLLER, DIVERGED_AT, FAILED, PARAMETER, REASONS, REQUIREMENT, RUN, VERDICT};
 use crate::sample::Sampling;
 use crate::shard::{CAMPAIGN_KEY, PROGRAM_KEY};
-use crate::table::{Column, ColumnTable, Kind, Reader, Values};
+use crate::table::{Column, ColumnTable, Kind, Reader, Schema, Values};
 
 /// Ends of the names of a requirement's columns.
 const VALUE: &str = ".value";
 const MET: &str = ".met";
 
-/// A merged file that has been looked at.
+/// Rows that have been looked at: those of a merged file, or of parts.
 pub(super) struct Source {
-    pub(super) reader: Reader,
+    pub(super) files: Files,
     pub(super) head: Head,
     /// Runs, as many as fit into memory addresses.
     pub(super) runs: usize,
+    /// How many of them are among the first of the campaign, which sensitivities are of.
+    pub(super) first_runs: usize,
+    /// Parts, where they are read one by one.
+    parts: Vec<Seen>,
+    exact: bool,
+    small: bool,
 }
 
 /// A requirement as its columns describe it.
@@ -53,21 +63,51 @@ impl Asked {
 }
 
 impl Source {
-    /// Opens a file and checks that it is a merged one, down to its last byte.
+    /// Opens a merged file, or the parts in a folder, and checks them; down to the last byte, unless the parts are
+    /// read one by one, when each is checked as it is read.
     pub(super) fn open(path: &Path, settings: SummarySettings) -> Result<Self, SummaryError> {
-        let reader = Reader::open(path)?;
-        check_columns(&reader).map_err(|reason| refusal(&reader, reason))?;
-        let mut head =
-            head(&reader, settings.confidence).map_err(|reason| refusal(&reader, reason))?;
-        reader.verify()?;
-        head.controllers = controllers(&reader)?;
-        let (found, controllers) = (reader.rows() as u64, head.controllers.len() as u64);
-        let runs = head.runs;
-        if runs == 0 || runs.checked_mul(controllers) != Some(found) {
-            return Err(refusal(&reader, NotMerged::Rows { found, runs, controllers }));
+        let Found { files, mut head, mut parts } = Found::at(path, settings)?;
+        let exact = head.rows <= settings.exact_rows;
+        if exact || head.shards.is_none() {
+            head.digest = Some(files.verify()?);
         }
-        let runs = reader.rows() / head.controllers.len().max(1);
-        Ok(Self { reader, head, runs })
+        // A part is opened once for all its columns rather than once for each, where all of them fit.
+        let cells = head.rows.saturating_mul(files.schema().columns().len() as u64);
+        let small = !parts.is_empty() && cells <= settings.exact_rows;
+        if exact && !small {
+            parts.clear();
+        }
+        head.controllers = controllers(files.first())?;
+        let (found, controllers, runs) = (head.rows, head.controllers.len() as u64, head.runs);
+        if runs == 0 || runs.checked_mul(controllers) != Some(found) {
+            return Err(refusal(files.path(), NotMerged::Rows { found, runs, controllers }));
+        }
+        let runs = files.rows() / head.controllers.len().max(1);
+        Ok(Self { files, head, runs, first_runs: runs.min(SENSITIVITY_RUNS), parts, exact, small })
+    }
+
+    /// Parts to be read one by one; none where all rows are read together.
+    pub(super) fn pieces(&self) -> Vec<Piece<'_>> {
+        let piece = |(number, part)| {
+            let earlier = self.files.begin(number) / self.controllers().max(1);
+            Piece { part, head: &self.head, first_runs: SENSITIVITY_RUNS.saturating_sub(earlier) }
+        };
+        self.parts.iter().enumerate().map(piece).collect()
+    }
+
+    /// True where the values themselves are kept, false where they are too many.
+    pub(super) fn is_exact(&self) -> bool {
+        self.exact
+    }
+
+    /// True where the values of all columns of all parts fit.
+    pub(super) fn is_small(&self) -> bool {
+        self.small
+    }
+
+    /// The run of a row.
+    pub(super) fn run(&self, row: usize) -> u64 {
+        self.files.run(row, self.controllers())
     }
 
     /// How many controllers.
@@ -77,28 +117,111 @@ impl Source {
 
     /// Says that the file is not as a merged one is.
     pub(super) fn refusal(&self, reason: NotMerged) -> SummaryError {
-        refusal(&self.reader, reason)
+        refusal(self.files.path(), reason)
     }
 
     /// Columns of numbers that are no parameters.
     pub(super) fn measures(&self) -> impl Iterator<Item = &Column> {
-        let columns = self.reader.schema().columns().iter();
+        let columns = self.files.schema().columns().iter();
         columns.filter(|it| it.kind == Kind::Float && !it.name.starts_with(PARAMETER))
     }
 
     /// Requirements, in the order of the columns.
     pub(super) fn requirements(&self) -> Vec<Asked> {
-        self.reader.schema().columns().iter().filter_map(asked).collect()
+        self.files.schema().columns().iter().filter_map(asked).collect()
     }
 }
 
-fn refusal(reader: &Reader, reason: NotMerged) -> SummaryError {
-    SummaryError::NotMerged { path: PathBuf::from(reader.path()), reason }
+/// A part, as another thread opens it.
+pub(super) struct Piece<'a> {
+    part: &'a Seen,
+    head: &'a Head,
+    first_runs: usize,
+}
+
+impl Piece<'_> {
+    /// Opens it; every byte is read and checked.
+    pub(super) fn open(&self) -> Result<Source, SummaryError> {
+        let files = Files::one(self.part)?;
+        files.verify()?;
+        let runs = files.rows() / self.head.controllers.len().max(1);
+        let (head, first_runs) = (self.head.clone(), self.first_runs);
+        Ok(Source { files, head, runs, first_runs, parts: Vec::new(), exact: false, small: false })
+    }
+}
+
+/// Rows that nothing but footers was read of, and what these say.
+pub(crate) struct Found {
+    pub(crate) files: Files,
+    head: Head,
+    parts: Vec<Seen>,
+}
+
+impl Found {
+    /// The merged file at a path or in a folder; the parts, where there is none.
+    pub(crate) fn at(path: &Path, settings: SummarySettings) -> Result<Self, SummaryError> {
+        let folder = Folder::new(path);
+        let mut found = match path.is_dir() {
+            false => Self::merged(path)?,
+            true if folder.merged_path().exists() => Self::merged(&folder.merged_path())?,
+            true => Self::parts(&folder, settings.incomplete)?,
+        };
+        let Self { files, head, .. } = &mut found;
+        check_columns(files.schema()).map_err(|reason| refusal(files.path(), reason))?;
+        head.confidence = settings.confidence;
+        head.rows = files.rows() as u64;
+        head.parameters = files.schema().columns().iter().filter_map(parameter).collect();
+        Ok(found)
+    }
+
+    fn merged(path: &Path) -> Result<Self, SummaryError> {
+        let reader = Reader::open(path)?;
+        let named = |key| reader.metadata_value(key).ok_or(NotMerged::NoKey { key });
+        let head = || {
+            let (campaign, program) =
+                (named(CAMPAIGN_KEY)?.to_owned(), named(PROGRAM_KEY)?.to_owned());
+            let plan = reader.metadata_value(PLAN_KEY).ok_or(NotMerged::Part)?;
+            head(plan, campaign, program)
+        };
+        let head = check_columns(reader.schema()).and_then(|()| head());
+        let head = head.map_err(|reason| refusal(path, reason))?;
+        Ok(Self { files: Files::merged(reader), head, parts: Vec::new() })
+    }
+
+    fn parts(folder: &Folder, incomplete: bool) -> Result<Self, SummaryError> {
+        let failed = |error| SummaryError::Folder(Box::new(error));
+        let plan = folder.plan().map_err(failed)?;
+        let parts = Parts::of(folder, &plan, None).map_err(failed)?;
+        let shards = Shards { found: parts.shards(&plan), of: plan.shards() };
+        let runs = parts.missing_runs();
+        let files = Files::of(&parts.seen)?;
+        let (Some(files), true) = (files, incomplete || runs == 0) else {
+            let missing = parts.gaps.first().copied();
+            let missing = missing.unwrap_or(Range { first: 0, end: plan.runs });
+            return Err(SummaryError::Incomplete { shards, missing, runs });
+        };
+        let head = head(&plan_text(&plan), plan.id(), plan.program.clone());
+        let mut head = head.map_err(|reason| refusal(files.path(), reason))?;
+        head.shards = Some(shards);
+        head.runs -= runs;
+        Ok(Self { files, head, parts: parts.seen })
+    }
+
+    /// True for the rows that a summary was made of.
+    pub(crate) fn is_of(&self, summary: &Summary) -> bool {
+        let (ours, theirs) = (&self.head, &summary.head);
+        let of = |head: &Head| (head.campaign.clone(), head.rows, head.shards);
+        of(ours) == of(theirs)
+            && (ours.shards.is_some() || theirs.digest == Some(self.files.first().digest()))
+    }
+}
+
+fn refusal(path: &Path, reason: NotMerged) -> SummaryError {
+    SummaryError::NotMerged { path: path.to_owned(), reason }
 }
 
 /// Checks that every column that is needed is there and of its kind.
-fn check_columns(reader: &Reader) -> Result<(), NotMerged> {
-    let schema = reader.schema();
+fn check_columns(schema: &Schema) -> Result<(), NotMerged> {
     let need = |name: &str, kind: Kind| {
         let found = schema.columns().iter().any(|it| it.name == name && it.kind == kind);
         if found { Ok(()) } else { Err(NotMerged::NoColumn { name: name.to_owned(), kind }) }
@@ -115,11 +238,8 @@ fn check_columns(reader: &Reader) -> Result<(), NotMerged> {
     Ok(())
 }
 
-/// What the metadata say; the controllers are not among that.
-fn head(reader: &Reader, confidence: f64) -> Result<Head, NotMerged> {
-    let value = |key| reader.metadata_value(key).ok_or(NotMerged::NoKey { key });
-    let (campaign, program) = (value(CAMPAIGN_KEY)?.to_owned(), value(PROGRAM_KEY)?.to_owned());
-    let plan = reader.metadata_value(PLAN_KEY).ok_or(NotMerged::Part)?;
+/// What a plan says, as merged files carry it; what the rows say is not among that.
+fn head(plan: &str, campaign: String, program: String) -> Result<Head, NotMerged> {
     let plan: Value = serde_json::from_str(plan).map_err(|_| NotMerged::Plan { place: "/" })?;
     let text = |place: &'static str| {
         let found = plan.pointer(place).and_then(Value::as_str);
@@ -130,21 +250,24 @@ fn head(reader: &Reader, confidence: f64) -> Result<Head, NotMerged> {
     };
     let changes = changes().ok_or(NotMerged::Plan { place: "/changes" })?;
     let runs = plan.pointer("/runs").and_then(Value::as_u64);
+    let runs = runs.ok_or(NotMerged::Plan { place: "/runs" })?;
     let scenario_text = text("/scenario")?.to_owned();
     Ok(Head {
         campaign,
         program,
         scenario: scenario_name(&scenario_text, &changes),
         scenario_digest: text("/scenario_digest")?.to_owned(),
-        runs: runs.ok_or(NotMerged::Plan { place: "/runs" })?,
-        rows: reader.rows() as u64,
+        runs,
+        planned_runs: runs,
+        shards: None,
+        rows: 0,
         seed: text("/seed")?.parse().map_err(|_| NotMerged::Plan { place: "/seed" })?,
         sampling: Sampling::from_name(text("/sampling")?)
             .ok_or(NotMerged::Plan { place: "/sampling" })?,
-        digest: reader.digest(),
+        digest: None,
         controllers: Vec::new(),
-        parameters: reader.schema().columns().iter().filter_map(parameter).collect(),
-        confidence,
+        parameters: Vec::new(),
+        confidence: SummarySettings::default().confidence,
         scenario_text,
         changes,
     })
@@ -173,6 +296,7 @@ fn parameter(column: &Column) -> Option<Parameter> {
 /// The controllers of the first run, in their order.
 fn controllers(reader: &Reader) -> Result<Vec<String>, SummaryError> {
     let mut controllers = Vec::new();
+    let mut first = None;
     for table in reader.columns(&[RUN, CONTROLLER])? {
         let table: ColumnTable = table?;
         let (Values::Integer(runs), Values::Text(names)) =
@@ -182,7 +306,7 @@ fn controllers(reader: &Reader) -> Result<Vec<String>, SummaryError> {
         };
         for (run, name) in runs.iter().zip(names) {
             match name {
-                Some(name) if *run == Some(0) => controllers.push(name.clone()),
+                Some(name) if *run == *first.get_or_insert(*run) => controllers.push(name.clone()),
                 _ => return Ok(controllers),
             }
         }

@@ -3,8 +3,8 @@
 use fspid_page::columns::{Align, Columns};
 
 use super::data::{
-    Bad, ControllerSummary, Extreme, Head, Influence, MeasureSummary, RequirementSummary,
-    Sensitivity, SensitivityTarget, Severity, Summary,
+    Bad, ControllerSummary, Extreme, Head, Influence, MeasureSummary, QuantileSummary,
+    RequirementSummary, Sensitivity, SensitivityTarget, Severity, Summary,
 };
 use super::words::{number, percent, whole};
 
@@ -42,6 +42,7 @@ pub fn text(summary: &Summary) -> String {
 fn head(head: &Head) -> Vec<String> {
     let short = |digest: &str| digest.chars().take(12).collect::<String>();
     let mut lines = vec![head.scenario.clone().unwrap_or_else(|| "a campaign".to_owned())];
+    lines.extend(head.incomplete().map(|incomplete| format!("  {incomplete}")));
     lines.push(format!(
         "  {} runs, {} sampling, seed {}; flown by {}",
         whole(head.runs),
@@ -49,8 +50,12 @@ fn head(head: &Head) -> Vec<String> {
         head.seed,
         head.program
     ));
-    let digest = short(&head.digest.to_string());
-    lines.push(format!("  campaign {}, digest of the rows {digest}", short(&head.campaign)));
+    let digest = head.digest.map(|digest| digest.to_string());
+    let digest = digest.map_or_else(
+        || "each part has its digest".to_owned(),
+        |digest| format!("digest of the rows {}", short(&digest)),
+    );
+    lines.push(format!("  campaign {}, {digest}", short(&head.campaign)));
     if !head.changes.is_empty() {
         lines.extend(wrapped(&format!("changed: {}", head.changes.join(", ")), "  "));
     }
@@ -132,7 +137,7 @@ fn measures(heading: &str, measures: &[&MeasureSummary]) -> Vec<String> {
         let mean = measure.moments.map_or_else(nothing, |moments| number(moments.mean));
         let quantile = |share: f64| {
             let found = measure.quantiles.iter().find(|it| it.share.to_bits() == share.to_bits());
-            found.map_or_else(nothing, |quantile| number(quantile.value))
+            found.map_or_else(nothing, QuantileSummary::in_words)
         };
         table.row(vec![
             cut(short_name(&measure.name)),

@@ -5,7 +5,7 @@ use std::fmt;
 use fspid_diagnostics::digits::{grouped, without_zeros};
 use fspid_study::simulation::FAILS_BY_ITSELF;
 
-use super::data::{MeasureCount, Note, Probability, Severity};
+use super::data::{Head, MeasureCount, Note, Probability, QuantileSummary, Severity, Shards};
 use crate::sample::Sampling;
 
 /// Four significant digits: more say nothing of a campaign.
@@ -40,6 +40,24 @@ pub fn whole(value: u64) -> String {
 #[must_use]
 pub fn percent(share: f64) -> String {
     format!("{} %", without_zeros(&format!("{:.6}", 100.0 * share)))
+}
+
+/// A small share in percent, rounded up to two digits: `0.049 %`.
+#[must_use]
+pub fn at_most_percent(share: f64) -> String {
+    format!("{} %", outwards(share, decimals(share), true))
+}
+
+/// `INCOMPLETE: from 990 of 1000 shards, 9900 of 10 000 runs`.
+#[must_use]
+pub fn incomplete(shards: Shards, runs: u64, planned_runs: u64) -> String {
+    format!(
+        "INCOMPLETE: from {} of {} shards, {} of {} runs",
+        whole(shards.found),
+        whole(shards.of),
+        whole(runs),
+        whole(planned_runs)
+    )
 }
 
 /// Minus signs as print has them.
@@ -96,6 +114,27 @@ fn outwards(share: f64, decimals: usize, up: bool) -> String {
     format!("{:.decimals$}", 100.0 * (rounded / scale))
 }
 
+impl Head {
+    /// That parts are missing, if they are.
+    #[must_use]
+    pub fn incomplete(&self) -> Option<String> {
+        let missing = self.shards.filter(|_| self.runs < self.planned_runs)?;
+        Some(incomplete(missing, self.runs, self.planned_runs))
+    }
+}
+
+impl QuantileSummary {
+    /// `3.412`, or `3.412 (±0.049 %)` with how far its rank may be off, in percent of the flights.
+    #[must_use]
+    pub fn in_words(&self) -> String {
+        let value = number(self.value);
+        match self.sketch.map(|sketch| sketch.rank_error).filter(|error| *error > 0.0) {
+            Some(error) => format!("{value} (\u{b1}{})", at_most_percent(error)),
+            None => value,
+        }
+    }
+}
+
 impl Severity {
     /// The word for it.
     #[must_use]
@@ -118,6 +157,8 @@ impl Note {
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
+            Self::Incomplete { .. } => "incomplete",
+            Self::FromSketches { .. } => "from-sketches",
             Self::RunsNotIndependent { .. } => "runs-not-independent",
             Self::NothingRequired { .. } => "nothing-required",
             Self::SharesOvercorrected => "shares-overcorrected",
@@ -134,6 +175,18 @@ const NAMED: usize = 3;
 impl fmt::Display for Note {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Incomplete { shards, runs, planned_runs } => {
+                let part = incomplete(*shards, *runs, *planned_runs);
+                write!(f, "{part}. What is missing need not be like what is there.")
+            }
+            Self::FromSketches { rows, relative_width } => write!(
+                f,
+                "Of {} rows quantiles are from sketches: each is off by at most {} of its value, and its rank by what \
+                 stands beside it, by nothing where nothing does. Bars of histograms are off by as much at their \
+                 edges. Counts, extremes, means and spreads are exact.",
+                whole(*rows),
+                at_most_percent(*relative_width)
+            ),
             Self::RunsNotIndependent { sampling } => {
                 let points = match sampling {
                     Sampling::LatinHypercube => "the points of a Latin hypercube are not",

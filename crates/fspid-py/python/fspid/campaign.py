@@ -78,7 +78,8 @@ class Campaign:
         watch : callable, optional
             Is told of the progress on an engine after each shard.
         **options
-            What the engine takes: ``address``, ``window``, ``client``.
+            What the engine takes: ``address``, ``window``, ``client``; ``store`` such as ``s3://bucket/prefix``, where
+            workers then put parts by themselves, with ``store_options`` for fsspec.
 
         Returns
         -------
@@ -113,15 +114,17 @@ class Campaign:
         """
         return self._core.table()
 
-    def summary(self, confidence: float = 0.95) -> CampaignSummary:
-        """What the rows say, with confidence intervals.
+    def summary(self, confidence: float = 0.95, *, incomplete: bool = False) -> CampaignSummary:
+        """What the rows say, with confidence intervals: those of the merged file, or of the parts where there is none.
 
         Parameters
         ----------
         confidence : float
             How sure the intervals shall be, above 0 and below 1.
+        incomplete : bool
+            True to hear what there is so far, where shards are missing; every answer names how many.
         """
-        return CampaignSummary(self._core.summary(confidence))
+        return CampaignSummary(self._core.summary(confidence, incomplete))
 
     def __repr__(self) -> str:
         there = "merged" if self.file.exists() else "not merged yet"

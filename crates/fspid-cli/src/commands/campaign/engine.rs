@@ -38,6 +38,10 @@ pub(super) struct Cluster {
     /// here.
     #[arg(long, value_name = "ADDRESS")]
     address: Option<String>,
+    /// Where workers of Ray and Dask put parts by themselves: s3://BUCKET/PREFIX, gs://BUCKET/PREFIX or file:///FOLDER. In
+    /// the end they are brought into the campaign's folder; without it they come through the driver.
+    #[arg(long, value_name = "URL")]
+    store: Option<String>,
     /// The Python that has the package fspid, for Ray and Dask.
     #[arg(long, value_name = "PROGRAM", default_value = "python3")]
     python: String,
@@ -70,6 +74,16 @@ impl Cluster {
         }
     }
 
+    /// Refuses a store where nobody would put anything into it.
+    pub(super) fn check_store(&self) -> Result<(), Failure> {
+        match (self.engine, &self.store) {
+            (Engine::Ray | Engine::Dask, _) | (_, None) => Ok(()),
+            _ => Err(Failure::input(
+                "--store goes with --engine ray and dask; the others put parts into the campaign's folder",
+            )),
+        }
+    }
+
     /// By the driver of the Python package.
     fn driven(&self, engine: &str, place: &Path) -> Result<Asked, Failure> {
         let python = &self.python;
@@ -78,6 +92,9 @@ impl Cluster {
         driver.args(["-m", "fspid.engines", engine]).arg(place).stdout(Stdio::null());
         if let Some(address) = &self.address {
             driver.args(["--address", address]);
+        }
+        if let Some(store) = &self.store {
+            driver.args(["--store", store]);
         }
         let status =
             driver.status().map_err(|error| Failure::input(format_args!("{python}: {error}")))?;
@@ -100,7 +117,9 @@ impl Cluster {
         let merge = format!("{program} campaign merge --out {}", word(place));
         let behind = format!("--dependency=afterok:{array}");
         let log = format!("--output={}", place.join("slurm-merge.log").display());
-        let merged = sbatch(&[&behind, "--job-name=fspid-merge", &log, "--wrap", &merge], &script)?;
+        // A task that failed for good leaves no merge waiting for ever.
+        let options = [&behind, "--kill-on-invalid-dep=yes", "--job-name=fspid-merge", &log];
+        let merged = sbatch(&[&options[..], &["--wrap", &merge]].concat(), &script)?;
         let told = format!(
             "{} tasks of Slurm fly {shards} shards as job {array}; job {merged} merges them into {}\n",
             tasks,

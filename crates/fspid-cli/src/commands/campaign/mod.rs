@@ -49,6 +49,7 @@ On a cluster: --engine ray, dask, slurm or command; or by hand: plan once, fly e
   fspid campaign plan pitch.toml --runs 1000000 --out robust
   fspid campaign shard 0 --out robust
   fspid campaign merge --out robust
+  fspid campaign report robust                     # from the parts, merged or not
 More, with every distribution: fspid campaign --help";
 
 const LONG_HELP: &str = "A dispersion in the scenario:

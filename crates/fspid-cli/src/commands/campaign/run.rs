@@ -37,6 +37,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    arguments.cluster.check_store()?;
     let folder = arguments.place.folder();
     let campaign = match &arguments.scenario {
         Some(scenario) => arguments.planned.campaign(scenario, &folder)?,

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
 from .progress import Progress, SearchProgress
+from .store import FolderParts, StoreParts, parts
 
 if TYPE_CHECKING:
     from .. import _core
@@ -58,6 +59,8 @@ def fly(
     *,
     watch: Callable[[Progress], None] | None = None,
     window: int | None = None,
+    store: str | None = None,
+    store_options: Mapping[str, Any] | None = None,
     **options: Any,
 ) -> None:
     """Fly what is missing of a campaign on an engine; merges nothing.
@@ -72,20 +75,40 @@ def fly(
         Is told of the progress after each shard.
     window : int, optional
         How many shards are given out at a time; by default two for each processor.
+    store : str, optional
+        Where workers put parts by themselves, such as ``s3://bucket/prefix`` or ``file:///shared/parts``. In the end they
+        are brought into the campaign's folder; left out, they come through the driver.
+    store_options : mapping, optional
+        What fsspec takes for the store beside its path.
     **options
         What :func:`reach` takes: ``address``; ``client`` of Dask.
     """
+    places = parts(campaign, store, store_options)
     with reach(engine, **options) as reached:
-        from .job import ShardJob
+        drive(reached, campaign, places, window=window, watch=watch)
+    places.gather()
 
-        missing = campaign.missing()
-        progress = Progress(campaign.shards, campaign.shards - len(missing))
-        for number, part in reached.fly(reached.share(ShardJob.of(campaign)), missing, window):
-            campaign.put(number, part)
-            progress.flown += 1
-            progress.lost = reached.lost
-            if watch is not None:
-                watch(progress)
+
+def drive(
+    engine: Engine,
+    campaign: Campaign,
+    places: FolderParts | StoreParts,
+    *,
+    window: int | None = None,
+    watch: Callable[[Progress], None] | None = None,
+) -> None:
+    """Give out what is missing at places, and take in what comes."""
+    from .job import ShardJob
+
+    missing = places.missing()
+    progress = Progress(campaign.shards, campaign.shards - len(missing))
+    job = engine.share(ShardJob.of(campaign, places.store))
+    for number, answer in engine.fly(job, missing, window):
+        places.take(number, answer)
+        progress.flown += 1
+        progress.lost = engine.lost
+        if watch is not None:
+            watch(progress)
 
 
 @contextmanager

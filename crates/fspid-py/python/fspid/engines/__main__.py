@@ -31,6 +31,7 @@ def main() -> int:
     parser.add_argument("--flights", action="store_true", help="carry flights of tunings and contests")
     parser.add_argument("--set", action="append", default=[], metavar="PATH=VALUE", help="a change of the scenario")
     parser.add_argument("--address", help="where the cluster is")
+    parser.add_argument("--store", help="where workers put parts: s3://BUCKET/PREFIX, gs://…, file://…")
     parser.add_argument("--quiet", action="store_true", help="say nothing while flying")
     asked = parser.parse_args()
     return carry(asked) if asked.flights else campaign(asked)
@@ -46,7 +47,7 @@ def campaign(asked: argparse.Namespace) -> int:
     quiet = asked.quiet or not sys.stderr.isatty()
     try:
         planned = Campaign.from_folder(asked.place)
-        fly(planned, asked.engine, address=asked.address, watch=None if quiet else watch)
+        fly(planned, asked.engine, store=asked.store, address=asked.address, watch=None if quiet else watch)
         print(planned.merge())
     except FileError as error:
         print(f"fspid: {error}", file=sys.stderr)

@@ -15,6 +15,7 @@ from ..errors import Error
 
 if TYPE_CHECKING:
     from ..campaign import Campaign
+    from .store import Receipt, Store
 
 
 class WrongBuild(Error):
@@ -61,14 +62,23 @@ class Job(ABC):
     def _flown(self, flyer: Any, unit: Any) -> Any: ...
 
 
+@dataclass(frozen=True)
 class ShardJob(Job):
-    """A campaign: a unit is the number of a shard, its answer the shard's whole Parquet file."""
+    """A campaign: a unit is the number of a shard, its answer the shard's whole Parquet file.
+
+    Attributes
+    ----------
+    store : Store, optional
+        Where parts are put; what was put there is then the answer.
+    """
+
+    store: Store | None = None
 
     @classmethod
-    def of(cls, campaign: Campaign) -> ShardJob:
+    def of(cls, campaign: Campaign, store: Store | None = None) -> ShardJob:
         """The job of a campaign."""
         core = campaign._core
-        return cls(campaign.id, core.plan_text, _files(core.scenario_folder, core.files), build())
+        return cls(campaign.id, core.plan_text, _files(core.scenario_folder, core.files), build(), store)
 
     def _unpacked(self, root: Path, scenario: Path) -> _core.Campaign:
         campaign = root / "campaign"
@@ -76,11 +86,12 @@ class ShardJob(Job):
         (campaign / "campaign.json").write_text(_moved(self.text), encoding="utf-8")
         return _core.Campaign.planned(campaign)
 
-    def _flown(self, flyer: _core.Campaign, unit: int) -> bytes:
+    def _flown(self, flyer: _core.Campaign, unit: int) -> bytes | Receipt:
         flyer.shard(unit, 1)
         path = Path(flyer.part(unit))
         try:
-            return path.read_bytes()
+            part = path.read_bytes()
+            return part if self.store is None else self.store.put(path.name, part)
         finally:
             path.unlink(missing_ok=True)
 
