@@ -9,6 +9,7 @@ mod array;
 mod campaign;
 mod contest;
 mod controller;
+mod environment;
 mod error;
 mod fuzzy;
 mod interrupt;
@@ -30,6 +31,8 @@ mod _core {
     use super::campaign::Campaign;
     #[pymodule_export]
     use super::controller::Controller;
+    #[pymodule_export]
+    use super::environment::{Environment, Environments};
     #[pymodule_export]
     use super::fuzzy::{FuzzySystem, Supervisor};
     #[pymodule_export]

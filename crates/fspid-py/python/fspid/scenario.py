@@ -330,5 +330,9 @@ class Scenario:
         """
         return Contest(self._core.contest(Path(out), seeds, budget, threads))
 
+    def __deepcopy__(self, memo: object) -> Scenario:
+        # It never changes.
+        return self
+
     def __repr__(self) -> str:
         return f"<Scenario {self.name!r}: {', '.join(self.controllers)}>"
