@@ -89,7 +89,7 @@ fn in_formation(flights: &[(Prepared, Controller)]) -> (Vec<Sights>, usize) {
                 }
             }
         }
-        if at.iter().all(Option::is_none) && waiting.len() == 0 {
+        if at.iter().all(Option::is_none) && waiting.is_empty() {
             return (flown, in_lanes);
         }
         formation.act(&command_rad).expect("far from overflow");

@@ -70,14 +70,17 @@ class _Loop:
         unit: str,
         box: Ends | None,
     ) -> tuple[_core.Scenario, dict[str, Any]]:
-        ends = None if box is None else [(float(low), float(high)) for low, high in _intervals(box)]
+        ends = None if box is None else _intervals(box)
         self.scenario = _scenario(scenario)
         return self.scenario._core, {"controller": controller, "action": action, "unit": unit, "ends": ends}
 
 
-def _intervals(box: Any) -> Any:
+def _intervals(box: Any) -> list[tuple[float, float]]:
     """One interval alone, or a list of intervals."""
-    return box if hasattr(box[0], "__len__") else [box]
+    try:
+        return [(float(low), float(high)) for low, high in (box if hasattr(box[0], "__len__") else [box])]
+    except (TypeError, ValueError, IndexError, KeyError):
+        raise InputError(f"the box is {box!r}; allowed is (lower, upper), or a list of such") from None
 
 
 def _scenario(given: Scenario | str | PathLike[str]) -> Scenario:
@@ -92,12 +95,13 @@ def _scenario(given: Scenario | str | PathLike[str]) -> Scenario:
     return Scenario.from_file(given)
 
 
-def _action_space(ends: Sequence[tuple[float, float]]) -> Box:
+# Boxes say that they hold whole numbers or floats, and no environment that it has floats alone: spaces are `Any` here.
+def _action_space(ends: Sequence[tuple[float, float]]) -> Any:
     low, high = (numpy.array(side, dtype=numpy.float64) for side in zip(*ends, strict=True))
     return Box(low, high, dtype=numpy.float64)
 
 
-def _observation_space() -> Box:
+def _observation_space() -> Any:
     return Box(-numpy.inf, numpy.inf, (_OBSERVED,), dtype=numpy.float64)
 
 
@@ -234,7 +238,7 @@ class PitchEnv(gymnasium.Env["Array", "Array"], _Loop):
             self._seen = observation.copy()
         return observation, reward, terminated, truncated, {} if outcome is None else {"outcome": outcome}
 
-    def render(self) -> str | None:  # type: ignore[override]
+    def render(self) -> str | None:
         """The flight so far as SVG, if the environment was made to be drawn."""
         return self.flight.svg() if self.render_mode == "svg" else None
 
@@ -305,7 +309,7 @@ class PitchVectorEnv(gymnasium.vector.VectorEnv["Array", "Array", "NDArray[Any]"
         """How many of the loops that were begun fly in lanes."""
         return self._native.in_lanes
 
-    def reset(  # type: ignore[override]
+    def reset(
         self,
         *,
         seed: int | Sequence[int] | None = None,
