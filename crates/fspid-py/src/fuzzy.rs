@@ -209,15 +209,14 @@ fn in_blocks(
         .par_chunks(BLOCK)
         .zip(change.par_chunks(BLOCK))
         .zip(kp.par_chunks_mut(BLOCK).zip(ki.par_chunks_mut(BLOCK)).zip(kd.par_chunks_mut(BLOCK)));
-    let answer = |(block, ((error, change), ((kp, ki), kd))): (usize, ((&[f64], &[f64]), _))| {
+    let answered = blocks.enumerate().filter_map(|(block, ((error, change), ((kp, ki), kd)))| {
         let (mut clamped, mut underflowed) = ([false; BLOCK], [false; BLOCK]);
         let (clamped, underflowed) = (&mut clamped[..error.len()], &mut underflowed[..error.len()]);
         let answers = Answers { kp, ki, kd, clamped, underflowed };
         let refused = supervisor.infer_many(error, change, answers).err()?;
         Some((block, refused))
-    };
-    let refused = blocks.enumerate().filter_map(answer).min_by_key(|(block, _)| *block);
-    match refused {
+    });
+    match answered.min_by_key(|(block, _)| *block) {
         None => Ok(gains),
         Some((block, BatchError::Refused { index, error })) => {
             Err(BatchError::Refused { index: block * BLOCK + index, error })

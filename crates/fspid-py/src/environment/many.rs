@@ -80,9 +80,10 @@ impl Crew {
             answered[place] = Some(seen);
         }
         self.formation.act(&command_rad).map_err(|found| found.to_string())?;
-        for place in 0..self.members.len() {
+        let members = self.members.len();
+        for (place, answered) in answered.into_iter().enumerate().take(members) {
             let member = &mut self.members[place];
-            match (answered[place], self.formation.seen(place), &member.episode) {
+            match (answered, self.formation.seen(place), &member.episode) {
                 (Some(seen), Some(then), Some(episode)) => {
                     let rewarded = setting.rewarded(episode, &seen, then);
                     member.observation = rewarded.observation;

@@ -17,6 +17,9 @@ use crate::scenario::Scenario;
 /// Numbers of an observation: set-point, measured pitch, measured pitch rate, error as measured, last command.
 pub(super) const OBSERVED: usize = 5;
 
+/// The lower and the upper end of each number of an action.
+type Intervals = Vec<(f64, f64)>;
+
 /// What an action is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Action {
@@ -37,9 +40,9 @@ pub(super) struct Setting {
     /// Angles in degrees; in radians else.
     is_in_degrees: bool,
     /// Ends of what an action may be, in its unit.
-    pub(super) ends: Vec<(f64, f64)>,
+    pub(super) ends: Intervals,
     /// Ends to which an action is cut.
-    cuts: Vec<(f64, f64)>,
+    cuts: Intervals,
 }
 
 /// What is asked for.
@@ -49,7 +52,7 @@ pub(super) struct Wanted {
     controller: Option<String>,
     action: String,
     unit: String,
-    ends: Option<Vec<(f64, f64)>>,
+    ends: Option<Intervals>,
 }
 
 /// The flight of an episode.
@@ -124,7 +127,7 @@ impl Setting {
     /// The ends of actions that follow from the scenario, and where actions are cut.
     ///
     /// A command is cut by the output limits of the first controller, as that cuts its own; the servo cuts by itself.
-    fn own_ends(&self) -> Result<(Vec<(f64, f64)>, Vec<(f64, f64)>), String> {
+    fn own_ends(&self) -> Result<(Intervals, Intervals), String> {
         let scenario = &self.study.scenario;
         match self.action {
             Action::Elevator => {
@@ -146,7 +149,7 @@ impl Setting {
         }
     }
 
-    fn checked_ends(&self, given: &[(f64, f64)]) -> Result<Vec<(f64, f64)>, String> {
+    fn checked_ends(&self, given: &[(f64, f64)]) -> Result<Intervals, String> {
         if given.len() != self.size() {
             let (found, size) = (given.len(), self.size());
             return Err(format!("the box has {found} intervals; an action has {size} numbers"));
@@ -207,7 +210,7 @@ impl Setting {
             }
             *place = number.clamp(least, most);
         }
-        let is_cut = cut.iter().zip(action).any(|(cut, given)| cut != given);
+        let is_cut = cut.iter().zip(action).any(|(cut, given)| cut.to_bits() != given.to_bits());
         let step = match self.action {
             Action::Elevator => Step {
                 command_rad: self.in_rad(cut[0]),
