@@ -43,4 +43,4 @@ mypy --strict -p fspid
 cd crates/fspid-py
 export FSPID_PROGRAM="${FSPID_PROGRAM:-$PWD/../../target/release/fspid}"
 python -m pytest -q
-python -m pytest -q --doctest-modules --pyargs fspid.scenario fspid.fuzzy fspid.controllers fspid.lti
+python -m pytest -q --doctest-modules --pyargs fspid.scenario fspid.fuzzy fspid.controllers fspid.lti fspid.gym

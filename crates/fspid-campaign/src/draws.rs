@@ -36,6 +36,16 @@ impl Draws {
         Ok(Self { dispersions, cube, first, nominal })
     }
 
+    /// The same of the points of another seed, without asking the scenario again.
+    ///
+    /// # Errors
+    /// None that [`Draws::new`] did not have.
+    pub fn reseeded(&self, seed: u64) -> Result<Self, CampaignError> {
+        let (dimensions, runs) = (self.cube.dimensions(), self.cube.runs());
+        let cube = Cube::new(self.cube.sampling(), dimensions, runs, seed)?;
+        Ok(Self { cube, ..self.clone() })
+    }
+
     /// How many numbers between 0 and 1 decide about a run.
     #[must_use]
     pub fn dimensions(&self) -> usize {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use fspid::core::fuzzy::{Answers, Supervisor as Asked};
+use fspid::core::fuzzy::{Answers, BatchError, Supervisor as Asked};
 use fspid::fuzzy::system::System;
 use fspid::scenario::fuzzy_system::{self, Format, LoadError, Options};
 use fspid::scenario::supervisor::Question;
@@ -10,6 +10,7 @@ use fspid::study::fuzzy_system::{AuditQuestion, SliceQuestion, ask, audit, expla
 use fspid::study::{inference, report};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
+use rayon::prelude::*;
 
 use crate::answer::Answer;
 use crate::array::{Column, same_length};
@@ -193,6 +194,37 @@ impl FuzzySystem {
     }
 }
 
+/// Answers of a block: they and their flags stay in the nearest caches, and a block is worth a thread.
+const BLOCK: usize = 4096;
+
+/// Increments of kp, ki and kd, block by block on all threads; the first inputs that are refused.
+fn in_blocks(
+    supervisor: &Asked<f64>,
+    error: &[f64],
+    change: &[f64],
+) -> Result<[Vec<f64>; 3], BatchError> {
+    let mut gains = [(); 3].map(|()| vec![0.0; error.len()]);
+    let [kp, ki, kd] = &mut gains;
+    let blocks = error
+        .par_chunks(BLOCK)
+        .zip(change.par_chunks(BLOCK))
+        .zip(kp.par_chunks_mut(BLOCK).zip(ki.par_chunks_mut(BLOCK)).zip(kd.par_chunks_mut(BLOCK)));
+    let answered = blocks.enumerate().filter_map(|(block, ((error, change), ((kp, ki), kd)))| {
+        let (mut clamped, mut underflowed) = ([false; BLOCK], [false; BLOCK]);
+        let (clamped, underflowed) = (&mut clamped[..error.len()], &mut underflowed[..error.len()]);
+        let answers = Answers { kp, ki, kd, clamped, underflowed };
+        let refused = supervisor.infer_many(error, change, answers).err()?;
+        Some((block, refused))
+    });
+    match answered.min_by_key(|(block, _)| *block) {
+        None => Ok(gains),
+        Some((block, BatchError::Refused { index, error })) => {
+            Err(BatchError::Refused { index: block * BLOCK + index, error })
+        }
+        Some((_, other)) => Err(other),
+    }
+}
+
 /// The supervisor of a self-tuning controller: three increments of gains for an error and its change.
 #[pyclass(frozen, module = "fspid._core")]
 pub(crate) struct Supervisor {
@@ -240,13 +272,7 @@ impl Supervisor {
         let supervisor = self.supervisor;
         let answered = interrupt::run(py, move || {
             let [error, change] = [columns[0].as_slice(), columns[1].as_slice()];
-            let mut gains = [(); 3].map(|()| vec![0.0; error.len()]);
-            let (mut clamped, mut underflowed) =
-                (vec![false; error.len()], vec![false; error.len()]);
-            let [kp, ki, kd] = &mut gains;
-            let (clamped, underflowed) = (&mut clamped, &mut underflowed);
-            let answers = Answers { kp, ki, kd, clamped, underflowed };
-            supervisor.infer_many(error, change, answers).map(|()| gains)
+            in_blocks(&supervisor, error, change)
         })?;
         let answered = answered.map_err(|found| error::input(py, found))?;
         let names = ["delta_kp", "delta_ki", "delta_kd"];

@@ -10,6 +10,7 @@ mod campaign;
 mod contest;
 mod controller;
 mod crew;
+mod environment;
 mod error;
 mod fuzzy;
 mod interrupt;
@@ -33,6 +34,8 @@ mod _core {
     use super::controller::Controller;
     #[pymodule_export]
     use super::crew::Worker;
+    #[pymodule_export]
+    use super::environment::{Environment, Environments};
     #[pymodule_export]
     use super::fuzzy::{FuzzySystem, Supervisor};
     #[pymodule_export]

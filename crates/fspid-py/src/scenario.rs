@@ -38,7 +38,7 @@ impl Scenario {
         folder: Option<PathBuf>,
         overrides: Vec<String>,
     ) -> PyResult<Self> {
-        let name = path.as_ref().map_or_else(|| NAME.to_owned(), |path| path.display().to_string());
+        let name = name_of(path.as_deref());
         let study = py.detach(|| file::parse(&text, &name, folder.as_deref(), &overrides));
         let study = Arc::new(study.map_err(|found| error::problems(py, &found))?);
         Ok(Self { text, path, folder, overrides, study, written: OnceLock::new() })
@@ -46,6 +46,15 @@ impl Scenario {
 
     pub(crate) fn study(&self) -> &Study {
         &self.study
+    }
+
+    pub(crate) fn shared_study(&self) -> Arc<Study> {
+        Arc::clone(&self.study)
+    }
+
+    /// Its text, its name in messages, and from where it names files.
+    pub(crate) fn origin(&self) -> (&str, String, Option<&Path>) {
+        (&self.text, name_of(self.path.as_deref()), self.folder.as_deref())
     }
 
     /// What tunings and contests read.
@@ -86,6 +95,10 @@ impl Scenario {
 
 /// What a scenario without a file is called in messages.
 const NAME: &str = "scenario.toml";
+
+fn name_of(path: Option<&Path>) -> String {
+    path.map_or_else(|| NAME.to_owned(), |path| path.display().to_string())
+}
 
 #[pymethods]
 impl Scenario {

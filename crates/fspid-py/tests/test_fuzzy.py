@@ -48,6 +48,18 @@ def test_many_answers_are_those_one_by_one(rows):
         assert (many["delta_kp"][place], many["delta_ki"][place], many["delta_kd"][place]) == (one.kp, one.ki, one.kd)
 
 
+def test_of_many_inputs_the_first_that_is_refused_is_told():
+    strict = fspid.Supervisor("printed", 5.0, out_of_range="error")
+    errors = [0.1 * (k % 40) for k in range(20_000)]
+    changes = list(reversed(errors))
+    many = strict.infer_many(errors, changes)
+    for place in (0, 4095, 4096, 19_999):
+        assert many["delta_kp"][place] == strict(errors[place], changes[place]).kp
+    errors[9_000] = errors[17_000] = 6.0
+    with pytest.raises(fspid.InputError, match="inputs 9000"):
+        strict.infer_many(errors, changes)
+
+
 def test_columns_of_a_system_are_its_answers(system):
     numpy = pytest.importorskip("numpy")
     error, change = numpy.meshgrid(numpy.linspace(-6, 6, 25), numpy.linspace(-6, 6, 25))

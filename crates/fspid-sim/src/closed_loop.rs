@@ -6,15 +6,13 @@ use std::ops::ControlFlow;
 use fspid_core::{Faults, Gains, Sample, State, Step};
 
 use crate::actuated::Held;
-use crate::aircraft::AircraftSample;
 use crate::controller::Controller;
 use crate::error::SimError;
 use crate::external::ControllerLoss;
 use crate::flown::Perturbation;
+use crate::in_flight::Course;
 use crate::propagation::{Motion, Propagation};
 use crate::scenario::{Flyer, Prepared, Respondent, Scenario};
-use crate::sensor::{Sensor, SensorState, Truth};
-use crate::surroundings::held;
 use crate::trace::{Outcome, Trace};
 
 /// A scenario's flights: the trace of each controller, in the scenario's order.
@@ -147,116 +145,25 @@ fn watch_answers(
     perturbation: &Perturbation,
     mut observer: impl FnMut(Instant, &Coming<'_>) -> ControlFlow<()>,
 ) -> Result<Outcome, SimError> {
-    let mut path = perturbation.start()?;
-    let mut delayed = Delay::of(prepared.delay_samples);
-    let mut stages = prepared.stages.iter().peekable();
-    let Some(mut stage) = stages.next() else {
-        return Ok(Outcome::Completed);
-    };
-    let mut plant = stage.propagation.at_rest();
-    let mut sensors = Sensors::start(prepared)?;
-
-    for (k, &setpoint_rad) in prepared.setpoint_rad.iter().enumerate() {
-        while let Some(next) = stages.next_if(|next| next.from <= k) {
-            stage = next;
-        }
-        let at = |column: &Option<Vec<f64>>| {
-            column.as_ref().and_then(|values| values.get(k)).copied().unwrap_or(0.0)
+    let mut course = Course::start(prepared, perturbation)?;
+    loop {
+        let seen = match course.look() {
+            Ok(seen) => seen,
+            Err(outcome) => return Ok(outcome),
         };
-        let disturbance_rad = at(&prepared.at_elevator);
-        let theta_rad = plant.theta_rad();
-        if plant.is_lost() {
-            return Ok(Outcome::Diverged { at_s: prepared.timing.time_s(k) });
-        }
-        if stage.propagation.is_at_ground(&plant) {
-            return Ok(Outcome::HitGround { at_s: prepared.timing.time_s(k) });
-        }
-        let q_rad_s = stage.propagation.rate_rad_s(&plant, disturbance_rad);
-        let aircraft = stage.propagation.sample(&plant, disturbance_rad);
-        sensors.erect(&aircraft);
-        let measurement_rad = sensors.pitch_rad(k, theta_rad) + at(&prepared.at_measurement);
-        let rate_rad_s = sensors.rate_rad_s(k, q_rad_s);
-        let sample = Sample { setpoint_rad, measurement_rad, rate_rad_s };
-        let step = match answer(sample) {
+        let step = match answer(seen.sample()) {
             Ok(step) => step,
             Err(loss) => {
-                return Ok(Outcome::ControllerLost { at_s: prepared.timing.time_s(k), loss });
+                return Ok(Outcome::ControllerLost { at_s: prepared.timing.time_s(seen.k), loss });
             }
         };
-        let arriving_rad = delayed.pass(path.pass(step.command_rad));
-        let command_rad = arriving_rad + at(&prepared.at_servo);
-        stage.propagation.settle(&mut plant, command_rad);
-        let elevator_rad = stage.propagation.elevator_rad(&plant, disturbance_rad);
-        let measured = [measurement_rad, rate_rad_s];
-        let instant =
-            Instant { k, setpoint_rad, theta_rad, q_rad_s, elevator_rad, measured, aircraft, step };
-        let held = held(disturbance_rad, (prepared.gusts(), prepared.gust_responses.as_deref()), k);
-        let propagation = &stage.propagation;
-        let coming = Coming { propagation, motion: &plant, command_rad, held: &held };
+        let (instant, command_rad) = course.take(seen, step);
+        let held = course.held();
+        let (propagation, motion) = (course.propagation(), course.plant());
+        let coming = Coming { propagation, motion, command_rad, held: &held };
         if observer(instant, &coming).is_break() {
             return Ok(Outcome::Completed);
         }
-        stage.propagation.advance(&mut plant, command_rad, &held)?;
+        course.advance(command_rad)?;
     }
-    Ok(Outcome::Completed)
-}
-
-/// Commands on their way, the oldest at `next`.
-struct Delay {
-    commands_rad: Vec<f64>,
-    next: usize,
-}
-
-impl Delay {
-    fn of(samples: usize) -> Self {
-        Self { commands_rad: vec![0.0; samples], next: 0 }
-    }
-
-    /// Takes a command and answers the one that arrives.
-    #[inline]
-    fn pass(&mut self, command_rad: f64) -> f64 {
-        let Some(place) = self.commands_rad.get_mut(self.next) else {
-            return command_rad;
-        };
-        let arriving_rad = std::mem::replace(place, command_rad);
-        self.next += 1;
-        if self.next == self.commands_rad.len() {
-            self.next = 0;
-        }
-        arriving_rad
-    }
-}
-
-/// What the controller sees through; nothing changes without a sensor.
-struct Sensors {
-    pitch: Option<SensorState>,
-    rate: Option<SensorState>,
-    apparent_vertical_rad: f64,
-}
-
-impl Sensors {
-    fn start(prepared: &Prepared) -> Result<Self, SimError> {
-        let dt_s = prepared.timing.dt_s();
-        let start = |sensor: Option<Sensor>| sensor.map(|sensor| sensor.start(dt_s)).transpose();
-        let (pitch, rate) = (start(prepared.pitch_sensor)?, start(prepared.rate_sensor)?);
-        Ok(Self { pitch, rate, apparent_vertical_rad: 0.0 })
-    }
-
-    /// Lets gyros erect to the apparent vertical; that of a linear plant is the true one.
-    fn erect(&mut self, aircraft: &Option<AircraftSample>) {
-        self.apparent_vertical_rad = aircraft.map_or(0.0, |sample| sample.apparent_vertical_rad);
-    }
-
-    fn pitch_rad(&mut self, k: usize, value: f64) -> f64 {
-        let apparent_vertical_rad = self.apparent_vertical_rad;
-        seen(self.pitch.as_mut(), k, Truth { value, apparent_vertical_rad })
-    }
-
-    fn rate_rad_s(&mut self, k: usize, value: f64) -> f64 {
-        seen(self.rate.as_mut(), k, Truth { value, ..Truth::default() })
-    }
-}
-
-fn seen(sensor: Option<&mut SensorState>, k: usize, truth: Truth) -> f64 {
-    sensor.map_or(truth.value, |sensor| sensor.measure(k, truth))
 }

@@ -105,7 +105,8 @@ pub struct Trace {
 
 impl Trace {
     /// An empty trace with room for a flight.
-    pub(crate) fn with_room(prepared: &Prepared) -> Self {
+    #[must_use]
+    pub fn with_room(prepared: &Prepared) -> Self {
         let rows = prepared.timing().rows();
         let column = || Vec::with_capacity(rows);
         Self {
@@ -124,8 +125,8 @@ impl Trace {
         }
     }
 
-    /// Adds a sample.
-    pub(crate) fn push(&mut self, prepared: &Prepared, instant: &Instant) {
+    /// Adds a sample of a flight of what is prepared.
+    pub fn push(&mut self, prepared: &Prepared, instant: &Instant) {
         let time_s = prepared.timing().time_s(instant.k);
         self.time_s.push(time_s);
         self.setpoint_rad.push(instant.setpoint_rad);

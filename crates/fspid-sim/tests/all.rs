@@ -4,6 +4,7 @@ mod batch;
 mod closed_loop;
 mod describing;
 mod empirical;
+mod in_flight;
 mod moving_air;
 mod reference;
 mod set_centres;

@@ -21,7 +21,7 @@ use proptest::test_runner::RngSeed;
 
 /// What may differ between cases but not between the flights of one.
 #[derive(Clone, Copy, Debug)]
-struct Structure {
+pub(super) struct Structure {
     order: usize,
     self_tuning: bool,
     /// Whether the rules conclude numbers, different ones in each flight.
@@ -37,7 +37,7 @@ struct Structure {
 }
 
 /// Numbers that depend on a seed alone: the generator of Steele, Lea and Flood (2014).
-struct Random(u64);
+pub(super) struct Random(u64);
 
 impl Random {
     fn bits(&mut self) -> u64 {
@@ -261,7 +261,7 @@ fn scenario(random: &mut Random, structure: Structure) -> Scenario {
 }
 
 /// The bits of an instant; all NaN alike.
-fn bits(instant: &Instant) -> ([u64; 12], bool, u8) {
+pub(super) fn bits(instant: &Instant) -> ([u64; 12], bool, u8) {
     let Instant { setpoint_rad, theta_rad, q_rad_s, elevator_rad, measured, step, .. } = instant;
     let [seen_rad, seen_rad_s] = measured;
     let gains = step.gains;
@@ -283,9 +283,9 @@ fn bits(instant: &Instant) -> ([u64; 12], bool, u8) {
     (numbers.map(|number| one_nan(number).to_bits()), step.saturated, step.faults.bits())
 }
 
-type Flown = (Vec<([u64; 12], bool, u8)>, Result<Outcome, SimError>);
+pub(super) type Flown = (Vec<([u64; 12], bool, u8)>, Result<Outcome, SimError>);
 
-fn singly(flights: &[(Prepared, Controller)]) -> Vec<Flown> {
+pub(super) fn singly(flights: &[(Prepared, Controller)]) -> Vec<Flown> {
     let single = |(prepared, controller): &(Prepared, Controller)| {
         let mut rows = Vec::new();
         let outcome = fly(prepared, controller, |instant| {
@@ -309,7 +309,11 @@ fn side_by_side<const W: usize>(flights: &[(Prepared, Controller)]) -> Vec<Flown
     rows.into_iter().zip(outcomes.expect("all of one structure")).collect()
 }
 
-fn flights(structure: Structure, seed: u64, count: usize) -> Vec<(Prepared, Controller)> {
+pub(super) fn flights(
+    structure: Structure,
+    seed: u64,
+    count: usize,
+) -> Vec<(Prepared, Controller)> {
     let mut random = Random(seed);
     let flight = |_| {
         let scenario = scenario(&mut random, structure);
@@ -337,7 +341,7 @@ fn compare(structure: Structure, seed: u64, count: usize) {
     assert_same(&side_by_side::<16>(&flights), &expected, 16);
 }
 
-fn structure() -> impl Strategy<Value = Structure> {
+pub(super) fn structure() -> impl Strategy<Value = Structure> {
     let policy = prop::sample::select(OutOfRange::ALL.to_vec());
     let flags = (any::<bool>(), any::<bool>(), any::<bool>(), any::<bool>(), any::<bool>());
     let kinds = (0_u8..4, 0_u8..3);
@@ -374,7 +378,7 @@ proptest! {
     }
 }
 
-const PLAIN: Structure = Structure {
+pub(super) const PLAIN: Structure = Structure {
     order: 4,
     self_tuning: true,
     numbers: false,
@@ -385,6 +389,8 @@ const PLAIN: Structure = Structure {
     policy: OutOfRange::Clamp,
     wild: false,
 };
+
+pub(super) const WILD: Structure = Structure { wild: true, ..PLAIN };
 
 #[test]
 fn flights_with_numbers_of_their_own_have_the_bits_of_single_flights() {

@@ -9,6 +9,8 @@
 Every number and every sentence is that of the program ``fspid``: the same code answers both, with the same bits.
 """
 
+from typing import Any
+
 from . import aircraft, lti
 from ._core import VERSION as __version__
 from ._core import Column
@@ -51,3 +53,12 @@ __all__ = [
     "aircraft",
     "lti",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """``fspid.gym`` where it is asked for: it needs NumPy and Gymnasium."""
+    if name == "gym":
+        import importlib
+
+        return importlib.import_module("fspid.gym")
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

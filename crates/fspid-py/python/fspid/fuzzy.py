@@ -303,7 +303,7 @@ class Supervisor:
         return Increments(kp, ki, kd, clamped, underflowed)
 
     def infer_many(self, error: Numbers, change: Numbers) -> dict[str, _core.Column]:
-        """Increments at many errors and changes: columns ``delta_kp``, ``delta_ki``, ``delta_kd``.
+        """Increments at many errors and changes, on all threads: columns ``delta_kp``, ``delta_ki``, ``delta_kd``.
 
         Parameters
         ----------

@@ -355,5 +355,9 @@ class Scenario:
         with engines.crew(self._core, engine, watch, options) as (fly, tell):
             return Contest(self._core.contest(wanted, fly, tell))
 
+    def __deepcopy__(self, memo: object) -> Scenario:
+        # It never changes.
+        return self
+
     def __repr__(self) -> str:
         return f"<Scenario {self.name!r}: {', '.join(self.controllers)}>"

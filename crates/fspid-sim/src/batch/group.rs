@@ -3,9 +3,11 @@
 use fspid_numeric::InstructionSet;
 
 use super::Entrant;
+use super::airframes::{Airframes, Entering, Sighted};
 use super::lane::{Lanes, Mask, NO, YES, all, mask};
 use super::pid_lanes::Controllers;
 use super::plant::Plants;
+use super::queue::Queue;
 use super::refusal::Refusal;
 use super::row::BatchRow;
 use super::samples::Samples;
@@ -69,9 +71,8 @@ pub(super) struct Group<'a, const W: usize> {
     courses: Vec<Course<'a>>,
     /// First sample at which a plant changes.
     next_change: usize,
-    plants: Plants<W>,
+    airframes: Airframes<W>,
     controllers: Controllers<'a, W>,
-    queue: Queue<W>,
     flying: Mask<W>,
     outcomes: Vec<Result<Outcome, SimError>>,
 }
@@ -102,16 +103,19 @@ impl<'a, const W: usize> Group<'a, W> {
         if let Some(flight) = flights.iter().position(|other| other.prepared.timing != timing) {
             return Err(differs(flight, "its timing"));
         }
+        let mut delays = [0; W];
+        for (delay, entrant) in delays.iter_mut().zip(flights) {
+            *delay = entrant.prepared.delay_samples;
+        }
         let mut group = Self {
             timing,
             signals: [Signals::default(); W],
             next_change: usize::MAX,
-            plants: Plants::at_rest(order),
+            airframes: Airframes { plants: Plants::at_rest(order), queue: Queue::new(delays) },
             controllers: Controllers::new(
                 flights.iter().map(|entrant| entrant.controller).collect(),
                 instructions,
             )?,
-            queue: Queue::new(flights),
             flying: [NO; W],
             outcomes: flights.iter().map(|_| Ok(Outcome::Completed)).collect(),
             courses,
@@ -120,7 +124,7 @@ impl<'a, const W: usize> Group<'a, W> {
             group.signals[lane] = Signals::new(entrant.prepared);
             group.flying[lane] = YES;
             if let Some(propagator) = group.courses[lane].propagator() {
-                group.plants.load(lane, propagator);
+                group.airframes.plants.load(lane, propagator);
             }
         }
         group.find_next_change();
@@ -153,30 +157,25 @@ impl<'a, const W: usize> Group<'a, W> {
 
     #[inline(always)]
     fn sample(&mut self, k: usize, observer: &mut impl FnMut(&BatchRow<'_, W>)) {
-        let setpoint_rad = self.gather(k, |signals| signals.setpoint_rad);
-        let disturbance_rad = self.gather(k, |signals| signals.at_elevator);
-        let at_servo_rad = self.gather(k, |signals| signals.at_servo);
-        let mut measurement_rad = self.gather(k, |signals| signals.at_measurement);
-        let theta_rad = self.plants.theta_rad();
-        for lane in 0..W {
-            measurement_rad[lane] += theta_rad[lane];
-        }
-        let q_rad_s = self.plants.rate_rad_s(&disturbance_rad);
+        let entering = Entering {
+            setpoint_rad: self.gather(k, |signals| signals.setpoint_rad),
+            at_servo_rad: self.gather(k, |signals| signals.at_servo),
+            at_elevator_rad: self.gather(k, |signals| signals.at_elevator),
+            at_measurement_rad: self.gather(k, |signals| signals.at_measurement),
+        };
+        let Sighted { theta_rad, q_rad_s, measurement_rad } = self.airframes.look(&entering);
         self.controllers.step(Samples {
-            setpoint_rad: &setpoint_rad,
+            setpoint_rad: &entering.setpoint_rad,
             measurement_rad: &measurement_rad,
             rate_rad_s: &q_rad_s,
         });
-        let mut command_rad = self.queue.pass(k, &self.controllers.steps.command_rad);
-        for lane in 0..W {
-            command_rad[lane] += at_servo_rad[lane];
-        }
-        self.plants.settle(&command_rad);
-        let elevator_rad = self.plants.elevator_rad(&disturbance_rad);
+        let commanded_rad = &self.controllers.steps.command_rad;
+        let command_rad = self.airframes.take(k, commanded_rad, &entering);
+        let elevator_rad = self.airframes.plants.elevator_rad(&entering.at_elevator_rad);
         observer(&BatchRow {
             k,
             flying: &self.flying,
-            setpoint_rad: &setpoint_rad,
+            setpoint_rad: &entering.setpoint_rad,
             theta_rad: &theta_rad,
             q_rad_s: &q_rad_s,
             elevator_rad: &elevator_rad,
@@ -186,9 +185,9 @@ impl<'a, const W: usize> Group<'a, W> {
             excess: &self.controllers.steps.saturated,
             faults: &self.controllers.steps.faults,
         });
-        let held = self.plants.advance(&command_rad, &disturbance_rad);
+        let held = self.airframes.advance(&command_rad, &entering);
         if held != [NO; W] {
-            self.advance_held(&held, &command_rad, &disturbance_rad);
+            self.advance_held(&held, &command_rad, &entering.at_elevator_rad);
         }
     }
 
@@ -213,7 +212,7 @@ impl<'a, const W: usize> Group<'a, W> {
                 course.now += 1;
             }
             if let Some(propagator) = course.propagator() {
-                self.plants.load(lane, propagator);
+                self.airframes.plants.load(lane, propagator);
             }
         }
         self.find_next_change();
@@ -222,7 +221,7 @@ impl<'a, const W: usize> Group<'a, W> {
     /// Ends flights that have diverged, as [`Motion::is_lost`](crate::propagation::Motion::is_lost).
     #[inline(always)]
     fn drop_lost(&mut self, k: usize) {
-        let (theta_rad, mut here) = (self.plants.theta_rad(), [NO; W]);
+        let (theta_rad, mut here) = (self.airframes.plants.theta_rad(), [NO; W]);
         for lane in 0..W {
             here[lane] = mask(theta_rad[lane].abs() <= DIVERGED_RAD);
         }
@@ -243,9 +242,8 @@ impl<'a, const W: usize> Group<'a, W> {
         self.outcomes[lane] = outcome;
         self.flying[lane] = NO;
         self.signals[lane] = Signals::default();
-        self.plants.park(lane);
+        self.airframes.park(lane);
         self.controllers.park(lane);
-        self.queue.park(lane);
     }
 
     #[cold]
@@ -257,7 +255,8 @@ impl<'a, const W: usize> Group<'a, W> {
                 continue;
             };
             let (command_rad, disturbance_rad) = (command_rad[lane], disturbance_rad[lane]);
-            let passed = self.plants.advance_held(lane, propagator, command_rad, disturbance_rad);
+            let passed =
+                self.airframes.plants.advance_held(lane, propagator, command_rad, disturbance_rad);
             if let Err(error) = passed {
                 self.end(lane, Err(error));
             }
@@ -280,43 +279,4 @@ fn course(flight: usize, prepared: &Prepared) -> Result<Course<'_>, Refusal> {
         }
     }
     Ok(Course { stages, now: 0 })
-}
-
-/// Commands on their way to the servos: a ring of as many samples as the longest delay.
-#[derive(Clone, Debug)]
-struct Queue<const W: usize> {
-    ring: Vec<Lanes<W>>,
-    delay_samples: [usize; W],
-    longest: usize,
-}
-
-impl<const W: usize> Queue<W> {
-    fn new(flights: &[Entrant<'_>]) -> Self {
-        let mut delay_samples = [0; W];
-        for (place, entrant) in delay_samples.iter_mut().zip(flights) {
-            *place = entrant.prepared.delay_samples;
-        }
-        let longest = delay_samples.iter().copied().max().unwrap_or(0);
-        Self { ring: vec![[0.0; W]; longest + 1], delay_samples, longest }
-    }
-
-    /// Takes the commands of sample `k` and answers those that arrive.
-    #[inline(always)]
-    fn pass(&mut self, k: usize, command_rad: &Lanes<W>) -> Lanes<W> {
-        if self.longest == 0 {
-            return *command_rad;
-        }
-        let size = self.ring.len();
-        self.ring[k % size] = *command_rad;
-        let mut arrived_rad = [0.0; W];
-        for lane in 0..W {
-            // Before its first command a servo is commanded to rest, as the ring is filled.
-            arrived_rad[lane] = self.ring[(k + size - self.delay_samples[lane]) % size][lane];
-        }
-        arrived_rad
-    }
-
-    fn park(&mut self, lane: usize) {
-        self.ring.iter_mut().for_each(|commands| commands[lane] = 0.0);
-    }
 }

@@ -20,18 +20,22 @@
     reason = "a lane is a place in many arrays at once, and such loops become vectors"
 )]
 
+mod airframes;
+mod formation;
 mod gains;
 mod group;
 mod lane;
 mod memory;
 mod pid_lanes;
 mod plant;
+mod queue;
 mod refusal;
 mod row;
 mod samples;
 #[cfg(test)]
 mod tests;
 
+pub use formation::Formation;
 pub use fspid_numeric::InstructionSet;
 pub use refusal::Refusal;
 pub use row::BatchRow;

@@ -60,6 +60,11 @@ impl<const W: usize> Plants<W> {
         }
     }
 
+    /// Order of the plants.
+    pub(super) fn order(&self) -> usize {
+        self.rate_output.len()
+    }
+
     /// Lets a lane go on with this plant from where it is.
     pub(super) fn load(&mut self, lane: usize, propagator: &Propagator) {
         for (place, &entry) in self.rows.iter_mut().zip(&propagator.free.step) {

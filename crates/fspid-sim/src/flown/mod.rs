@@ -13,4 +13,5 @@ pub mod trajectory;
 
 pub use holding::{Criterion, Envelope, Failure};
 pub use ladder::Margin;
+pub(crate) use perturbation::CommandPath;
 pub use perturbation::{AllPass, Perturbation};

@@ -1,0 +1,276 @@
+//! A flight that stands at a sample and waits for a command: the loop, open where the controller stands.
+
+use std::borrow::Borrow;
+
+use fspid_core::{Sample, Step};
+
+use crate::actuated::Held;
+use crate::aircraft::AircraftSample;
+use crate::error::SimError;
+use crate::flown::{CommandPath, Perturbation};
+use crate::instant::Instant;
+use crate::propagation::{Motion, Propagation};
+use crate::scenario::Prepared;
+use crate::sensor::{Sensor, SensorState, Truth};
+use crate::surroundings::held;
+use crate::trace::Outcome;
+
+/// What is there at a sample before anybody answers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seen {
+    /// Index of the sample.
+    pub k: usize,
+    /// Commanded pitch, rad.
+    pub setpoint_rad: f64,
+    /// Pitch angle, rad; of an aircraft its change from the trim.
+    pub theta_rad: f64,
+    /// Pitch rate, rad/s.
+    pub q_rad_s: f64,
+    /// Pitch angle, rad, and pitch rate, rad/s, as a controller sees them.
+    pub measured: [f64; 2],
+}
+
+impl Seen {
+    /// What a controller is asked with.
+    #[inline]
+    #[must_use]
+    pub fn sample(&self) -> Sample<f64> {
+        let [measurement_rad, rate_rad_s] = self.measured;
+        Sample { setpoint_rad: self.setpoint_rad, measurement_rad, rate_rad_s }
+    }
+}
+
+/// A flight of a prepared scenario whose commands come from outside, one a sample; `P` is how it holds what is
+/// prepared, `&Prepared` or `Arc<Prepared>`. Whoever answers with the steps of a controller flies it as
+/// [`fly`](crate::fly) does, bit for bit.
+#[derive(Clone, Debug)]
+pub struct InFlight<P> {
+    course: Course<P>,
+    seen: Result<Seen, Outcome>,
+}
+
+impl<P: Borrow<Prepared>> InFlight<P> {
+    /// At the first sample.
+    ///
+    /// # Errors
+    /// [`SimError::Number`] for sensors whose delay is too long for memory.
+    pub fn start(prepared: P) -> Result<Self, SimError> {
+        let mut course = Course::start(prepared, &Perturbation::NONE)?;
+        let seen = course.look();
+        Ok(Self { course, seen })
+    }
+
+    /// What is prepared.
+    pub fn prepared(&self) -> &Prepared {
+        self.course.prepared()
+    }
+
+    /// What is seen at the sample that waits for an answer.
+    ///
+    /// # Errors
+    /// How the flight ended, where none waits any more.
+    pub fn seen(&self) -> Result<Seen, Outcome> {
+        self.seen
+    }
+
+    /// Answers the sample that waits, and flies on to the next one. What was there at the answered sample; `None`, with
+    /// nothing done, for a flight that has ended.
+    ///
+    /// # Errors
+    /// As [`fly`](crate::fly).
+    pub fn act(&mut self, step: Step<f64>) -> Result<Option<Instant>, SimError> {
+        let Ok(seen) = self.seen else {
+            return Ok(None);
+        };
+        let (instant, command_rad) = self.course.take(seen, step);
+        self.course.advance(command_rad)?;
+        self.seen = self.course.look();
+        Ok(Some(instant))
+    }
+}
+
+/// Where a flight is. Each sample is looked at once, answered once and left once, in this order.
+#[derive(Clone, Debug)]
+pub(crate) struct Course<P> {
+    prepared: P,
+    k: usize,
+    /// Place of the plant that holds.
+    stage: usize,
+    plant: Motion,
+    sensors: Sensors,
+    path: CommandPath,
+    delayed: Delay,
+    /// At the elevator, rad, and what an aircraft shows, of the sample that was looked at.
+    disturbance_rad: f64,
+    aircraft: Option<AircraftSample>,
+}
+
+impl<P: Borrow<Prepared>> Course<P> {
+    pub(crate) fn start(prepared: P, perturbation: &Perturbation) -> Result<Self, SimError> {
+        let all: &Prepared = prepared.borrow();
+        Ok(Self {
+            k: 0,
+            stage: 0,
+            plant: all.stages[0].propagation.at_rest(),
+            sensors: Sensors::start(all)?,
+            path: perturbation.start()?,
+            delayed: Delay::of(all.delay_samples),
+            disturbance_rad: 0.0,
+            aircraft: None,
+            prepared,
+        })
+    }
+
+    pub(crate) fn prepared(&self) -> &Prepared {
+        self.prepared.borrow()
+    }
+
+    /// The plant as it is now.
+    #[inline]
+    pub(crate) fn propagation(&self) -> &Propagation {
+        &self.prepared().stages[self.stage].propagation
+    }
+
+    /// Where it is.
+    #[inline]
+    pub(crate) fn plant(&self) -> &Motion {
+        &self.plant
+    }
+
+    /// A signal at this sample; zero where there is none.
+    #[inline]
+    fn at(&self, column: impl Fn(&Prepared) -> &Option<Vec<f64>>) -> f64 {
+        let values = column(self.prepared()).as_ref();
+        values.and_then(|values| values.get(self.k)).copied().unwrap_or(0.0)
+    }
+
+    /// Looks at this sample; how the flight ended, where it is no longer flown.
+    #[inline]
+    pub(crate) fn look(&mut self) -> Result<Seen, Outcome> {
+        let k = self.k;
+        let prepared: &Prepared = self.prepared.borrow();
+        let Some(&setpoint_rad) = prepared.setpoint_rad.get(k) else {
+            return Err(Outcome::Completed);
+        };
+        while prepared.stages.get(self.stage + 1).is_some_and(|next| next.from <= k) {
+            self.stage += 1;
+        }
+        let propagation = &prepared.stages[self.stage].propagation;
+        let at_s = || prepared.timing.time_s(k);
+        if self.plant.is_lost() {
+            return Err(Outcome::Diverged { at_s: at_s() });
+        }
+        if propagation.is_at_ground(&self.plant) {
+            return Err(Outcome::HitGround { at_s: at_s() });
+        }
+        let disturbance_rad = self.at(|prepared| &prepared.at_elevator);
+        let theta_rad = self.plant.theta_rad();
+        let q_rad_s = propagation.rate_rad_s(&self.plant, disturbance_rad);
+        let aircraft = propagation.sample(&self.plant, disturbance_rad);
+        let at_measurement = self.at(|prepared| &prepared.at_measurement);
+        self.sensors.erect(&aircraft);
+        let measurement_rad = self.sensors.pitch_rad(k, theta_rad) + at_measurement;
+        let rate_rad_s = self.sensors.rate_rad_s(k, q_rad_s);
+        (self.disturbance_rad, self.aircraft) = (disturbance_rad, aircraft);
+        let measured = [measurement_rad, rate_rad_s];
+        Ok(Seen { k, setpoint_rad, theta_rad, q_rad_s, measured })
+    }
+
+    /// Takes the answer: what was there, and the command that arrives at the servo.
+    #[inline]
+    pub(crate) fn take(&mut self, seen: Seen, step: Step<f64>) -> (Instant, f64) {
+        let arriving_rad = self.delayed.pass(self.path.pass(step.command_rad));
+        let command_rad = arriving_rad + self.at(|prepared| &prepared.at_servo);
+        let prepared: &Prepared = self.prepared.borrow();
+        let propagation = &prepared.stages[self.stage].propagation;
+        propagation.settle(&mut self.plant, command_rad);
+        let elevator_rad = propagation.elevator_rad(&self.plant, self.disturbance_rad);
+        let Seen { k, setpoint_rad, theta_rad, q_rad_s, measured } = seen;
+        let aircraft = self.aircraft;
+        let instant =
+            Instant { k, setpoint_rad, theta_rad, q_rad_s, elevator_rad, measured, aircraft, step };
+        (instant, command_rad)
+    }
+
+    /// What enters the plant until the next sample, beside the command.
+    #[inline]
+    pub(crate) fn held(&self) -> Held<'_> {
+        let prepared = self.prepared();
+        let air = (prepared.gusts(), prepared.gust_responses.as_deref());
+        held(self.disturbance_rad, air, self.k)
+    }
+
+    /// Flies to the next sample.
+    #[inline]
+    pub(crate) fn advance(&mut self, command_rad: f64) -> Result<(), SimError> {
+        let prepared: &Prepared = self.prepared.borrow();
+        let air = (prepared.gusts(), prepared.gust_responses.as_deref());
+        let held = held(self.disturbance_rad, air, self.k);
+        let propagation = &prepared.stages[self.stage].propagation;
+        propagation.advance(&mut self.plant, command_rad, &held)?;
+        self.k += 1;
+        Ok(())
+    }
+}
+
+/// Commands on their way, the oldest at `next`.
+#[derive(Clone, Debug)]
+struct Delay {
+    commands_rad: Vec<f64>,
+    next: usize,
+}
+
+impl Delay {
+    fn of(samples: usize) -> Self {
+        Self { commands_rad: vec![0.0; samples], next: 0 }
+    }
+
+    /// Takes a command and answers the one that arrives.
+    #[inline]
+    fn pass(&mut self, command_rad: f64) -> f64 {
+        let Some(place) = self.commands_rad.get_mut(self.next) else {
+            return command_rad;
+        };
+        let arriving_rad = std::mem::replace(place, command_rad);
+        self.next += 1;
+        if self.next == self.commands_rad.len() {
+            self.next = 0;
+        }
+        arriving_rad
+    }
+}
+
+/// What the controller sees through; nothing changes without a sensor.
+#[derive(Clone, Debug)]
+struct Sensors {
+    pitch: Option<SensorState>,
+    rate: Option<SensorState>,
+    apparent_vertical_rad: f64,
+}
+
+impl Sensors {
+    fn start(prepared: &Prepared) -> Result<Self, SimError> {
+        let dt_s = prepared.timing.dt_s();
+        let start = |sensor: Option<Sensor>| sensor.map(|sensor| sensor.start(dt_s)).transpose();
+        let (pitch, rate) = (start(prepared.pitch_sensor)?, start(prepared.rate_sensor)?);
+        Ok(Self { pitch, rate, apparent_vertical_rad: 0.0 })
+    }
+
+    /// Lets gyros erect to the apparent vertical; that of a linear plant is the true one.
+    fn erect(&mut self, aircraft: &Option<AircraftSample>) {
+        self.apparent_vertical_rad = aircraft.map_or(0.0, |sample| sample.apparent_vertical_rad);
+    }
+
+    fn pitch_rad(&mut self, k: usize, value: f64) -> f64 {
+        let apparent_vertical_rad = self.apparent_vertical_rad;
+        seen(self.pitch.as_mut(), k, Truth { value, apparent_vertical_rad })
+    }
+
+    fn rate_rad_s(&mut self, k: usize, value: f64) -> f64 {
+        seen(self.rate.as_mut(), k, Truth { value, ..Truth::default() })
+    }
+}
+
+fn seen(sensor: Option<&mut SensorState>, k: usize, truth: Truth) -> f64 {
+    sensor.map_or(truth.value, |sensor| sensor.measure(k, truth))
+}
