@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The package for Python: built as a wheel, installed where nothing else is, typed, tested there; campaigns on Ray, a node of
-# which is killed, and on Dask. `--wheel`: as it is handed out, small and linked as a whole, which takes ten minutes.
+# The package for Python: built as a wheel, installed where nothing else is, typed, tested there; its notebooks run; campaigns on
+# Ray, a node of which is killed, and on Dask. `--wheel`: as it is handed out, small and linked as a whole, which takes ten minutes.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
@@ -43,4 +43,5 @@ mypy --strict -p fspid
 cd crates/fspid-py
 export FSPID_PROGRAM="${FSPID_PROGRAM:-$PWD/../../target/release/fspid}"
 python -m pytest -q
+python ../../checks/python/notebooks.py
 python -m pytest -q --doctest-modules --pyargs fspid.scenario fspid.fuzzy fspid.controllers fspid.lti fspid.gym

@@ -162,3 +162,18 @@ def test_import_needs_nothing_and_is_quick():
 def test_errors_travel_between_processes():
     error = fspid.ScenarioError("wrong", "{}")
     assert str(pickle.loads(pickle.dumps(error))) == "wrong"
+
+
+def test_margins_of_a_loop_that_is_unstable_are_absent_with_the_reason():
+    analysis = fspid.Scenario.preset("paper/own/figure-5").analyse()
+    assert analysis["PC"]["phase_margin_deg"] > 0.0
+    assert analysis["FSPID"]["stable"] is False
+    assert analysis["FSPID"]["phase_margin_deg"] == fspid.Absent("only a loop that is stable has margins")
+
+
+def test_every_preset_is_a_scenario_and_pages_have_drawings_by_their_titles():
+    presets = fspid.Scenario.presets()
+    assert {"pitch-hold", "paper/own/figure-8b", "paper/shared/figure-5"} <= set(presets)
+    assert all(presets.values()) and all(fspid.Scenario.preset(name) for name in presets)
+    figures = fspid.Scenario.preset("pitch-hold").analyse().figures
+    assert figures["Open loop: gain and phase"].startswith("<svg")

@@ -277,12 +277,29 @@ class Flight(Answer, Mapping[str, Trace]):
         return self._native.svg() + _as_html(self._native.text)
 
 
+#: What only a stable loop has.
+_MARGINS = (
+    "gain_margin_db",
+    "phase_margin_deg",
+    "delay_margin_s",
+    "disk_margin",
+    "sensitivity_peak",
+    "complementary_peak",
+    "gain_crossover_rad_s",
+    "phase_crossover_rad_s",
+    "disk_gain_db",
+    "disk_phase_deg",
+)
+
+
 class Analysis(_Paged):
     """Margins, poles and sensitivity of every controller's loop."""
 
     def __getitem__(self, controller: str) -> dict[str, Any]:
         """What is known of a controller's loop; a margin that there is not is :class:`Absent` with its reason."""
-        return _by_name(self.to_dict()["controllers"], controller)
+        known = _by_name(self.to_dict()["controllers"], controller)
+        none = Absent("only a loop that is stable has margins")
+        return {**dict.fromkeys(_MARGINS, none), **known} if known["stable"] is not True else known
 
 
 class Verification(Answer):
