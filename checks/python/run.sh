@@ -44,4 +44,4 @@ cd crates/fspid-py
 export FSPID_PROGRAM="${FSPID_PROGRAM:-$PWD/../../target/release/fspid}"
 python -m pytest -q
 python ../../checks/python/notebooks.py
-python -m pytest -q --doctest-modules --pyargs fspid.scenario fspid.fuzzy fspid.controllers fspid.lti fspid.gym
+python -m pytest -q --doctest-modules --pyargs fspid.scenario fspid.fuzzy fspid.controllers fspid.lti fspid.widget fspid.gym

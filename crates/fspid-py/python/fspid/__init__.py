@@ -56,9 +56,9 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """``fspid.gym`` where it is asked for: it needs NumPy and Gymnasium."""
-    if name == "gym":
+    """``fspid.gym`` and ``fspid.widget`` where they are asked for: they need other packages."""
+    if name in ("gym", "widget"):
         import importlib
 
-        return importlib.import_module("fspid.gym")
+        return importlib.import_module(f"fspid.{name}")
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
