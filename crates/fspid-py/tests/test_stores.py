@@ -264,3 +264,10 @@ def test_workers_of_dask_put_parts_and_the_file_is_the_same(scenario, here, plac
         )
     assert campaign.file.read_bytes() == here
     assert len(opened(campaign, place).names()) == SHARDS + 1
+
+
+def test_workers_of_ray_put_parts_and_the_file_is_the_same(cluster, scenario, here, tmp_path):
+    place = f"file://{tmp_path}/store", {}
+    campaign = scenario.campaign(tmp_path / "c", runs=RUNS, shard_runs=SHARD_RUNS, engine="ray", store=place[0])
+    assert campaign.file.read_bytes() == here
+    assert len(opened(campaign, place).names()) == SHARDS + 1
