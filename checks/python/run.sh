@@ -40,6 +40,8 @@ cd - > /dev/null
 
 "${pip[@]}" -r checks/python/requirements.txt
 mypy --strict -p fspid
+# What is typed of the native module is what it has.
+python -m mypy.stubtest fspid._core
 cd crates/fspid-py
 export FSPID_PROGRAM="${FSPID_PROGRAM:-$PWD/../../target/release/fspid}"
 python -m pytest -q
