@@ -177,3 +177,28 @@ def test_every_preset_is_a_scenario_and_pages_have_drawings_by_their_titles():
     assert all(presets.values()) and all(fspid.Scenario.preset(name) for name in presets)
     figures = fspid.Scenario.preset("pitch-hold").analyse().figures
     assert figures["Open loop: gain and phase"].startswith("<svg")
+
+
+def test_answers_draw_themselves_into_axes_that_are_given(step, tmp_path):
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    pyplot.switch_backend("agg")
+
+    def drawn(answer):
+        figure, ax = pyplot.subplots()
+        assert answer.plot(ax=ax) is ax
+        labels = [text.get_text() for text in ax.get_yticklabels()]
+        figure.savefig(tmp_path / "drawn.png")
+        pyplot.close(figure)
+        return ax, labels
+
+    verification = fspid.Scenario.preset("requirements").verify()
+    ax, labels = drawn(verification)
+    assert labels[0] == "R-1 PID: overshoot_pct"
+    first = verification.to_dict()["requirements"][0]
+    assert ax.patches[0].get_width() == pytest.approx(first["value"] / first["most"])
+    design = fspid.Scenario.preset("tuning").tune(budget=10)
+    assert drawn(design)[1] == [each["path"] for each in design.to_dict()["parameters"]]
+    summary = fspid.Scenario.preset("campaign").campaign(tmp_path / "c", runs=20).summary()
+    assert drawn(summary)[1] == ["PID", "FSPID"]
+    ax, _ = drawn(step.simulate()["PID"])
+    assert list(ax.lines[0].get_ydata()) == list(step.simulate()["PID"]["theta_deg"])

@@ -154,6 +154,16 @@ class Trace(Mapping[str, "_core.Column"]):
         """Measures of the first step and of the whole flight; what there is not is :class:`Absent` with its reason."""
         return _with_absent(self._facts["metrics"], self._facts.get("absent", {}))
 
+    def plot(self, ax: Axes | None = None, column: str = "theta_deg") -> Axes:
+        """Draw a column over time with matplotlib."""
+        from .plot import axes
+
+        ax = axes(ax)
+        ax.plot(list(self["time_s"]), list(self[column]), label=self.name)
+        ax.set_xlabel("time (s)")
+        ax.set_ylabel(column)
+        return ax
+
     def to_dict(self) -> dict[str, Any]:
         """All that is known of the flight but its columns."""
         return self._facts
@@ -312,6 +322,12 @@ class Verification(Answer):
         """A scenario for each requirement that is not met, by file name: it flies what fails."""
         return dict(self._native.files)
 
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw each requirement's value over its limit with matplotlib; those with a limit of 0 are left out."""
+        from .plot import over_limits
+
+        return over_limits(ax, self.to_dict()["requirements"])
+
 
 class Certification(Answer):
     """Proofs that loops stay stable while their gains move, or why there is none."""
@@ -352,6 +368,12 @@ class Design(Answer):
     def scenario(self) -> Scenario:
         """The scenario that flies the design."""
         return self._origin._beside(self.toml)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw where the numbers of a search began and ended between their bounds, with matplotlib."""
+        from .plot import between_bounds
+
+        return between_bounds(ax, self.to_dict().get("parameters", []))
 
 
 class Contest(_Paged):

@@ -10,6 +10,8 @@ from . import _core, engines
 from .answers import _Paged
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
     from os import PathLike
 
     from .engines import Progress
@@ -17,6 +19,12 @@ if TYPE_CHECKING:
 
 class CampaignSummary(_Paged):
     """How often flights failed, by how much requirements were missed, and what that depends on."""
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the share of flights that fail, with its interval, with matplotlib; ``figures`` has far more."""
+        from .plot import failed
+
+        return failed(ax, self.to_dict()["controllers"])
 
 
 class Campaign:
