@@ -247,3 +247,39 @@ fn an_interrupted_campaign_and_a_full_disk_lose_nothing() {
     done(&with(&LARGE, &["--out", "whole", "--quiet"]), folder);
     assert_eq!(merged(folder, "here"), merged(folder, "whole"));
 }
+
+#[test]
+fn a_report_of_parts_refuses_gaps_unless_asked_and_says_so_first_in_every_form() {
+    let folder = folder();
+    let folder = folder.path();
+    let mut plan = SMALL;
+    plan[1] = "plan";
+    done(&with(&plan, &["--out", "c"]), folder);
+    for shard in ["0", "1", "2", "4", "5"] {
+        done(&["campaign", "shard", shard, "--quiet", "--out", "c"], folder);
+    }
+    let refused = fspid(&["campaign", "report", "c"], folder);
+    assert_eq!(code(&refused), 2);
+    assert!(text(&refused.stderr).contains("5 of 6 shards are there"), "{}", text(&refused.stderr));
+    let incomplete = "INCOMPLETE: from 5 of 6 shards, 33 of 40 runs";
+    let told = done(&["campaign", "report", "c", "--incomplete"], folder);
+    assert_eq!(told.lines().nth(1).map(str::trim), Some(incomplete));
+    done(&["campaign", "report", "c", "--incomplete", "--out", "c.html"], folder);
+    let page = std::fs::read_to_string(folder.join("c.html")).expect("a page");
+    assert!(page.contains(incomplete));
+
+    done(&["campaign", "shard", "3", "--quiet", "--out", "c"], folder);
+    let of_parts = done(&["campaign", "report", "c"], folder);
+    done(&["campaign", "merge", "--out", "c"], folder);
+    let of_file = done(&["campaign", "report", "c/campaign.parquet"], folder);
+    assert_eq!(of_parts, of_file);
+}
+
+#[test]
+fn a_store_without_an_engine_that_puts_parts_there_is_refused() {
+    let folder = folder();
+    let stored = with(&SMALL, &["--out", "c", "--store", "s3://bucket"]);
+    let refused = fspid(&stored, folder.path());
+    assert_eq!(code(&refused), 2);
+    assert!(text(&refused.stderr).contains("--store goes with --engine ray and dask"));
+}
