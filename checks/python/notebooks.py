@@ -62,7 +62,8 @@ def page(name, notebook):
                 title = re.search(r"<title[^>]*>(.*?)</title>", drawing, re.DOTALL)
                 words.append(f"![{title.group(1) if title else name}](../figures/{place.name})")
             if text:
-                words.append(f"```text\n{text}\n```")
+                # `text` is what commands of the guide print, which another test runs.
+                words.append(f"```out\n{text}\n```")
     words.insert(1, f"*A notebook: [`{name}.ipynb`](../../examples/notebooks/{name}.ipynb).*")
     return [(PAGES / f"notebook-{name}.md", "\n\n".join(words) + "\n"), *figures]
 
