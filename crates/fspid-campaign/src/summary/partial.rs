@@ -1,8 +1,8 @@
 //! What a piece of a campaign says, such that pieces add up: merging is associative in every bit.
 //!
-//! Values follow each other, or where they are too many: counts are whole numbers, quantiles come from counts on a fixed grid, moments from exact sums, and what is named (the
-//! worst, the highest, the first) is chosen by value, then by run. Pieces are merged in the order of their runs; how they
-//! are grouped, and by how many threads, does not show.
+//! Values follow each other; where they are too many, quantiles come from counts on a fixed grid and moments from exact
+//! sums. What is named (the worst, the highest, the first) is chosen by value, then by run. Pieces are merged in the order
+//! of their runs; how they are grouped, and by how many threads, does not show.
 
 use rayon::prelude::*;
 

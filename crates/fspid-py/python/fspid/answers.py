@@ -94,16 +94,16 @@ class _Paged(Answer):
 
     @property
     def figures(self) -> dict[str, str]:
-        """Every drawing of the page as SVG, by its title."""
+        """Every drawing of the page as SVG, by its title; a second one of the same title has its number behind it."""
         import html
         import re
 
-        drawings = re.findall(r"<svg.*?</svg>", self._native.page or "", re.DOTALL)
-        titles = [re.search(r"<title[^>]*>(.*?)</title>", drawing, re.DOTALL) for drawing in drawings]
-        return {
-            html.unescape(title.group(1)) if title else str(number): drawing
-            for number, (title, drawing) in enumerate(zip(titles, drawings))
-        }
+        found: dict[str, str] = {}
+        for number, drawing in enumerate(re.findall(r"<svg.*?</svg>", self._native.page or "", re.DOTALL)):
+            told = re.search(r"<title[^>]*>(.*?)</title>", drawing, re.DOTALL)
+            title = html.unescape(told.group(1)) if told else "drawing"
+            found[f"{title} ({number})" if title in found else title] = drawing
+        return found
 
     def _repr_html_(self) -> str:
         first = list(self.figures.values())[:_SHOWN]

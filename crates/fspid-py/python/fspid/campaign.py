@@ -10,9 +10,9 @@ from . import _core, engines
 from .answers import _Paged
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from os import PathLike
+
+    from matplotlib.axes import Axes
 
     from .engines import Progress
 

@@ -23,11 +23,15 @@ def axes(ax: Axes | None) -> Axes:
 
 
 def over_limits(ax: Axes | None, requirements: Sequence[Mapping[str, Any]]) -> Axes:
-    """Each requirement's value over its limit: green where it is met, and no bar where there is no value."""
+    """Each requirement's value over each of its limits: green where it is met, and no bar where there is no value."""
     ax = axes(ax)
-    judged = [(each, limit) for each in requirements if (limit := each.get("most") or each.get("least"))]
-    names = [f"{each['id']} {each['controller']}: {each['measure']}" for each, _ in judged]
-    shares = [(each.get("value") or 0.0) / limit for each, limit in judged]
+    sides = {"most": "at most", "least": "at least"}
+    judged = [(each, side) for each in requirements for side in sides if each.get(side)]
+    names = [
+        f"{each['id']} {each['controller']}: {each['measure']} {sides[side]} {each[side]:g} {each['unit']}"
+        for each, side in judged
+    ]
+    shares = [(each.get("value") or 0.0) / each[side] for each, side in judged]
     colours: dict[Any, str] = {True: "tab:green", False: "tab:red"}
     ax.barh(names, shares, color=[colours.get(each.get("met"), "tab:gray") for each, _ in judged])
     ax.axvline(1.0, color="black", linewidth=0.8)
@@ -37,8 +41,9 @@ def over_limits(ax: Axes | None, requirements: Sequence[Mapping[str, Any]]) -> A
 
 
 def failed(ax: Axes | None, controllers: Sequence[Mapping[str, Any]]) -> Axes:
-    """The share of flights that fail, with its interval, in %."""
+    """The share of flights that fail, with its interval, in %; whoever was judged by no flight has none."""
     ax = axes(ax)
+    controllers = [each for each in controllers if each["failed"]["estimate"] is not None]
     shares = [each["failed"] for each in controllers]
     at = [100.0 * it["estimate"] for it in shares]
     ends = [[100.0 * (it["estimate"] - it["lower"]) for it in shares], [100.0 * (it["upper"] - it["estimate"]) for it in shares]]

@@ -9,8 +9,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Iterable, Mapping
 
 from .answers import Flight
 from .errors import Error, InputError
@@ -95,9 +94,10 @@ class FlightWidget(anywidget.AnyWidget):
         wrong = [path for path, (low, high) in ranges.items() if not low < high]
         if wrong:
             raise InputError(f"{', '.join(wrong)}: a slider goes from a lower end to a higher one")
-        self._asked = scenario
-        super().__init__(ranges={path: list(ends) for path, ends in ranges.items()}, values=_stands(scenario, ranges))
+        self._asked, self._begun = scenario, _stands(scenario, ranges)
+        super().__init__(ranges={path: list(ends) for path, ends in ranges.items()}, values=self._begun)
         self._fly(self.values)
+        self.observe(lambda change: self._fly(change["new"]), "values")
 
     @property
     def flight(self) -> Flight:
@@ -107,27 +107,19 @@ class FlightWidget(anywidget.AnyWidget):
     def scenario(self) -> Scenario:
         return self._now
 
-    @traitlets.observe("values")
-    def _moved(self, change: Any) -> None:
-        if hasattr(self, "_flight"):
-            self._fly(change["new"])
-
     def _fly(self, values: Mapping[str, float]) -> None:
-        moved = {path: value for path, value in values.items() if value != self._begun(path)}
+        moved = {path: value for path, value in values.items() if value != self._begun.get(path)}
         try:
             now = self._asked.with_(moved) if moved else self._asked
             flight = now.simulate()
         except Error as error:
-            self.words = str(error)
+            self.words = f"{error}\n\nWhat is drawn is the last flight that there was, with other numbers."
             return
         self._now, self._flight = now, flight
         self.drawing, self.words = flight.svg(), str(flight)
 
-    def _begun(self, path: str) -> float:
-        return _stands(self._asked, [path])[path]
 
-
-def _stands(scenario: Scenario, paths: Any) -> dict[str, float]:
+def _stands(scenario: Scenario, paths: Iterable[str]) -> dict[str, float]:
     """Where numbers of a scenario stand."""
     known = {each["path"]: each["value"] for each in scenario.paths().to_dict()["paths"]}
     none = [path for path in paths if not isinstance(known.get(path), int | float)]
