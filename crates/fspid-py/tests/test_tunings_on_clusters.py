@@ -359,6 +359,45 @@ def test_the_program_says_what_keeps_it_from_an_engine(path):
     assert "local, ray, dask" in told(path, "--engine", "slurm").stderr
 
 
+def test_what_workers_of_dask_fly_is_there_again_when_all_who_held_it_were_killed(scenario):
+    distributed = pytest.importorskip("distributed")
+    from fspid.engines.dask import Dask
+
+    units = [("nonsense", 0, 1)]
+    with (
+        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as dask,
+        distributed.Client(dask) as client,
+        Dask(client=client) as engine,
+    ):
+        job = engine.share(FlightsJob.of(scenario._core))
+        for _ in range(2):
+            # Whoever reads the order has the job.
+            with pytest.raises(fspid.Error, match="nonsense"):
+                list(engine.fly(job, units))
+            gone = client.run(os.getpid)
+            for pid in gone.values():
+                os.kill(pid, signal.SIGKILL)
+            waited = time.monotonic()
+            while set(gone) & set(client.scheduler_info()["workers"]):
+                assert time.monotonic() < waited + 30
+                time.sleep(0.05)
+
+
+def test_a_scheduler_of_dask_that_drops_everything_is_named(scenario):
+    distributed = pytest.importorskip("distributed")
+    from fspid.engines.dask import Dask
+
+    with (
+        distributed.LocalCluster(n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None) as dask,
+        distributed.Client(dask) as client,
+        Dask(client=client) as engine,
+    ):
+        job = engine.share(FlightsJob.of(scenario._core))
+        client.cancel(job)
+        with pytest.raises(fspid.Error, match="begin again: what was flown before is kept"):
+            list(engine.fly(job, [("nonsense", 0, 1)]))
+
+
 def test_a_worker_of_dask_that_is_killed_does_not_show(scenario, here, contest_here, tmp_path):
     distributed = pytest.importorskip("distributed")
     killed = []

@@ -52,8 +52,8 @@ class Dask(Engine):
         return max(1, sum(threads.values()))
 
     def share(self, job: Job) -> Any:
-        # What is scattered lies on workers; without one there is nowhere to lay it.
-        return self._client.scatter([job], broadcast=True)[0]
+        # A task's answer is made again where all who held it went away; what is scattered would be gone with them.
+        return self._client.submit(_shared, job, pure=False)
 
     def _give(self, job: Any, unit: Any) -> Any:
         task = self._client.submit(_flown, job, unit, pure=False, retries=0)
@@ -71,9 +71,17 @@ class Dask(Engine):
         except self._distributed.scheduler.KilledWorker as lost:
             # The scheduler gives up on a task whose workers went away a few times; a task is never given up here.
             raise Lost from lost
+        except self._distributed.CancelledError as dropped:
+            raise Error(
+                f"Dask's scheduler dropped what it was given ({dropped}); begin again: what was flown before is kept"
+            ) from dropped
 
     def _cancel(self, waiting: list[Any]) -> None:
         self._client.cancel(waiting)
+
+
+def _shared(job: Job) -> Job:
+    return job
 
 
 def _flown(job: Job, unit: Any) -> Any:
