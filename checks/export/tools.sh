@@ -14,6 +14,6 @@ needs() {
 # The program that exports: the one that FSPID names, else a release build.
 program() {
     [[ -z "${FSPID:-}" ]] || return 0
-    cargo build --release --quiet -p fspid-cli
+    cargo build --release --locked --quiet -p fspid-cli
     FSPID="$PWD/target/release/fspid"
 }

@@ -19,6 +19,7 @@ mod fuzzy_system;
 mod guide;
 mod learn;
 mod no_clock;
+mod one_verdict;
 mod packages;
 mod repository;
 mod small_things;

@@ -300,6 +300,21 @@ fn convert_tells_losses_and_writes_nothing_where_they_are_not_allowed() {
     assert_eq!(code(&unwritable), 4);
 }
 
+/// It was advised as well where it helps nothing: a hedge has no word in the standard, and no nearest one.
+#[test]
+fn lossy_is_advised_where_it_helps_and_nowhere_else() {
+    let folder = folder();
+    for format in ["fis", "t2fis", "fcl", "fll", "xml"] {
+        let out = format!("out.{format}");
+        let strict = fspid(&["convert", "tip.toml", &out], folder.path());
+        let lossy = fspid(&["convert", "tip.toml", &out, "--lossy"], folder.path());
+        let is_advised = stderr(&strict).contains("--lossy");
+        assert_eq!(is_advised, code(&strict) != 0 && code(&lossy) == 0, "{}", stderr(&strict));
+        assert!(!stderr(&lossy).contains("--lossy"), "{}", stderr(&lossy));
+        assert!(code(&lossy) == 0 || stderr(&lossy).contains(".toml file") || format == "t2fis");
+    }
+}
+
 #[test]
 fn every_format_comes_back_with_the_answers_of_the_file_that_was_written() {
     let folder = folder();

@@ -184,6 +184,14 @@ pub enum LtiError {
         /// The largest share accepted.
         allowed: f64,
     },
+    /// A sampled loop with a pole so near to the unit circle that eigenvalues do not tell on which side it is.
+    #[error(
+        "the closed loop's spectral radius {spectral_radius} cannot be told from 1, which eigenvalues do not know better than to 1e-9"
+    )]
+    AtEdge {
+        /// Largest modulus of a closed-loop pole in the z plane, as computed.
+        spectral_radius: f64,
+    },
     /// Peaks that nothing bounds from above.
     #[error(
         "no bound of the peaks is proved for a loop of {order} states, samples of dead time included; a longer sample period or a shorter dead time has fewer"
@@ -229,6 +237,17 @@ pub enum LtiError {
 }
 
 impl LtiError {
+    /// The spectral radius as computed, of a loop that is neither called stable nor unstable.
+    #[must_use]
+    pub fn undecided_radius(&self) -> Option<f64> {
+        match *self {
+            Self::Blurred { spectral_radius, .. } | Self::AtEdge { spectral_radius } => {
+                Some(spectral_radius)
+            }
+            _ => None,
+        }
+    }
+
     /// `Ok` when every value is finite; otherwise the first that is not, with its position.
     pub(crate) fn unless_finite(what: &'static str, values: &[f64]) -> Result<(), Self> {
         match values.iter().position(|value| !value.is_finite()) {

@@ -167,8 +167,11 @@ def test_errors_travel_between_processes():
 def test_margins_of_a_loop_that_is_unstable_are_absent_with_the_reason():
     analysis = fspid.Scenario.preset("paper/own/figure-5").analyse()
     assert analysis["PC"]["phase_margin_deg"] > 0.0
-    assert analysis["FSPID"]["stable"] is False
-    assert analysis["FSPID"]["phase_margin_deg"] == fspid.Absent("only a loop that is stable has margins")
+    found = analysis["FSPID"]
+    assert (found["stable"], found["stability"]) == (False, "unstable")
+    assert found["phase_margin_deg"] == fspid.Absent(found["absent"])
+    assert found["absent"].startswith("the loop is unstable: spectral radius 1.")
+    assert found["absent"] in str(analysis)
 
 
 def test_every_preset_is_a_scenario_and_pages_have_drawings_by_their_titles():

@@ -58,7 +58,7 @@ pub use in_flight::{InFlight, Seen};
 pub use instant::Instant;
 pub use longitudinal::{LongitudinalDerivatives, LongitudinalModel};
 pub use plant::{ElevatorSign, LinearPlant, Plant, PlantChange};
-pub use rest::{Rest, RestPoint, Side, Stand};
+pub use rest::{Doubt, Rest, RestPoint, Side, Stand};
 pub use scenario::{Flyer, NamedController, Prepared, Respondent, Scenario};
 pub use steady::Steady;
 pub use surroundings::{Course, Surroundings, Weather};

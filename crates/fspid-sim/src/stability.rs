@@ -11,7 +11,7 @@ use crate::controller::Controller;
 use crate::error::SimError;
 use crate::loop_model::{LoopModel, Memory, SampledPlant};
 use crate::plant::LinearPlant;
-use crate::rest::{Rest, RestPoint, Stand};
+use crate::rest::{Doubt, Rest, RestPoint, Stand};
 use crate::scenario::Scenario;
 
 /// A radius this close below 1 cannot be told from 1 after rounding; it counts as unstable.
@@ -30,13 +30,12 @@ pub struct Unstable {
     pub at: RestPoint,
 }
 
-/// The instability of a loop, if it has one: `None` for a stable loop and for loops this cannot
-/// tell of (self-tuning gains, limits of the controller).
+/// The instability of a loop with fixed gains, if it has one: `None` for a stable loop and for gains that move.
 ///
 /// A nonlinear aircraft is judged by its linear model around the trim: where that grows, the flight
 /// leaves the trim, however small the disturbance.
 ///
-/// Limits of the servo are passed over: around rest, where they do not act, they save no loop that
+/// Limits of controller and servo are passed over: around rest, where they do not act, they save no loop that
 /// is unstable without them. Deadband and play of an actuator are passed over as well. Scale and delay
 /// of sensors count, but for a sensor with a clock of its own, whose values change their age.
 ///
@@ -50,9 +49,6 @@ pub fn instability(
     let Controller::Fixed(pid) = controller else {
         return Ok(None);
     };
-    if !pid.config().is_linear() {
-        return Ok(None);
-    }
     let (gains, config) = (pid.gains(), pid.config());
     let trimmed = scenario.plant.aircraft().map(AircraftPlant::linear).transpose()?;
     let around_trim = trimmed.iter().map(|plant| (0.0, plant));
@@ -73,16 +69,26 @@ pub fn instability(
 pub struct GrowthAtRest {
     /// The first plant and rest around which something grows for certain.
     pub certain: Option<Unstable>,
-    /// Where nothing grows for certain: the first at which one side of a kink of the rules is unstable and another is
-    /// not, so that it is not decided.
-    pub on_one_side: Option<Unstable>,
+    /// Where nothing grows for certain: the first at which that is not decided.
+    pub undecided: Option<Undecided>,
+}
+
+/// A rest of which nobody can tell whether it holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Undecided {
+    /// Largest spectral radius of the loops that were asked, as computed.
+    pub spectral_radius: f64,
+    /// What is held meanwhile.
+    pub at: RestPoint,
+    /// Why.
+    pub doubt: Doubt,
 }
 
 /// Asks each plant that lasts at every rest of the scenario, with the gains that the controller has with everything at
-/// zero. As [`instability`] in all else.
+/// zero: what [`Stand`] says of each. A nonlinear aircraft is judged by its linear model around the trim.
 ///
 /// A pole on the unit circle grows nothing. One within 10⁻⁹ of it cannot be told from such a one after rounding and is
-/// not called unstable: at 100 Hz it would double in 80 days, at 10 kHz in 19 hours.
+/// undecided: at 100 Hz it would double in 80 days, at 10 kHz in 19 hours.
 ///
 /// # Errors
 /// As [`instability`].
@@ -97,20 +103,16 @@ pub fn growth_at_rest(
     for (from_s, plant) in around_trim.chain(scenario.lasting_plants()) {
         let sampled = SampledPlant::of(scenario, plant)?;
         for rest in Rest::all(scenario, plant, controller, gains) {
-            let unstable = |spectral_radius| Unstable {
-                doubling_s: doubling_s(spectral_radius, scenario.timing.dt_s()),
-                at: rest.at,
-                spectral_radius,
-                from_s,
-            };
-            match rest.stand(scenario, &sampled, controller, 1.0 + MARGIN)? {
+            let at = rest.at;
+            match rest.stand(scenario, &sampled, controller)? {
                 Stand::Holds => {}
-                Stand::OneSide { spectral_radius } => {
-                    found.on_one_side.get_or_insert(unstable(spectral_radius));
+                Stand::Undecided { spectral_radius, doubt } => {
+                    found.undecided.get_or_insert(Undecided { spectral_radius, at, doubt });
                 }
                 Stand::Grows { spectral_radius } => {
-                    let certain = Some(unstable(spectral_radius));
-                    return Ok(GrowthAtRest { certain, on_one_side: None });
+                    let doubling_s = doubling_s(spectral_radius, scenario.timing.dt_s());
+                    let certain = Some(Unstable { spectral_radius, from_s, doubling_s, at });
+                    return Ok(GrowthAtRest { certain, undecided: None });
                 }
             }
         }

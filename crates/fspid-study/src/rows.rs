@@ -1,5 +1,6 @@
 //! Tables of questions, answered row by row in constant memory.
 
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Write};
 use std::path::Path;
@@ -210,6 +211,13 @@ impl<'r, R: BufRead> Reader<'r, R> {
 
     fn find_columns(&mut self, heading: &str) -> Result<(), RowsError> {
         let words = cells(heading);
+        let wrong = |problem| RowsError::Problems { problems: vec![problem], answered: None };
+        if let Some((one, other, name)) = named_twice(&words) {
+            let (one, other) = (one + 1, other + 1);
+            return Err(wrong(format!(
+                "1: columns {one} and {other} are both named `{name}`; names of columns must differ"
+            )));
+        }
         let column = |name: &String| words.iter().position(|word| word == name);
         if let Some(columns) = self.names.iter().map(column).collect() {
             self.columns = columns;
@@ -217,8 +225,7 @@ impl<'r, R: BufRead> Reader<'r, R> {
         }
         let shown: String = heading.chars().take(80).collect();
         let needed = self.names.join(" and ");
-        let problem = format!("1: the heading is `{shown}`; it must name the columns {needed}");
-        Err(RowsError::Problems { problems: vec![problem], answered: None })
+        Err(wrong(format!("1: the heading is `{shown}`; it must name the columns {needed}")))
     }
 
     /// Reads the next line; false at the end.
@@ -254,6 +261,13 @@ impl<'r, R: BufRead> Reader<'r, R> {
     fn placed(&self, problem: &str) -> String {
         format!("{}: {problem}", self.number)
     }
+}
+
+/// The first name that stands over two columns, with their places; columns without a name are nobody's.
+fn named_twice(words: &[String]) -> Option<(usize, usize, &String)> {
+    let mut places = BTreeMap::new();
+    let named = words.iter().enumerate().filter(|(_, word)| !word.is_empty());
+    named.into_iter().find_map(|(other, word)| Some((places.insert(word, other)?, other, word)))
 }
 
 fn parse(line: &[u8], columns: &[usize], names: &[String], row: &mut [f64]) -> Result<(), String> {

@@ -26,7 +26,15 @@ fn verdict(source: &Source<'_>, place: usize, controller: &ControllerSummary) ->
         (all, of) if all == of => format!("All {} flights failed", count(of)),
         (some, of) => format!("{} of {} flights failed", count(some), count(of)),
     };
+    let (judged, word) = match controller.is_judged() {
+        true => ("", word),
+        false => {
+            ("Nothing is required of it. ", format!("Nothing required: {}", lower_first(&word)))
+        }
+    };
     let standing = match (failed.count, failed.at_most) {
+        // Nothing was judged that could be called good.
+        (0, _) if !controller.is_judged() => Standing::Fair,
         // None failed of so few flights that half of all may: nothing to call good yet.
         (0, Some(bound)) if bound >= 0.5 => Standing::Fair,
         (0, _) => Standing::Good,
@@ -39,10 +47,16 @@ fn verdict(source: &Source<'_>, place: usize, controller: &ControllerSummary) ->
         .collect();
     let sure = probability(failed, source.summary.head.confidence);
     let detail = format!(
-        "Probability that a flight fails: {sure}. Verdicts on the flights: {}.",
+        "{judged}Probability that a flight fails: {sure}. Verdicts on the flights: {}.",
         verdicts.join(", ")
     );
     Verdict { standing, word, name: source.name(place), detail }
+}
+
+/// A sentence that goes on in another.
+fn lower_first(sentence: &str) -> String {
+    let mut letters = sentence.chars();
+    letters.next().map_or(String::new(), |first| first.to_lowercase().chain(letters).collect())
 }
 
 /// Figures and the table of requirements.

@@ -151,8 +151,7 @@ fn notes(source: &Source, controllers: &[ControllerSummary]) -> Vec<Note> {
     }
     for controller in controllers {
         let name = || controller.name.clone();
-        let judged: u64 = controller.requirements.iter().map(|it| it.not_met.of).sum();
-        if judged == 0 && controller.refused.count < head.runs {
+        if !controller.is_judged() && controller.refused.count < head.runs {
             notes.push(Note::NothingRequired { controller: name() });
         }
         let of = |flights: fn(&MeasureSummary) -> u64| -> Vec<MeasureCount> {
@@ -175,6 +174,13 @@ fn notes(source: &Source, controllers: &[ControllerSummary]) -> Vec<Note> {
 }
 
 impl ControllerSummary {
+    /// True where some flight was judged by a requirement; otherwise a flight that does not fail was called good by
+    /// nobody.
+    #[must_use]
+    pub fn is_judged(&self) -> bool {
+        self.requirements.iter().any(|it| it.not_met.of > 0)
+    }
+
     /// False for the column of a requirement that does not concern this controller.
     fn is_asked(&self, column: &str) -> bool {
         let of_requirement = |it: &&super::RequirementSummary| {

@@ -66,7 +66,11 @@ fn head(head: &Head) -> Vec<String> {
 
 fn of_controller(controller: &ControllerSummary, confidence: f64) -> Vec<String> {
     let mut lines = vec![controller.name.clone()];
-    lines.push(format!("  fails {}", controller.failed.in_words(confidence)));
+    let failed = controller.failed.in_words(confidence);
+    lines.push(match controller.is_judged() {
+        true => format!("  fails {failed}"),
+        false => format!("  nothing is required of it; not settled, or failed by itself: {failed}"),
+    });
     let verdicts: Vec<String> = controller
         .verdicts
         .iter()

@@ -7,7 +7,7 @@ use super::{Format, json_text};
 use crate::argument::{InFile, OutFile, written};
 use crate::exit::{Failure, note, print, wrote};
 use fspid_scenario::file;
-use fspid_study::analysis::{Analysis, BreakPoint, Question};
+use fspid_study::analysis::{Analysis, BreakPoint, Question, Stability};
 use fspid_study::{output, report};
 
 /// Analyse the sampled loop of each controller: margins, poles, sensitivity, and every gain that a self-tuning
@@ -90,7 +90,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if analysis.all_held() {
         return Ok(());
     }
-    let reason =
-        if analysis.all_stable() { "a loop has no margins" } else { "a loop is not stable" };
+    let reason = match analysis.stability() {
+        Stability::Stable => "a loop has no margins",
+        Stability::Unstable => "a loop is not stable",
+        Stability::Undecided => "a loop is undecided",
+    };
     Err(Failure::not_met(reason))
 }

@@ -32,13 +32,18 @@ impl SampledLoop {
     }
 }
 
-/// A spectral radius from here on counts as unstable: eigenvalues are not known better, and a mode that takes longer
-/// than 10⁹ samples to decay is none that a controller holds.
-pub(super) const STABLE_BELOW: f64 = 1.0 - 1e-9;
+/// A spectral radius this near to 1 is on neither side: eigenvalues are not known better, and what takes longer than 10⁹
+/// samples to decay or to grow is nothing that a controller holds or loses.
+const EDGE: f64 = 1e-9;
+/// A loop is stable below.
+pub(super) const STABLE_BELOW: f64 = 1.0 - EDGE;
 
-/// How far rounding may move the outermost poles of a loop that is called stable, over their distance from the unit
-/// circle. Loops in natural states reach 10⁻⁴ within 10⁻⁹ of their limit; from 1 on the verdict would be a guess.
+/// How far rounding may move the outermost poles of a loop that is called stable or unstable, over their distance from
+/// the unit circle. Loops in natural states reach 10⁻⁴ within 10⁻⁹ of their limit; from 1 on the verdict would be a guess.
 const SHARE_ALLOWED: f64 = 0.1;
+
+/// Outermost poles that are asked of a loop that is called stable.
+const STABLE_ASKED: usize = 2;
 
 /// Angles of the poles from the positive real axis, between 0 and π.
 pub(super) fn angles_rad(poles: &[Complex]) -> Vec<f64> {
@@ -46,14 +51,26 @@ pub(super) fn angles_rad(poles: &[Complex]) -> Vec<f64> {
 }
 
 impl SampledLoop {
-    /// Spectral radius of a closed loop that is not stable, `None` for one that is: what [`margins`](Self::margins)
-    /// says of it, without margins, which take some ten times as long.
+    /// Spectral radius of a closed loop that is unstable, `None` for a stable one. It takes a tenth of the time of
+    /// [`margins`](Self::margins), which have no third answer and call what is at the edge unstable.
     ///
     /// # Errors
-    /// Poles that rounding may carry across the unit circle; eigenvalues that do not converge.
+    /// A loop that is undecided ([`LtiError::undecided_radius`]): poles that cannot be told from the unit circle, or that
+    /// rounding may carry across to either side; eigenvalues that do not converge.
     pub fn unstable_radius(&self) -> Result<Option<f64>, LtiError> {
-        let (_, spectral_radius, stable) = self.verdict()?;
-        Ok((!stable).then_some(spectral_radius))
+        let (poles, spectral_radius, stable) = self.verdict()?;
+        if stable {
+            return Ok(None);
+        }
+        if spectral_radius <= 1.0 + EDGE {
+            return Err(LtiError::AtEdge { spectral_radius });
+        }
+        // One pole outside is enough, so that the outermost alone is asked. One without a number is outside.
+        let share = self.reduced.rounding_share(&poles, 1);
+        if share >= SHARE_ALLOWED {
+            return Err(LtiError::Blurred { spectral_radius, share, allowed: SHARE_ALLOWED });
+        }
+        Ok(Some(spectral_radius))
     }
 
     /// Poles of the closed loop and whether it is stable, which it only is if rounding cannot tell otherwise.
@@ -62,7 +79,7 @@ impl SampledLoop {
         let spectral_radius = radius(&poles);
         let stable = spectral_radius < STABLE_BELOW;
         if stable {
-            let share = self.reduced.rounding_share(&poles);
+            let share = self.reduced.rounding_share(&poles, STABLE_ASKED);
             if !(share < SHARE_ALLOWED) {
                 let allowed = SHARE_ALLOWED;
                 return Err(LtiError::Blurred { spectral_radius, share, allowed });

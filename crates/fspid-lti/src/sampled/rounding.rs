@@ -1,13 +1,10 @@
-//! Whether the poles of a loop are known well enough to call it stable.
+//! Whether the poles of a loop are known well enough to call it stable or unstable.
 
 use super::reduced::Reduced;
 use crate::complex::{Complex, modulus, quotient};
 
-/// Poles that are looked at, the outermost ones.
-const POLES: usize = 2;
-
 impl Reduced {
-    /// How far rounding may move the outermost closed-loop poles, as a share of their distance from the unit circle.
+    /// How far rounding may move so many of the outermost closed-loop poles, as a share of their distance from the unit circle.
     ///
     /// $$ \varepsilon \lVert E \rVert \max_\theta \lVert ((e^{j \theta} - 1) I - E)^{-1} \rVert $$
     ///
@@ -16,12 +13,12 @@ impl Reduced {
     ///
     /// # Source
     /// L. N. Trefethen, M. Embree, Spectra and Pseudospectra, Princeton 2005, section 2.
-    pub(super) fn rounding_share(&self, poles: &[Complex]) -> f64 {
+    pub(super) fn rounding_share(&self, poles: &[Complex], asked: usize) -> f64 {
         let mut outer: Vec<Complex> = poles.iter().copied().filter(|pole| pole.im >= 0.0).collect();
         outer.sort_by(|left, right| modulus(*right).total_cmp(&modulus(*left)));
         let norm =
             self.closed(1.0).data().iter().fold(0.0, |norm, &entry| libm::hypot(norm, entry));
-        let shares = outer.iter().take(POLES).filter(|pole| modulus(**pole) > 0.0).map(|&pole| {
+        let shares = outer.iter().take(asked).filter(|pole| modulus(**pole) > 0.0).map(|&pole| {
             let zeta = pole / modulus(pole) - 1.0;
             f64::EPSILON * norm * self.inverse_norm(zeta)
         });
@@ -81,11 +78,18 @@ mod tests {
 
     const STATES: usize = 5;
 
-    /// Five lags of a thousand samples in a chain, $L = g / (z - 0.999)^5$, in states that a matrix turns.
-    fn chain(turn: &Matrix) -> SampledLoop {
+    /// A reflection mixes entries of 1 with one of 2e-16, which rounding then takes away.
+    fn mirror() -> Matrix {
+        Matrix::from_function(STATES, STATES, |row, column| {
+            (if row == column { 1.0 } else { 0.0 }) - 2.0 / STATES as f64
+        })
+    }
+
+    /// Five lags of a thousand samples in a chain, $L = g / (z - 1 - d)^5$, in states that a matrix turns.
+    fn chain(turn: &Matrix, distance: f64) -> SampledLoop {
         let a =
             Matrix::from_function(STATES, STATES, |row, column| match column.checked_sub(row) {
-                Some(0) => 1.0 - 1e-3,
+                Some(0) => 1.0 + distance,
                 Some(1) => 1.0,
                 _ => 0.0,
             });
@@ -98,16 +102,36 @@ mod tests {
 
     #[test]
     fn poles_that_rounding_may_carry_across_the_circle_make_no_stable_loop() {
-        let natural = chain(&Matrix::identity(STATES));
+        let natural = chain(&Matrix::identity(STATES), -1e-3);
         assert!(matches!(natural.margins(), Ok(Stability::Stable(_))), "{natural:?}");
-        // A reflection mixes entries of 1 with one of 2e-16, which rounding then takes away.
-        let mirror = Matrix::from_function(STATES, STATES, |row, column| {
-            (if row == column { 1.0 } else { 0.0 }) - 2.0 / STATES as f64
-        });
-        let mixed = chain(&mirror);
+        let mixed = chain(&mirror(), -1e-3);
 
         assert!(matches!(mixed.margins(), Err(LtiError::Blurred { .. })), "{:?}", mixed.margins());
         assert!(mixed.peak_sensitivity().is_err() && mixed.bandwidth_rad_s().is_none());
+    }
+
+    /// An integrator with a gain: its pole is 1 - k.
+    #[test]
+    fn what_is_at_the_edge_is_neither_stable_nor_unstable() {
+        let asked = |gain: f64| {
+            let open = SampledLoop::new(Matrix::identity(1), vec![1.0], vec![gain], 1.0);
+            open.expect("a loop").unstable_radius()
+        };
+        assert_eq!(asked(1e-6), Ok(None));
+        assert!(matches!(asked(-1e-6), Ok(Some(radius)) if radius > 1.0));
+        for gain in [0.0, 5e-10, -5e-10] {
+            let error = asked(gain).expect_err("at the edge");
+            assert!(matches!(error, LtiError::AtEdge { .. }), "{error}");
+            assert!(error.undecided_radius().is_some_and(|radius| (radius - 1.0).abs() < 1e-9));
+        }
+    }
+
+    /// Unstable by less than rounding moves its poles.
+    #[test]
+    fn poles_that_rounding_may_carry_back_make_no_unstable_loop() {
+        let mixed = chain(&mirror(), 1e-3).unstable_radius();
+        assert!(matches!(mixed, Err(LtiError::Blurred { .. })), "{mixed:?}");
+        assert!(matches!(chain(&Matrix::identity(STATES), 1e-3).unstable_radius(), Ok(Some(_))));
     }
 
     #[test]
@@ -122,7 +146,7 @@ mod tests {
         let open =
             SampledLoop::new(Matrix::identity(1), vec![1.0], vec![0.25], 1.0).expect("a loop");
         let poles = open.closed_poles().expect("a pole");
-        let share = open.reduced.rounding_share(&poles);
+        let share = open.reduced.rounding_share(&poles, 1);
         assert!((share / f64::EPSILON - 1.0).abs() < 1e-14, "{share}");
     }
 }

@@ -308,8 +308,9 @@ class Analysis(_Paged):
     def __getitem__(self, controller: str) -> dict[str, Any]:
         """What is known of a controller's loop; a margin that there is not is :class:`Absent` with its reason."""
         known = _by_name(self.to_dict()["controllers"], controller)
-        none = Absent("only a loop that is stable has margins")
-        return {**dict.fromkeys(_MARGINS, none), **known} if known["stable"] is not True else known
+        if "absent" not in known:
+            return known
+        return {**dict.fromkeys(_MARGINS, Absent(known["absent"])), **known}
 
 
 class Verification(Answer):

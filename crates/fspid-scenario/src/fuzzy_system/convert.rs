@@ -94,16 +94,26 @@ pub fn write_as(parts: &Parts, path: &Path, target: Target) -> Result<Converted,
         let problem = format!("--to {} goes with an .fcl file", dialect.name());
         return Err(ConvertError::Unwritable { problems: vec![problem] });
     }
-    let options = WriteOptions { lossy: target.lossy };
-    let written = match format {
-        Format::Toml => return Ok(Converted::whole(fuzzy_system::write(parts))),
-        Format::T2fis if !parts.is_interval_type2() => return Err(not_type_2(path)),
-        Format::Fis | Format::T2fis => fis::write(parts, options),
-        Format::Fml => fml::write(parts, options),
-        Format::Fll => fll::write(parts, options),
-        Format::Fcl => fcl::write(parts, target.dialect.unwrap_or_default(), options),
+    if format == Format::Toml {
+        return Ok(Converted::whole(fuzzy_system::write(parts)));
+    }
+    if format == Format::T2fis && !parts.is_interval_type2() {
+        return Err(not_type_2(path));
+    }
+    let written = |lossy| {
+        let options = WriteOptions { lossy };
+        match format {
+            Format::Fis | Format::T2fis => fis::write(parts, options),
+            Format::Fml => fml::write(parts, options),
+            Format::Fll => fll::write(parts, options),
+            _ => fcl::write(parts, target.dialect.unwrap_or_default(), options),
+        }
     };
-    let writing = written.map_err(|problems| unwritable(path, &problems, target))?;
+    let writing = written(target.lossy).map_err(|problems| {
+        // Advised only where it helps: some of what a format cannot say has no nearest.
+        let helps = !target.lossy && written(true).is_ok();
+        unwritable(path, &problems, helps)
+    })?;
     let lost = writing.notes.iter().map(ToString::to_string).collect();
     Ok(Converted { text: writing.text, assumed: Vec::new(), lost })
 }
@@ -129,13 +139,13 @@ fn not_type_2(path: &Path) -> ConvertError {
 }
 
 /// What the format cannot say, and how to go on.
-fn unwritable(path: &Path, problems: &Problems, target: Target) -> ConvertError {
+fn unwritable(path: &Path, problems: &Problems, lossy_helps: bool) -> ConvertError {
     let path = path.display();
     let mut told: Vec<String> =
         problems.list.iter().map(|found| format!("{path}: {found}")).collect();
-    let nearest = match target.lossy {
-        false => "--lossy writes the nearest that can be said, and ",
-        true => "",
+    let nearest = match lossy_helps {
+        true => "--lossy writes the nearest that can be said, and ",
+        false => "",
     };
     told.push(format!("nothing was written; {nearest}a .toml file holds everything"));
     ConvertError::Unwritable { problems: told }

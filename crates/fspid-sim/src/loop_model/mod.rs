@@ -134,6 +134,12 @@ impl<T: Base> LoopModel<T> {
         &self.settings
     }
 
+    /// True where a sensor shows values of changing age, of which the largest is in the loop.
+    #[must_use]
+    pub fn has_changing_ages(&self) -> bool {
+        self.settings.pitch.at_largest_age || self.settings.rate.at_largest_age
+    }
+
     /// The loop as if sensors whose values change their age showed the quantity as it is.
     #[must_use]
     pub fn without_changing_ages(mut self) -> Self {

@@ -35,7 +35,7 @@ use crate::sensor::Sensor;
 use crate::steady::Steady;
 use slopes::{DIRECTIONS, Slopes};
 
-pub use stand::Stand;
+pub use stand::{Doubt, Stand};
 
 /// Halvings in which the pitch at rest is looked for, and doublings of how far from the set-point.
 const HALVINGS: usize = 60;

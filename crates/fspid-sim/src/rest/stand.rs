@@ -1,12 +1,11 @@
-//! Whether a rest holds where the rules have a kink.
+//! Whether a rest holds: the one verdict on the stability of a loop, for flights, analyses and requirements.
 
 use fspid_core::{Gains, SecondInput};
-use fspid_lti::{Matrix, spectral_radius};
 
 use super::{Rest, Side, slopes};
 use crate::controller::Controller;
 use crate::error::SimError;
-use crate::loop_model::{LoopModel, SampledPlant};
+use crate::loop_model::{BreakPoint, LoopModel, SampledPlant};
 use crate::scenario::Scenario;
 
 /// Motions that are followed around a kink. One that grows does so by itself after a while, wherever it starts; several
@@ -18,30 +17,70 @@ const SAMPLES: usize = 12_000;
 /// difference of that size; what grows more slowly, less than twice a minute at 100 Hz, stays undecided.
 const GROWN: f64 = core::f64::consts::LN_2;
 
-/// Whether something grows around a rest.
+/// Whether something grows around a rest, as far as its linear loop tells.
+///
+/// Limits of controller and servo do not act at rest and change nothing about it. Poles that rounding may carry across
+/// the unit circle, to whichever side, decide nothing.
 ///
 /// With a kink at rest the loop is linear on each of its sides, and a motion may go around through several. One side
 /// that alone would grow then proves nothing: motions may leave it faster than they grow. So motions are followed
 /// through the sides as they come; the rest is [`Stand::Grows`] if one of them does, and if none is seen to,
-/// [`Stand::OneSide`] says that it is not decided.
+/// [`Doubt::OneSide`] says that it is not decided.
+///
+/// Of a sensor with a clock of its own the age changes: the loop is asked with its largest and with none. Where the
+/// answers differ, it is [`Doubt::ChangingAge`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stand {
-    /// Every side is stable.
+    /// It is stable on every side.
     Holds,
     /// Something grows.
     Grows {
         /// By what, a sample: the spectral radius of the one loop there is, or what a motion was seen to grow by.
         spectral_radius: f64,
     },
-    /// A side of a kink is unstable, and no motion was seen to grow.
-    OneSide {
-        /// Largest spectral radius of the sides.
+    /// Neither is known.
+    Undecided {
+        /// Largest spectral radius of the loops that were asked, as computed.
         spectral_radius: f64,
+        /// Why.
+        doubt: Doubt,
     },
 }
 
+/// Why nobody can tell whether a rest holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Doubt {
+    /// Rounding may carry poles across the unit circle.
+    Rounding,
+    /// A side of a kink is unstable, and no motion was seen to grow.
+    OneSide,
+    /// A sensor shows values of changing age, and the loop is stable with one of them and not with another.
+    ChangingAge,
+}
+
+/// The loop of one side: stable, unstable, or neither for all that is known.
+#[derive(Clone, Copy)]
+enum Found {
+    Stable,
+    Unstable(f64),
+    Blurred(f64),
+}
+
+/// A loop and its gains.
+type Model = (LoopModel<f64>, Gains<f64>);
+
+/// What the poles of a loop say.
+fn found((model, gains): &Model) -> Result<Found, SimError> {
+    let radius = model.open(*gains, BreakPoint::default())?.unstable_radius();
+    match radius {
+        Ok(None) => Ok(Found::Stable),
+        Ok(Some(radius)) => Ok(Found::Unstable(radius)),
+        Err(error) => error.undecided_radius().map(Found::Blurred).ok_or(error.into()),
+    }
+}
+
 impl Rest {
-    /// Whether something grows: a side whose spectral radius is not below `limit` counts as unstable.
+    /// Whether something grows.
     ///
     /// # Errors
     /// Eigenvalues that are not found.
@@ -50,35 +89,56 @@ impl Rest {
         scenario: &Scenario,
         plant: &SampledPlant<f64>,
         controller: &Controller,
-        limit: f64,
     ) -> Result<Stand, SimError> {
-        let mut largest = 0.0_f64;
-        for (model, gains) in self.models(scenario, plant, controller) {
-            let radius = spectral_radius(&Matrix::from_rows(&model.closed(gains))?)?;
-            largest = if radius.is_nan() { f64::INFINITY } else { largest.max(radius) };
+        let models = self.models(scenario, plant, controller);
+        let oldest = self.stand_of(&models)?;
+        if !models.iter().any(|(model, _)| model.has_changing_ages()) {
+            return Ok(oldest);
         }
-        if largest < limit {
-            return Ok(Stand::Holds);
-        }
-        if self.sides.len() == 1 || !largest.is_finite() {
-            return Ok(Stand::Grows { spectral_radius: largest });
-        }
-        Ok(match self.growth_of_motions(scenario, plant, controller) {
-            Some(spectral_radius) => Stand::Grows { spectral_radius },
-            None => Stand::OneSide { spectral_radius: largest },
+        let models: Vec<_> =
+            models.into_iter().map(|(it, k)| (it.without_changing_ages(), k)).collect();
+        let newest = self.stand_of(&models)?;
+        Ok(match (oldest, newest) {
+            (Stand::Holds, Stand::Grows { spectral_radius })
+            | (Stand::Grows { spectral_radius }, Stand::Holds) => {
+                Stand::Undecided { spectral_radius, doubt: Doubt::ChangingAge }
+            }
+            (_, Stand::Undecided { .. }) => newest,
+            _ => oldest,
         })
+    }
+
+    /// The same of loops, one for each side.
+    fn stand_of(&self, models: &[Model]) -> Result<Stand, SimError> {
+        let found = models.iter().map(found).collect::<Result<Vec<Found>, _>>()?;
+        let unstable = found.iter().filter_map(|it| match *it {
+            Found::Unstable(radius) => Some(radius),
+            Found::Stable | Found::Blurred(_) => None,
+        });
+        // A NaN is no radius, and no stable loop.
+        let larger = |one: f64, other: f64| if other > one || other.is_nan() { other } else { one };
+        if let Some(spectral_radius) = unstable.reduce(larger) {
+            if models.len() == 1 || !spectral_radius.is_finite() {
+                return Ok(Stand::Grows { spectral_radius });
+            }
+            return Ok(match self.growth_of_motions(models) {
+                Some(spectral_radius) => Stand::Grows { spectral_radius },
+                None => Stand::Undecided { spectral_radius, doubt: Doubt::OneSide },
+            });
+        }
+        let blurred = found.iter().filter_map(|it| match *it {
+            Found::Blurred(radius) => Some(radius),
+            Found::Stable | Found::Unstable(_) => None,
+        });
+        Ok(blurred.reduce(larger).map_or(Stand::Holds, |spectral_radius| Stand::Undecided {
+            spectral_radius,
+            doubt: Doubt::Rounding,
+        }))
     }
 
     /// The growth a sample of the motion that grows most around the kinks of this rest, through all its sides as they
     /// come; none where no motion is seen to grow.
-    #[must_use]
-    pub fn growth_of_motions(
-        &self,
-        scenario: &Scenario,
-        plant: &SampledPlant<f64>,
-        controller: &Controller,
-    ) -> Option<f64> {
-        let models = self.models(scenario, plant, controller);
+    fn growth_of_motions(&self, models: &[Model]) -> Option<f64> {
         let (first, _) = models.first()?;
         let [error, change] = first.error_rows();
         let second = match self.second_input {
@@ -98,10 +158,9 @@ impl Rest {
         scenario: &Scenario,
         plant: &SampledPlant<f64>,
         controller: &Controller,
-    ) -> Vec<(LoopModel<f64>, Gains<f64>)> {
+    ) -> Vec<Model> {
         let several = self.sides.len() > 1;
-        let model =
-            |side: &Side| side.around(scenario, plant, controller, several).without_changing_ages();
+        let model = |side: &Side| side.around(scenario, plant, controller, several);
         self.sides.iter().map(|side| (model(side), side.gains)).collect()
     }
 

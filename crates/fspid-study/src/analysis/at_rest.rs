@@ -3,7 +3,7 @@
 
 use fspid_core::{Gains, Law};
 use fspid_sim::load::{ConstantLoad, constant_load};
-use fspid_sim::stability::{GrowthAtRest, Unstable, growth_at_rest};
+use fspid_sim::stability::{GrowthAtRest, Undecided, Unstable, growth_at_rest};
 use fspid_sim::{Controller, RestPoint, Scenario, SimError};
 
 use super::equilibrium::{Equilibrium, added_at_rest, equilibrium};
@@ -83,8 +83,8 @@ pub struct AtRest {
     /// The first plant and set-point around which the loop grows; none for a stable loop and where there are no gains
     /// to ask with.
     pub unstable: Option<Unstable>,
-    /// Where that is not decided, because one side of a kink of the rules is unstable and no motion was seen to grow.
-    pub on_one_side: Option<Unstable>,
+    /// Where that is not decided, and why.
+    pub undecided: Option<Undecided>,
     /// What a constant load at the servo does; none for a loop that is unstable or has no gains at rest, and where it
     /// was not asked.
     pub load: Option<ConstantLoad>,
@@ -96,9 +96,9 @@ impl AtRest {
     /// Of a controller without equations, of which nothing can be asked.
     #[must_use]
     pub fn unknown() -> Self {
-        let (unstable, on_one_side, load, not_asked) = (None, None, None, None);
+        let (unstable, undecided, load, not_asked) = (None, None, None, None);
         let (nominal, gains) = (Gains::ZERO, RestGains::Unknown);
-        Self { nominal, gains, unstable, on_one_side, load, not_asked }
+        Self { nominal, gains, unstable, undecided, load, not_asked }
     }
 
     /// Gains and stability, which every flight is asked. What cannot be asked says why, and the flight is flown.
@@ -111,8 +111,8 @@ impl AtRest {
             Ok(found) => (found.unwrap_or_default(), None),
             Err(reason) => (GrowthAtRest::default(), Some(reason)),
         };
-        let GrowthAtRest { certain: unstable, on_one_side } = found;
-        Self { nominal, gains, unstable, on_one_side, load: None, not_asked }
+        let GrowthAtRest { certain: unstable, undecided } = found;
+        Self { nominal, gains, unstable, undecided, load: None, not_asked }
     }
 
     /// The same, and what a constant load does.

@@ -9,6 +9,7 @@ use fspid_sim::{LinearPlant, Scenario, SimError};
 use super::Question;
 use super::answer::Margins;
 use super::rank::{judged, rank};
+use super::stability::Stability;
 use crate::metrics::Absent;
 
 /// A gain triple and its margins.
@@ -59,27 +60,42 @@ impl FrozenMap {
         self.points.iter().chain(&self.nodes).chain([&self.worst])
     }
 
-    /// True if every gain that was looked at holds the plant.
+    /// Whether every gain that was looked at holds the plant.
     #[must_use]
-    pub fn is_stable(&self) -> bool {
-        self.all().all(|point| point.margins.is_ok())
+    pub fn stability(&self) -> Stability {
+        Stability::of_all(self.all().map(FrozenPoint::stability))
     }
 
     /// Gains of the points of the map that do not hold the plant.
     #[must_use]
     pub fn unstable(&self) -> usize {
-        unstable(&self.points)
+        count(&self.points, Stability::Unstable)
     }
 
     /// Gains of the cells that do not hold the plant.
     #[must_use]
     pub fn unstable_nodes(&self) -> usize {
-        unstable(&self.nodes)
+        count(&self.nodes, Stability::Unstable)
+    }
+
+    /// True if every gain that was looked at holds the plant with margins that are proved.
+    #[must_use]
+    pub fn is_held(&self) -> bool {
+        self.all().all(|point| point.margins.is_ok())
     }
 }
 
-fn unstable(points: &[FrozenPoint]) -> usize {
-    points.iter().filter(|point| point.margins.is_err()).count()
+impl FrozenPoint {
+    /// Whether the gains hold the plant.
+    #[must_use]
+    pub fn stability(&self) -> Stability {
+        Stability::of(&self.margins)
+    }
+}
+
+/// How many of some gains have this verdict.
+pub(super) fn count(points: &[FrozenPoint], verdict: Stability) -> usize {
+    points.iter().filter(|point| point.stability() == verdict).count()
 }
 
 /// The loops of all frozen gains, and how their margins are found.

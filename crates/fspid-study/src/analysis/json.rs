@@ -8,8 +8,10 @@ use fspid_scenario::units::degrees;
 
 use super::answer::{Margins, NO_CROSSOVER, NO_LOWER_LIMIT, NO_UPPER_LIMIT};
 use super::flights::Flights;
+use super::frozen::count;
 use super::{
-    AnalysedLoop, Analysis, Equilibrium, FlownExternal, FrozenMap, FrozenPoint, PlantLoop, RestLoop,
+    AnalysedLoop, Analysis, Equilibrium, FlownExternal, FrozenMap, FrozenPoint, PlantLoop,
+    RestLoop, Stability,
 };
 use crate::json::{by_name, merged, present, unless_empty};
 
@@ -17,8 +19,9 @@ use crate::json::{by_name, merged, present, unless_empty};
 const SCHEMA: u32 = 1;
 
 impl Analysis {
-    /// The answer for programs: an infinite margin is `null`, with its reason under `reasons`; a loop
-    /// that is unstable has no margins.
+    /// The answer for programs: an infinite margin is `null`, with its reason under `reasons`. `stability` is a loop's
+    /// verdict ([`Stability::word`]), `stable` the same as true, false or `null`; where there are no margins, `absent`
+    /// says why.
     #[must_use]
     pub fn json(&self) -> Value {
         present(json!({
@@ -35,7 +38,8 @@ impl Analysis {
 fn controller(found: &AnalysedLoop) -> Value {
     let absent = || {
         let reason = found.absent.map(|reason| reason.to_string());
-        json!({ "stable": null, "absent": reason.unwrap_or_default() })
+        let undecided = Stability::Undecided;
+        merged([of_stability(undecided), json!({ "absent": reason.unwrap_or_default() })])
     };
     let (kind, gains) = match &found.equilibrium {
         Equilibrium::Fixed(gains) => ("fixed", Some(*gains)),
@@ -57,20 +61,29 @@ fn controller(found: &AnalysedLoop) -> Value {
 
 fn plant(plant: &PlantLoop) -> Value {
     let RestLoop { at, gains, closed_poles, open, .. } = &plant.worst;
-    let unstable = closed_poles.iter().filter(|pole| modulus(**pole) >= 1.0);
+    let is_unstable = plant.stability() == Stability::Unstable;
+    let unstable = closed_poles.iter().filter(|pole| is_unstable && modulus(**pole) >= 1.0);
     // Where gains that move make a constant command part of the loop, the rest at which it is worst.
     let moves = !plant.others.is_empty();
     merged([
-        json!({ "stable": plant.is_stable() }),
+        of_stability(plant.stability()),
         present(json!({
             "setpoint_deg": moves.then(|| degrees(at.setpoint_rad)),
             "load_deg": moves.then(|| degrees(at.load_rad)),
             "gain_on_the_error": moves.then_some(gains.kp),
             "unstable_poles": unstable.map(|pole| pole_of(*pole, open.dt_s())).collect::<Vec<_>>(),
         })),
-        plant.margins.as_ref().map_or_else(|_| json!({}), margins),
+        plant
+            .margins
+            .as_ref()
+            .map_or_else(|reason| json!({ "absent": reason.to_string() }), margins),
         present(json!({ "frozen_gains": plant.map.as_ref().map(frozen) })),
     ])
+}
+
+/// The verdict as a word, and as true, false or `null`.
+fn of_stability(stability: Stability) -> Value {
+    json!({ "stable": stability.known(), "stability": stability.word() })
 }
 
 /// A pole in the z-plane and as a mode.
@@ -125,16 +138,21 @@ fn triple(gains: Gains<f64>) -> Value {
 /// Points of the map and, where rules conclude numbers, the cells beside them.
 fn frozen(map: &FrozenMap) -> Value {
     let has_cells = !map.nodes.is_empty();
-    present(json!({
-        "stable": map.is_stable(),
-        "points": map.points.len(),
-        "unstable": map.unstable(),
-        "worst": frozen_point(&map.worst),
-        "map": map.points.iter().map(frozen_point).collect::<Vec<_>>(),
-        "cells": has_cells.then_some(map.nodes.len()),
-        "unstable_cells": has_cells.then(|| map.unstable_nodes()),
-        "map_of_cells": unless_empty(&map.nodes, frozen_point),
-    }))
+    let undecided = |points| Some(count(points, Stability::Undecided)).filter(|count| *count > 0);
+    merged([
+        of_stability(map.stability()),
+        present(json!({
+            "points": map.points.len(),
+            "unstable": map.unstable(),
+            "undecided": undecided(&map.points),
+            "worst": frozen_point(&map.worst),
+            "map": map.points.iter().map(frozen_point).collect::<Vec<_>>(),
+            "cells": has_cells.then_some(map.nodes.len()),
+            "unstable_cells": has_cells.then(|| map.unstable_nodes()),
+            "undecided_cells": undecided(&map.nodes),
+            "map_of_cells": unless_empty(&map.nodes, frozen_point),
+        })),
+    ])
 }
 
 fn frozen_point(point: &FrozenPoint) -> Value {
@@ -144,8 +162,8 @@ fn frozen_point(point: &FrozenPoint) -> Value {
             "error": error,
             "change": change,
             "gains": triple(point.gains),
-            "stable": point.margins.is_ok(),
         }),
+        of_stability(point.stability()),
         match &point.margins {
             Ok(found) => margins(found),
             Err(reason) => json!({ "absent": reason.to_string() }),

@@ -2,7 +2,7 @@
 
 use super::rank::{judged, rank, rank_without_margins};
 use fspid_core::Gains;
-use fspid_lti::{Complex, LtiError, SampledLoop, SampledMargins};
+use fspid_lti::{Complex, SampledLoop, SampledMargins};
 use fspid_sim::loop_model::{BreakPoint, SampledPlant};
 use fspid_sim::{
     AircraftPlant, Controller, LinearPlant, NamedController, Rest, RestPoint, Scenario, Side,
@@ -14,6 +14,7 @@ use super::answer::Margins;
 use super::equilibrium::{Equilibrium, equilibrium};
 use super::flights::Flights;
 use super::frozen::{FrozenMap, FrozenPoint};
+use super::stability::{Stability, of_stand};
 use crate::metrics::Absent;
 
 /// A controller's loop with a plant, at one rest of the scenario and on one side of the kinks that the rules have there.
@@ -117,6 +118,15 @@ impl AnalysedLoop {
         worst.min_by(|one, other| rank(&one.1.margins).total_cmp(&rank(&other.1.margins)))
     }
 
+    /// Whether every plant is held at rest; undecided where there is none to hold.
+    #[must_use]
+    pub fn stability(&self) -> Stability {
+        match self.plants.as_slice() {
+            [] => Stability::Undecided,
+            plants => Stability::of_all(plants.iter().map(PlantLoop::stability)),
+        }
+    }
+
     /// Margins with the worst plant.
     ///
     /// # Errors
@@ -140,7 +150,7 @@ impl AnalysedLoop {
     #[must_use]
     pub fn is_held(&self) -> bool {
         let held = |plant: &PlantLoop| {
-            plant.margins.is_ok() && plant.map.as_ref().is_none_or(FrozenMap::is_stable)
+            plant.margins.is_ok() && plant.map.as_ref().is_none_or(FrozenMap::is_held)
         };
         !self.plants.is_empty() && self.plants.iter().all(held)
     }
@@ -168,29 +178,19 @@ impl RestLoop {
             Self::of(rest.at, side.gains, open)
         };
         let mut sides = rest.sides.iter().map(of_side).collect::<Result<Vec<Self>, SimError>>()?;
-        for side in &mut sides {
-            if let Err(reason) = side.margins {
-                side.margins = Err(of_all_sides(reason, scenario, plant, rest, controller)?);
+        // Whether a rest holds is said of all its sides at once, as flights and requirements are told it.
+        if let Err(reason) = verdict_of(scenario, plant, rest, controller)? {
+            if let (true, Some(first)) =
+                (sides.iter().all(|it| it.margins.is_ok()), sides.first_mut())
+            {
+                first.margins = Err(reason);
+            }
+            for side in sides.iter_mut().filter(|it| it.margins.is_err()) {
+                side.margins = Err(reason);
             }
         }
         Ok(sides)
     }
-}
-
-/// What the instability of one side says of a rest: where there are several sides, motions decide.
-fn of_all_sides(
-    reason: Absent,
-    scenario: &Scenario,
-    plant: &LinearPlant,
-    rest: &Rest,
-    controller: &Controller,
-) -> Result<Absent, SimError> {
-    let Absent::Unstable { .. } = reason else { return Ok(reason) };
-    if rest.sides.len() == 1 {
-        return Ok(reason);
-    }
-    let grown = rest.growth_of_motions(scenario, &SampledPlant::of(scenario, plant)?, controller);
-    Ok(grown.map_or(Absent::OneSide, |spectral_radius| Absent::Unstable { spectral_radius }))
 }
 
 impl PlantLoop {
@@ -223,15 +223,17 @@ impl PlantLoop {
         core::iter::once(&self.worst).chain(&self.others)
     }
 
-    /// Whether the loop is stable; `None` where rounding or a kink of the rules hides it.
+    /// Whether the loop is stable at rest.
     #[must_use]
-    pub fn is_stable(&self) -> Option<bool> {
-        match self.margins {
-            // Its poles tell; only how far it is from unstable is not proved.
-            Ok(_) | Err(Absent::NotProved { .. }) => Some(true),
-            Err(Absent::Undecided { .. } | Absent::OneSide) => None,
-            Err(_) => Some(false),
-        }
+    pub fn stability(&self) -> Stability {
+        Stability::of(&self.margins)
+    }
+
+    /// The same, at rest and at every gain of its map.
+    #[must_use]
+    pub fn stability_at_every_gain(&self) -> Stability {
+        let frozen = self.map.as_ref().map(FrozenMap::stability);
+        Stability::of_all(frozen.into_iter().chain([self.stability()]))
     }
 }
 
@@ -280,32 +282,15 @@ pub(crate) fn held_at_rest(
     held.collect()
 }
 
-/// Whether a rest is stable on all its sides.
+/// Whether a rest holds.
 fn verdict_of(
     scenario: &Scenario,
     plant: &LinearPlant,
     rest: &Rest,
     controller: &Controller,
 ) -> Result<Result<(), Absent>, SimError> {
-    for side in &rest.sides {
-        let model = side.model(scenario, plant, controller)?;
-        if let Err(reason) = verdict(&model.open(side.gains, BreakPoint::default())?)? {
-            return of_all_sides(reason, scenario, plant, rest, controller).map(Err);
-        }
-    }
-    Ok(Ok(()))
-}
-
-/// Whether a loop is stable; one of which rounding hides the answer is not called so.
-fn verdict(open: &SampledLoop) -> Result<Result<(), Absent>, SimError> {
-    match open.unstable_radius() {
-        Ok(None) => Ok(Ok(())),
-        Ok(Some(spectral_radius)) => Ok(Err(Absent::Unstable { spectral_radius })),
-        Err(LtiError::Blurred { spectral_radius, .. }) => {
-            Ok(Err(Absent::Undecided { spectral_radius }))
-        }
-        Err(error) => Err(error.into()),
-    }
+    let sampled = SampledPlant::of(scenario, plant)?;
+    Ok(of_stand(rest.stand(scenario, &sampled, controller)?))
 }
 
 /// The plants that last, an aircraft's linear model at its trim in its place.
@@ -331,7 +316,7 @@ mod tests {
             unstable(f64::NAN),
             unstable(2.0),
             unstable(1.0),
-            Absent::OneSide,
+            Absent::OneSide { spectral_radius: 2.0 },
             Absent::NotProved { order: 100 },
         ];
         let ranks: Vec<f64> = worst_first.into_iter().map(rank_without_margins).collect();
@@ -341,8 +326,8 @@ mod tests {
                 && rank_without_margins(Absent::Undecided { spectral_radius: 1.0 }) < -1.0
         );
         let held = |verdict| Held { from_s: 0.0, at: RestPoint::TRIM, verdict }.rank();
-        assert!(held(Err(unstable(1.1))) < held(Err(Absent::OneSide)));
-        assert!(held(Err(Absent::OneSide)) < held(Ok(())));
+        assert!(held(Err(unstable(1.1))) < held(Err(worst_first[3])));
+        assert!(held(Err(worst_first[3])) < held(Ok(())));
     }
 
     const STEP: &str = include_str!("../../../../scenarios/plant-change.toml");

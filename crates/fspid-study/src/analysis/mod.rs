@@ -20,6 +20,7 @@ mod json;
 mod loops;
 mod nonlinear_parts;
 mod rank;
+mod stability;
 mod step;
 mod text;
 
@@ -40,6 +41,8 @@ pub use fspid_sim::loop_model::BreakPoint;
 pub use loops::{AnalysedLoop, PlantLoop, RestLoop};
 pub(crate) use loops::{held_at_rest, lasting_plants};
 pub use nonlinear_parts::not_in_the_linear_loop;
+pub use stability::Stability;
+pub(crate) use stability::why_undecided;
 pub(crate) use step::step_responses;
 
 /// What to analyse.
@@ -104,15 +107,16 @@ impl Analysis {
         Ok(Self { scenario: scenario.name.clone(), question, loops, externals, left_out })
     }
 
-    /// True if no loop is known to be unstable, or to have no gains at rest, with margins or without.
+    /// Whether every loop is stable at rest and at every gain of its map, with margins or without; undecided where a
+    /// controller without a loop was seen to fail in flight.
     #[must_use]
-    pub fn all_stable(&self) -> bool {
-        let stable = |plant: &PlantLoop| {
-            let frozen = plant.map.as_ref().is_none_or(FrozenMap::is_stable);
-            plant.is_stable() == Some(true) && frozen
-        };
-        self.loops.iter().all(|found| found.plants.iter().all(stable))
-            && self.externals.iter().all(FlownExternal::is_held)
+    pub fn stability(&self) -> Stability {
+        let plants = self.loops.iter().flat_map(|found| &found.plants);
+        let loops = Stability::of_all(plants.map(PlantLoop::stability_at_every_gain));
+        match self.externals.iter().all(FlownExternal::is_held) {
+            true => loops,
+            false => Stability::of_all([loops, Stability::Undecided]),
+        }
     }
 
     /// True if every loop is held with margins that are proved, at every gain of its map too, and no flight of a

@@ -6,19 +6,23 @@ use fspid_sim::SimError;
 use super::answer::Margins;
 use crate::metrics::Absent;
 
-/// Margins of a loop. One of which rounding hides whether it is stable has none, and neither has one whose peaks nothing
-/// bounds.
+/// Margins of a loop. One that is not known to be stable has none, and neither has one whose peaks nothing bounds.
 pub(super) fn judged(open: &SampledLoop) -> Result<Result<Box<SampledMargins>, Absent>, SimError> {
-    match open.margins() {
-        Ok(Stability::Stable(margins)) => Ok(Ok(margins)),
-        Ok(Stability::Unstable { spectral_radius, .. }) => {
-            Ok(Err(Absent::Unstable { spectral_radius }))
+    let found = match open.margins() {
+        Ok(Stability::Stable(margins)) => return Ok(Ok(margins)),
+        Err(LtiError::Unproved { order }) => return Ok(Err(Absent::NotProved { order })),
+        // Margins do not tell what is unstable from what is at the edge.
+        Ok(Stability::Unstable { .. }) => open.unstable_radius(),
+        Err(error) => Err(error),
+    };
+    match found {
+        Ok(radius) => {
+            Ok(Err(Absent::Unstable { spectral_radius: radius.unwrap_or(f64::INFINITY) }))
         }
-        Err(LtiError::Blurred { spectral_radius, .. }) => {
-            Ok(Err(Absent::Undecided { spectral_radius }))
-        }
-        Err(LtiError::Unproved { order }) => Ok(Err(Absent::NotProved { order })),
-        Err(error) => Err(error.into()),
+        Err(error) => match error.undecided_radius() {
+            Some(spectral_radius) => Ok(Err(Absent::Undecided { spectral_radius })),
+            None => Err(error.into()),
+        },
     }
 }
 

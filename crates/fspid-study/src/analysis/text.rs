@@ -3,11 +3,12 @@
 use fspid_core::Gains;
 use fspid_lti::{Complex, Mode, modulus};
 
-use crate::metrics::Absent;
-
 use super::answer::{Margins, NO_CROSSOVER, NO_LOWER_LIMIT, NO_UPPER_LIMIT, POOR_MARGINS};
 
-use super::{AnalysedLoop, Analysis, Equilibrium, Flights, FrozenMap, PlantLoop, held_in_words};
+use super::frozen::count;
+use super::{
+    AnalysedLoop, Analysis, Equilibrium, Flights, FrozenMap, PlantLoop, Stability, held_in_words,
+};
 
 impl Analysis {
     /// The answer of `analyse --format text`: verdict first, then the margins with their frequencies.
@@ -45,17 +46,14 @@ fn verdict(found: &AnalysedLoop) -> String {
         return format!("no margins: {reason}");
     }
     let held = found.worst().map(held_where_worst).unwrap_or_default();
-    let count = |answer| found.plants.iter().filter(|it| it.is_stable() == answer).count();
-    let (unstable, undecided) = (count(Some(false)), count(None));
+    let stability = found.stability();
+    let bad = found.plants.iter().filter(|it| it.stability() == stability).count();
     let plants = |bad| match found.plants.len() {
         1 => String::new(),
         all => format!(" for {bad} of {all} plants"),
     };
-    if unstable > 0 {
-        return format!("UNSTABLE{} {gains}{held}", plants(unstable));
-    }
-    if undecided > 0 {
-        return format!("UNDECIDED{} {gains}{held}", plants(undecided));
+    if stability != Stability::Stable {
+        return format!("{}{} {gains}{held}", stability.word().to_uppercase(), plants(bad));
     }
     let unproved = found.plants.iter().filter(|plant| plant.margins.is_err()).count();
     if unproved > 0 {
@@ -91,10 +89,12 @@ fn push_loop(out: &mut String, found: &AnalysedLoop) {
 fn push_plant(out: &mut String, plant: &PlantLoop) {
     match &plant.margins {
         Ok(margins) => push_margins(out, margins),
-        Err(reason @ (Absent::Undecided { .. } | Absent::OneSide | Absent::NotProved { .. })) => {
+        Err(reason) => {
+            if plant.stability() == Stability::Unstable {
+                push_unstable_poles(out, plant);
+            }
             out.push_str(&format!("  no margins         {reason}\n"));
         }
-        Err(_) => push_unstable(out, plant),
     }
     if !plant.others.is_empty() {
         let Gains { kp, .. } = plant.worst.gains;
@@ -121,7 +121,7 @@ pub(super) fn mode(pole: Complex, dt_s: f64) -> Mode {
     Mode::of_sampled_pole(pole, dt_s).unwrap_or(gone)
 }
 
-fn push_unstable(out: &mut String, plant: &PlantLoop) {
+fn push_unstable_poles(out: &mut String, plant: &PlantLoop) {
     for pole in
         plant.worst.closed_poles.iter().filter(|pole| modulus(**pole) >= 1.0 && pole.im >= 0.0)
     {
@@ -135,7 +135,6 @@ fn push_unstable(out: &mut String, plant: &PlantLoop) {
             mode.damping_ratio
         ));
     }
-    out.push_str("  no margins         an unstable loop has none\n");
 }
 
 fn push_margins(out: &mut String, margins: &Margins) {
@@ -212,14 +211,20 @@ fn all_of(map: &FrozenMap) -> String {
 
 /// "3 of 81 on the map and 1 of 49 cells DO NOT HOLD"; where none of them is meant, the search found one.
 fn not_holding(map: &FrozenMap) -> String {
+    let stability = map.stability();
+    let [one, several] = match stability {
+        Stability::Stable => return format!("all {} hold", all_of(map)),
+        Stability::Unstable => ["DOES NOT HOLD", "DO NOT HOLD"],
+        Stability::Undecided => ["IS UNDECIDED", "ARE UNDECIDED"],
+    };
     let (points, cells) = (map.points.len(), map.nodes.len());
-    match (map.unstable(), map.unstable_nodes()) {
-        (0, 0) => format!("all {} hold, and one between them DOES NOT HOLD", all_of(map)),
-        (0, 1) => format!("1 of {cells} cells DOES NOT HOLD"),
-        (0, bad) => format!("{bad} of {cells} cells DO NOT HOLD"),
-        (bad, _) if cells == 0 => format!("{bad} of {points} on the map DO NOT HOLD"),
+    match (count(&map.points, stability), count(&map.nodes, stability)) {
+        (0, 0) => format!("all {} hold, and one between them {one}", all_of(map)),
+        (0, 1) => format!("1 of {cells} cells {one}"),
+        (0, bad) => format!("{bad} of {cells} cells {several}"),
+        (bad, _) if cells == 0 => format!("{bad} of {points} on the map {several}"),
         (bad, of_cells) => {
-            format!("{bad} of {points} on the map and {of_cells} of {cells} cells DO NOT HOLD")
+            format!("{bad} of {points} on the map and {of_cells} of {cells} cells {several}")
         }
     }
 }

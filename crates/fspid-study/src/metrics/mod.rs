@@ -73,9 +73,20 @@ pub enum Absent {
     /// The rules have a kink where the loop rests; on one side of it the loop is unstable, and no motion was seen to
     /// grow.
     #[error(
-        "undecided: unstable on one side of a kink that the rules have where the loop rests, and no motion was seen to grow"
+        "undecided: unstable on one side of a kink that the rules have where the loop rests (spectral radius {spectral_radius:.6} there), and no motion was seen to grow"
     )]
-    OneSide,
+    OneSide {
+        /// Spectral radius of the sampled closed loop on that side.
+        spectral_radius: f64,
+    },
+    /// A sensor has a clock of its own, and the loop is stable with one age of its values and not with another.
+    #[error(
+        "undecided: a sensor with a clock of its own shows values of changing age, with one of which the loop is unstable (spectral radius {spectral_radius:.6}) and with another stable"
+    )]
+    ChangingAge {
+        /// Spectral radius of the sampled closed loop with the age at which it is unstable.
+        spectral_radius: f64,
+    },
     /// The loop has so many states that nothing bounds its peaks from above.
     #[error("no bound of its peaks is proved: {order} states, samples of dead time included")]
     NotProved {

@@ -5,8 +5,9 @@ use fspid_sim::SimError;
 use crate::analysis::figures::{
     LoopFigures, MapQuantity, gain_map, gain_surface, pole_zero, radius_figure, root_locus,
 };
-use crate::analysis::{AnalysedLoop, Analysis, Equilibrium, Margins, PlantLoop};
-use crate::metrics::Absent;
+use crate::analysis::{
+    AnalysedLoop, Analysis, Equilibrium, FrozenMap, Margins, PlantLoop, Stability,
+};
 use fspid_page::analysis::{
     AnalysisPage, Chapter, DataTable, Datum, Item, Picture, Provenance, Standing, Verdict,
 };
@@ -52,13 +53,20 @@ pub(super) fn report(study: &Study, analysis: &Analysis) -> Result<String, SimEr
 }
 
 fn verdict(found: &AnalysedLoop) -> Verdict {
-    let (standing, word) = match (found.absent, found.margins()) {
-        (Some(_), _) => (Standing::Fair, "No margins"),
-        (None, Err(Absent::NotProved { .. })) => (Standing::Fair, "Stable, no margins proved"),
-        (None, Err(Absent::Undecided { .. })) => (Standing::Bad, "UNDECIDED"),
-        (None, Ok(_)) if found.has_poor_margins() => (Standing::Fair, "Stable, poor margins"),
-        (None, Ok(_)) if found.is_held() => (Standing::Good, "Stable"),
-        (None, _) => (Standing::Bad, "UNSTABLE"),
+    let frozen = found.plants.iter().filter_map(|plant| plant.map.as_ref());
+    let frozen = Stability::of_all(frozen.map(FrozenMap::stability));
+    let (standing, word) = match (found.stability(), found.margins()) {
+        _ if found.absent.is_some() => (Standing::Fair, "No margins"),
+        (Stability::Unstable, _) => (Standing::Bad, "UNSTABLE"),
+        (Stability::Undecided, _) => (Standing::Bad, "UNDECIDED"),
+        (Stability::Stable, _) if frozen != Stability::Stable => {
+            (Standing::Bad, "Stable at rest, not at every gain")
+        }
+        (Stability::Stable, Err(_)) => (Standing::Fair, "Stable, no margins proved"),
+        (Stability::Stable, Ok(_)) if found.has_poor_margins() => {
+            (Standing::Fair, "Stable, poor margins")
+        }
+        (Stability::Stable, Ok(_)) => (Standing::Good, "Stable"),
     };
     let detail = match found.margins() {
         Err(reason) => format!("{reason}."),
@@ -139,8 +147,9 @@ fn row(found: &AnalysedLoop, plant: &PlantLoop) -> Vec<Datum> {
     match &plant.margins {
         Ok(margins) => row.extend(numbers(margins)),
         Err(reason) => {
+            let word = plant.stability().word();
             row.push(Datum::Unmet(reason.to_string()));
-            row.extend((0..5).map(|_| Datum::Absent("unstable".to_owned())));
+            row.extend((0..5).map(|_| Datum::Absent(word.to_owned())));
         }
     }
     row

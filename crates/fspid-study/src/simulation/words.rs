@@ -3,10 +3,9 @@
 use fspid_core::Gains;
 use fspid_sim::RestPoint;
 use fspid_sim::load::{ConstantLoad, HALF_GONE, REMOVED};
-use fspid_sim::stability::Unstable;
 
 use super::ControllerResult;
-use crate::analysis::{AtRest, RestGains, held_in_words};
+use crate::analysis::{AtRest, RestGains, held_in_words, why_undecided};
 use crate::metrics::{EdgeMetrics, left_validity, short};
 use fspid_diagnostics::digits::to_digits;
 use fspid_scenario::file::RangeRule;
@@ -55,14 +54,12 @@ impl AtRest {
         })
     }
 
-    /// That stability is not decided, and where; none where it is.
+    /// That stability is undecided, where and why; none where it is known.
     #[must_use]
-    pub fn one_side_in_words(&self) -> Option<String> {
-        let Unstable { spectral_radius, at, .. } = self.on_one_side?;
-        let held = held_in_words(at);
-        Some(format!(
-            "whether the loop is stable {held} is not decided: its rules have a kink there, on one side of it the spectral radius is {spectral_radius:.6}, and no motion around it was seen to grow"
-        ))
+    pub fn undecided_in_words(&self) -> Option<String> {
+        let undecided = self.undecided?;
+        let held = held_in_words(undecided.at);
+        Some(format!("stability at rest {held}: {}", why_undecided(&undecided)))
     }
 
     /// What is said of a constant load that is not removed within the flight; none where it is, or nobody can tell.
@@ -120,7 +117,7 @@ impl ControllerResult {
             .at_rest
             .unstable_where_in_words()
             .into_iter()
-            .chain(self.at_rest.one_side_in_words());
+            .chain(self.at_rest.undecided_in_words());
         question.into_iter().chain(held).chain(load).chain(left).chain(not_asked).collect()
     }
 }

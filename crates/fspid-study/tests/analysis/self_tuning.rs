@@ -1,6 +1,6 @@
 //! Gains that move: their equilibrium and every place where they can stand.
 
-use fspid_study::analysis::Equilibrium;
+use fspid_study::analysis::{Equilibrium, Stability};
 use fspid_study::metrics::Absent;
 
 use super::analysed;
@@ -82,7 +82,7 @@ fn the_worst_frozen_gain_is_no_better_than_any_point_of_a_finer_map() {
     let analysis = analysed(TUNED, &[]);
     let map = analysis.loops[0].plants[0].map.as_ref().expect("a map");
     assert_eq!(map.points.len(), 81);
-    assert!(map.is_stable());
+    assert_eq!(map.stability(), Stability::Stable);
     let worst = map.worst.margins.expect("stable").disk_margin;
     let least =
         map.points.iter().filter_map(|point| Some(point.margins.as_ref().ok()?.disk_margin));
@@ -94,7 +94,7 @@ fn a_gain_that_does_not_hold_makes_the_map_say_so() {
     let analysis = analysed(TUNED, &["controller.C.supervisor.output_scale.kp=3.0"]);
     let map = analysis.loops[0].plants[0].map.as_ref().expect("a map");
     assert!(analysis.loops[0].plants[0].margins.is_ok(), "the equilibrium holds");
-    assert!(!map.is_stable() && map.unstable() > 0 && !analysis.all_held());
+    assert!(map.stability() == Stability::Unstable && map.unstable() > 0 && !analysis.all_held());
     assert!(analysis.text().contains("DO NOT HOLD"), "{}", analysis.text());
 }
 
@@ -152,7 +152,7 @@ fn a_cell_that_alone_does_not_hold_is_counted_beside_the_points_of_the_map() {
     let analysis = analysed(&with_cells(&[([1, 1], [5.0, 0.0])]), &set);
     let map = analysis.loops[0].plants[0].map.as_ref().expect("a map");
     assert_eq!((map.unstable(), map.unstable_nodes()), (0, 1), "{:?}", map.worst);
-    assert!(!map.is_stable() && !analysis.all_held());
+    assert!(map.stability() == Stability::Unstable && !analysis.all_held());
     let text = analysis.text();
     assert!(
         text.contains("1 of 49 cells DOES NOT HOLD; the worst: the loop is unstable"),
@@ -229,7 +229,7 @@ fn a_loop_that_one_side_of_a_kink_would_make_grow_and_no_motion_does_is_called_u
         assert!(verdict.contains(stands), "{amplitude_deg}: {text}");
     }
     let undecided = analysed(TUNED, &[weight, "setpoint.amplitude_deg=-12"]);
-    assert_eq!(undecided.loops[0].margins(), Err(Absent::OneSide));
+    assert!(matches!(undecided.loops[0].margins(), Err(Absent::OneSide { .. })));
     assert!(undecided.json()["controllers"][0]["stable"].is_null());
 }
 

@@ -189,16 +189,16 @@ fn a_flight_is_asked_whether_its_loop_is_stable_at_the_set_point_that_it_holds()
     let of = |amplitude: &str| {
         let simulation = Simulation::of(&study(STEP, &[weight, amplitude])).expect("it flies");
         let fspid = simulation.results.iter().find(|it| it.name == "FSPID").expect("a flight");
-        (fspid.metrics.verdict, fspid.at_rest.on_one_side.is_some(), simulation.text())
+        (fspid.metrics.verdict, fspid.at_rest.undecided.is_some(), simulation.text())
     };
     let (steep, _, text) = of("setpoint.amplitude_deg=-20");
     assert!(matches!(steep, Verdict::Unstable { .. }), "{steep:?}");
     assert!(text.contains("unstable while the set-point is held at -20 deg"), "{text}");
-    let (kinked, on_one_side, text) = of("setpoint.amplitude_deg=-12");
-    assert!(on_one_side && !kinked.is_failure(), "{kinked:?}");
-    assert!(text.contains("held at -12 deg is not decided"), "{text}");
-    let (plain, on_one_side, _) = of("setpoint.amplitude_deg=-8");
-    assert!(!on_one_side && !plain.is_failure(), "{plain:?}");
+    let (kinked, undecided, text) = of("setpoint.amplitude_deg=-12");
+    assert!(undecided && !kinked.is_failure(), "{kinked:?}");
+    assert!(text.contains("held at -12 deg: undecided: unstable on one side"), "{text}");
+    let (plain, undecided, _) = of("setpoint.amplitude_deg=-8");
+    assert!(!undecided && !plain.is_failure(), "{plain:?}");
 }
 
 /// A tuned starter had never met a load: its rules could take the integral away and nothing showed it.

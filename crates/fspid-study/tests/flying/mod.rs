@@ -10,6 +10,7 @@ mod linear_file;
 mod loading;
 mod lqi;
 mod moving_air;
+mod one_verdict;
 
 use fspid_scenario::file::{self, Study};
 use fspid_sim::Trace;

@@ -119,6 +119,25 @@ fn a_heading_without_a_column_is_refused() {
     assert!(rows("").0.is_err());
 }
 
+/// The first of them used to be taken, without a word.
+#[test]
+fn a_column_that_stands_twice_is_refused_whether_it_is_asked_or_passed_over() {
+    for (heading, told) in [
+        (
+            "service,food,food",
+            "columns 2 and 3 are both named `food`; names of columns must differ",
+        ),
+        (" \"service\" ,food,x,service", "columns 1 and 4 are both named `service`"),
+        ("x,service,x,food", "columns 1 and 3 are both named `x`"),
+    ] {
+        let (done, out) = rows(&format!("{heading}\n1,2,3,4\n"));
+        let error = done.expect_err("twice").to_string();
+        assert!(error.contains(told) && out.is_empty(), "{error}");
+    }
+    // Spreadsheets leave columns without a name, and as many as they like.
+    assert!(rows("service,food,,\n1,2,,\n").0.is_ok());
+}
+
 #[test]
 fn an_output_without_an_answer_is_an_empty_cell_and_one_that_keeps_its_answer_keeps_it() {
     let text = TIP.replace("fallback = \"middle\"", "").replace("sigma = 1.5", "sigma = 0.01");

@@ -35,8 +35,10 @@ const SETTLING: usize = 4;
 const LOST_DEG: f64 = 90.0;
 /// Reason of a failure: the same.
 pub(crate) const FAR: &str = "an error beyond 90 deg";
-/// Reason of a failure.
+/// Reasons of a failure.
 const UNSTABLE: &str = "the loop is unstable at rest";
+/// As [`UNSTABLE`], where nobody can tell: it counts as that.
+const UNDECIDED: &str = "stability of the loop at rest is undecided";
 /// Which flights are lost, wherever that is said.
 pub(crate) const LOST: &str =
     "diverges, hits the ground, has an error beyond 90 deg, or cannot be flown";
@@ -131,7 +133,7 @@ impl Flight {
             reasons: is_far
                 .then(|| FAR.to_owned())
                 .into_iter()
-                .chain(is_unstable(flight).then(|| UNSTABLE.to_owned()))
+                .chain(is_unstable(flight).then(|| why_unstable(flight)))
                 .chain(score.reasons)
                 .collect(),
         }
@@ -172,11 +174,20 @@ pub(crate) fn measured(objectives: &[Objective]) -> Vec<Requirement> {
 /// linear loop, there is nothing but the flight.
 fn is_unstable(flight: &FlightResult) -> bool {
     let of_loop = |judgement: &Judgement| match &judgement.found {
-        Err(NotEvaluated::Unstable { .. }) => true,
+        // Where rounding hides it, nobody may call it stable either.
+        Err(NotEvaluated::Unstable { .. } | NotEvaluated::Absent(Absent::Undecided { .. })) => true,
         Ok(case) => judgement.requirement.measure == Measure::Stable && !(case.value >= 1.0),
         Err(_) => false,
     };
     flight.at_rest.unstable.is_some() || flight.judgements.iter().any(of_loop)
+}
+
+/// The reason that a loop gives which is not stable.
+fn why_unstable(flight: &FlightResult) -> String {
+    match (flight.at_rest.unstable, flight.at_rest.undecided) {
+        (None, Some(_)) => UNDECIDED.to_owned(),
+        _ => UNSTABLE.to_owned(),
+    }
 }
 
 /// What stands for a measure that a flight does not have.

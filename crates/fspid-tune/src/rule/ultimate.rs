@@ -2,7 +2,7 @@
 
 use core::f64::consts::TAU;
 
-use fspid_lti::{LtiError, Stability};
+use fspid_lti::Stability;
 
 use super::RuleError;
 use super::process::Process;
@@ -79,7 +79,8 @@ fn stable_gain(process: &Process) -> Result<Option<f64>, RuleError> {
     for gain in core::iter::once(first).chain(between).chain(last) {
         match process.scaled(gain)?.unstable_radius() {
             Ok(None) => return Ok(Some(gain)),
-            Ok(Some(_)) | Err(LtiError::Blurred { .. }) => {}
+            Ok(Some(_)) => {}
+            Err(error) if error.undecided_radius().is_some() => {}
             Err(error) => return Err(error.into()),
         }
     }

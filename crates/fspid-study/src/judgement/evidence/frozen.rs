@@ -73,7 +73,10 @@ fn case(
     place: CasePlace,
 ) -> Result<Case, NotEvaluated> {
     match margins {
-        Ok(_) if requirement.measure == Measure::FrozenStable => Ok(Case { value: 1.0, place }),
+        // Whether they are stable is known without margins.
+        Ok(_) | Err(Absent::NotProved { .. }) if requirement.measure == Measure::FrozenStable => {
+            Ok(Case { value: 1.0, place })
+        }
         Ok(margins) => {
             let (value, frequency_rad_s) = of_margins(requirement.measure, &margins);
             Ok(Case { value, place: CasePlace { frequency_rad_s, ..place } })

@@ -58,7 +58,7 @@ pub(super) fn require_stability(
         let plant = several.then_some(PlantAt { index, from_s: held.from_s });
         match held.verdict {
             // Not decided by the loop: the flight tells.
-            Ok(()) | Err(Absent::OneSide) => {}
+            Ok(()) | Err(Absent::OneSide { .. }) => {}
             Err(reason) => {
                 let rest = (held.at != RestPoint::TRIM).then_some(held.at);
                 return Err(with_place(reason, CasePlace { plant, rest, ..CasePlace::default() }));

@@ -1,0 +1,63 @@
+#!/usr/bin/env bash
+# Fuzzes every target for so many seconds (20 if nothing is said), as many at once as there are cores. Ends with 1 where
+# one was brought down; its input is then in target/fuzz/found. FSPID names the program that makes seeds.
+#
+# cargo-fuzz is not needed: these are the flags that it gives the stable compiler when it leaves the sanitizer out.
+set -euo pipefail
+cd "$(dirname "$0")"
+seconds="${1:-20}"
+fspid="${FSPID:-$PWD/../target/release/fspid}"
+host="$(rustc -vV | sed -n 's/^host: //p')"
+export CARGO_TARGET_DIR="$PWD/../target/fuzz"
+# With a target, build scripts and macros are left as they are.
+RUSTFLAGS="--cfg fuzzing -Cdebug-assertions -Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \
+-Cllvm-args=-sanitizer-coverage-inline-8bit-counters -Cllvm-args=-sanitizer-coverage-pc-table \
+-Cllvm-args=-sanitizer-coverage-trace-compares" cargo build --locked --release --features all --target "$host"
+
+# Seeds: the fixtures of the tests, and what only the program writes.
+tests="$PWD/../crates"
+made="$CARGO_TARGET_DIR/seeds" found="$CARGO_TARGET_DIR/found"
+rm -rf "$made" "$found"
+mkdir -p "$made"/{formula,toml,certificate,plan,state,csv} "$found"
+echo 'max(0.5*x, error^2) - exp(-change)' >"$made/formula/one"
+cp "$tests"/fspid-scenario/src/file/templates/fuzzy-system.toml "$made/toml"
+printf 'a,b,"c,d"\n1,2,3\n-0.5,1e-3,"x"\n' >"$made/csv/one"
+scenarios="$PWD/../scenarios"
+"$fspid" certify "$scenarios/747-pitch-step.toml" --out "$made/certificate" >/dev/null || true
+"$fspid" campaign plan "$scenarios/campaign.toml" --runs 50 --out "$made/plan" >/dev/null
+for optimiser in cma-es de lshade pso ga nelder-mead nsga-ii; do
+    out="$made/state/$optimiser.toml"
+    timeout --signal INT 0.5 "$fspid" tune "$scenarios/gallery/tune-navion.toml" --optimiser "$optimiser" \
+        --budget 1000000 --quiet --out "$out" 2>/dev/null || true
+done
+
+seeds_of() {
+    case "$1" in
+    fis | fcl | fll | fml) echo "$tests/fspid-formats/tests/data/$1" ;;
+    daveml) echo "$tests/fspid-daveml/tests/data" ;;
+    scenario) echo "$scenarios $scenarios/gallery $tests/fspid-scenario/tests/scenarios" ;;
+    *) echo "$made/$1" ;;
+    esac
+}
+
+fuzz() {
+    local words=()
+    [[ -f "$1.dict" ]] && words=("-dict=$1.dict")
+    mkdir -p "$made/corpus/$1"
+    # What a minute does not find on one input, or 2 GiB do not hold, is a finding too.
+    if "$CARGO_TARGET_DIR/$host/release/$1" "$made/corpus/$1" $(seeds_of "$1") "${words[@]}" -seed=22 \
+        -max_total_time="$seconds" -max_len=16384 -timeout=20 -rss_limit_mb=2048 -print_final_stats=1 \
+        -artifact_prefix="$found/$1-" >"$found/$1.log" 2>&1; then
+        echo "$1: $(sed -n 's/^stat::number_of_executed_units: *//p' "$found/$1.log") inputs, nothing found"
+    else
+        tail -n 30 "$found/$1.log"
+        echo "$1: FOUND SOMETHING; its input is in $found"
+        return 1
+    fi
+}
+
+targets=(fuzz_targets/*.rs)
+targets=("${targets[@]##*/}")
+export -f fuzz seeds_of
+export seconds host made found tests scenarios
+printf '%s\n' "${targets[@]%.rs}" | xargs -P "$(nproc)" -I {} bash -c 'set -euo pipefail; fuzz {}'
