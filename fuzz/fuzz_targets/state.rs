@@ -5,12 +5,15 @@
 
 use fspid_optimise::Snapshot;
 use fspid_tune::State;
+use serde_json::Value;
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
     let _ = serde_json::from_str::<State>(text);
     // The part of a state that is the optimiser's own memory.
-    let Ok(snapshot) = serde_json::from_str::<Snapshot>(text) else { return };
+    let Ok(value) = serde_json::from_str::<Value>(text) else { return };
+    let Some(engine) = value.pointer("/engine/one") else { return };
+    let Ok(snapshot) = serde_json::from_value::<Snapshot>(engine.clone()) else { return };
     let Ok(mut optimiser) = snapshot.resume() else { return };
     for _ in 0..2 {
         let asked = optimiser.ask();
