@@ -125,7 +125,7 @@ class Worker:
 class Campaign:
     @staticmethod
     def plan(
-        scenario: Scenario, out: Path, runs: int, seed: int, sampling: str, shard_runs: int | None
+        scenario: Scenario, out: Path, runs: int, seed: int, sampling: str, shard_runs: int | None, for_workers: bool
     ) -> Campaign: ...
     @staticmethod
     def planned(out: Path) -> Campaign: ...
