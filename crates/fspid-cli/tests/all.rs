@@ -19,6 +19,8 @@ mod fuzzy_system;
 mod guide;
 mod learn;
 mod no_clock;
+#[cfg(unix)]
+mod own_files;
 mod packages;
 mod repository;
 mod small_things;
