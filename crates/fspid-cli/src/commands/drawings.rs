@@ -19,7 +19,7 @@ pub(super) fn write(path: &Drawings, figures: Vec<(&str, &str)>) -> Result<(), F
     let several = figures.len() > 1;
     let names = Names::of(Place::File, figures.iter().map(|(name, _)| name));
     if several || !is_drawing {
-        names.changed().for_each(|told| note(told));
+        names.changed().for_each(note);
     }
     let mut files = Vec::new();
     for ((_, svg), name) in figures.iter().zip(names.iter()) {
