@@ -3,7 +3,8 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use fspid_scenario::file::Problems;
+use fspid_scenario::apart;
+use fspid_scenario::file::{LoadError, Problems};
 use fspid_study::output::{OutputError, in_words};
 use thiserror::Error;
 
@@ -20,7 +21,7 @@ pub enum CampaignError {
     Scenario(Problems),
     /// The scenario cannot be read.
     #[error("{0}")]
-    Unreadable(#[from] fspid_scenario::file::LoadError),
+    Unreadable(#[from] LoadError),
     /// An external controller cannot be started.
     #[error(transparent)]
     NotStarted(#[from] fspid_sim::SimError),
@@ -176,14 +177,27 @@ impl CampaignError {
     /// True where something could not be written; else the input is what is wrong.
     #[must_use]
     pub fn is_of_output(&self) -> bool {
-        matches!(self, Self::Output(_) | Self::Io { .. } | Self::Write { .. })
+        match self {
+            Self::Output(error) => !error.is_clash(),
+            Self::Io { .. } | Self::Write { .. } => true,
+            _ => false,
+        }
+    }
+
+    /// Refuses a file that is read here and was asked to be written.
+    pub(crate) fn unless_apart(path: &Path) -> Result<(), Self> {
+        let clash = |reason: apart::Clash| LoadError::Unreadable {
+            path: path.display().to_string(),
+            reason: reason.to_string(),
+        };
+        Ok(apart::reading_own(path).map_err(clash)?)
     }
 
     /// The same, with the file that could not be written where that is what is wrong.
     pub(crate) fn of_writing(self, path: &Path) -> Self {
         let reason = match &self {
             Self::Table(error @ (TableError::Write { .. } | TableError::Failed)) => reason(error),
-            Self::Output(error) => in_words(&error.reason),
+            Self::Output(error) if !error.is_clash() => in_words(&error.reason),
             _ => return self,
         };
         Self::Write { path: path.to_owned(), reason }

@@ -119,9 +119,7 @@ impl Folder {
     /// [`CampaignError::Busy`], or a folder that cannot be written.
     pub fn lock(&self, alone: bool) -> Result<Lock, CampaignError> {
         let path = self.path.join("lock");
-        let failed = |reason| CampaignError::Io { path: path.clone(), reason };
-        let file = File::options().create(true).append(true).open(&path).map_err(failed)?;
-        self.hold(file, alone)
+        self.hold(lock_file(&path)?, alone)
     }
 
     /// Keeps other processes away from one shard.
@@ -130,9 +128,7 @@ impl Folder {
     /// As [`lock`](Self::lock).
     pub fn lock_shard(&self, range: Range) -> Result<Lock, CampaignError> {
         let path = self.shard_path(range).with_extension("lock");
-        let failed = |reason| CampaignError::Io { path: path.clone(), reason };
-        let file = File::options().create(true).append(true).open(&path).map_err(failed)?;
-        self.hold(file, true)
+        self.hold(lock_file(&path)?, true)
     }
 
     fn hold(&self, file: File, alone: bool) -> Result<Lock, CampaignError> {
@@ -161,6 +157,16 @@ impl Folder {
         Ok(parts)
     }
 
+    /// Refuses to go on where a file of the campaign was asked to be written for something else.
+    ///
+    /// # Errors
+    /// The file; a folder that cannot be read.
+    pub fn keep_apart(&self) -> Result<(), CampaignError> {
+        let parts = if self.shards_path().is_dir() { self.parts()? } else { Vec::new() };
+        let own = [self.plan_path(), self.merged_path(), self.path.join("lock")];
+        own.iter().chain(&parts).try_for_each(|path| CampaignError::unless_apart(path))
+    }
+
     /// Removes what interrupted processes left behind. Only for who holds the folder alone.
     ///
     /// # Errors
@@ -182,6 +188,16 @@ impl Folder {
         let entries = fs::read_dir(&folder).map_err(failed)?;
         entries.map(|entry| entry.map(|it| it.path()).map_err(failed)).collect()
     }
+}
+
+/// The file that a lock is held on; a pipe of that name would wait for somebody who reads.
+fn lock_file(path: &Path) -> Result<File, CampaignError> {
+    let failed = |reason| CampaignError::Io { path: path.to_owned(), reason };
+    if fs::metadata(path).is_ok_and(|found| !found.is_file()) {
+        return Err(failed(io::Error::other("it is no regular file")));
+    }
+    CampaignError::unless_apart(path)?;
+    File::options().create(true).append(true).open(path).map_err(failed)
 }
 
 /// In what two plans differ, in words.

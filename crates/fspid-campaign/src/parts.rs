@@ -81,6 +81,7 @@ impl Parts {
 
 /// Opens a part; a table that it is not is told as one that does not belong here.
 pub(crate) fn opened(path: &std::path::Path) -> Result<Part, CampaignError> {
+    CampaignError::unless_apart(path)?;
     Part::open(path).map_err(|error| match error {
         CampaignError::Table(error) => {
             CampaignError::Foreign { path: path.to_owned(), reason: error.to_string() }

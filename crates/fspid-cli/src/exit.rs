@@ -161,6 +161,7 @@ impl From<OutputError> for Failure {
         match error.reason.kind() {
             // The reader of a file that is `-` has gone away, as with `| head`.
             io::ErrorKind::BrokenPipe => Self::new(0, ""),
+            _ if error.is_clash() => Self::input(error),
             _ => Self::output(error),
         }
     }

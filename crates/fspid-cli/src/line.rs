@@ -7,8 +7,9 @@ use std::num::{IntErrorKind, ParseFloatError, ParseIntError};
 use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, Error, ErrorKind};
 use clap::{Arg, ArgMatches, Command, Parser};
+use fspid_scenario::apart::{self, Clash, Named};
 
-use crate::argument::{Drawings, InFile, OutFile, STANDARD, Source};
+use crate::argument::{Drawings, InFile, NamedFile, OutFile, STANDARD, Source};
 use crate::exit::{Failure, Output};
 
 /// The arguments of the program; `None` in place of a failure where only help was asked for.
@@ -51,7 +52,54 @@ pub(crate) fn parsed<P: Parser>() -> Result<P, Option<Failure>> {
         }
     }
     output.set();
+    let outputs = outputs_apart(&command, &matches);
+    apart::declare(outputs.map_err(|clash| Some(Failure::input(clash)))?);
     P::from_arg_matches(&matches).map_err(failure)
+}
+
+/// The files that the command is asked to write. Refuses those that are the file of an input or of each other, before
+/// anything is read or written.
+fn outputs_apart(command: &Command, matches: &ArgMatches) -> Result<Vec<Named>, Clash> {
+    let is_read = |it: &Arg| is::<InFile>(it) || is::<NamedFile>(it) || is::<Source>(it);
+    let is_written = |it: &Arg| is::<OutFile>(it) || is::<Drawings>(it);
+    let mut outputs = named_files(command, matches, &is_written);
+    outputs.extend(standard_output());
+    match apart::clash(&named_files(command, matches, &is_read), &outputs) {
+        Some(clash) => Err(clash),
+        None => Ok(outputs),
+    }
+}
+
+/// The file that standard output goes to, if it is one: what is printed would stand in it or be lost.
+fn standard_output() -> Option<Named> {
+    #[cfg(unix)]
+    {
+        use std::os::fd::AsFd as _;
+        let open = std::fs::File::from(std::io::stdout().as_fd().try_clone_to_owned().ok()?);
+        let identity = apart::Identity::of_open(&open)?;
+        let argument = "standard output".to_owned();
+        Some(Named { argument, path: std::path::PathBuf::new(), identity })
+    }
+    #[cfg(not(unix))]
+    None
+}
+
+/// The files that arguments of a kind name; a drawing's folder is none.
+fn named_files(
+    command: &Command,
+    matches: &ArgMatches,
+    is_kind: &dyn Fn(&Arg) -> bool,
+) -> Vec<Named> {
+    let files = |argument: &Arg| {
+        let values = matches.get_raw(argument.get_id().as_str()).into_iter().flatten();
+        let name = name(argument);
+        values.filter_map(|value| Named::new(name.clone(), value.as_ref())).collect::<Vec<_>>()
+    };
+    if let Some((name, matches)) = matches.subcommand() {
+        let below = command.find_subcommand(name);
+        return below.map_or(Vec::new(), |command| named_files(command, matches, is_kind));
+    }
+    command.get_arguments().filter(|it| is_kind(it)).flat_map(files).collect()
 }
 
 /// The command with what every argument has: numbers may be negative, so that the mistake is told in words; and files
@@ -187,6 +235,9 @@ fn range_in_words(range: &str) -> String {
     }
 }
 
+#[cfg(all(test, unix))]
+mod matrix;
+
 #[cfg(test)]
 mod tests {
     use std::path::PathBuf;
@@ -194,7 +245,7 @@ mod tests {
     use clap::CommandFactory as _;
 
     use super::*;
-    use crate::argument::{Folder, NamedFile};
+    use crate::argument::Folder;
 
     /// Every command with its path, such as `campaign run`; groups of commands are no commands themselves.
     fn commands(command: &Command, path: &str) -> Vec<(String, Command)> {
@@ -210,7 +261,7 @@ mod tests {
     }
 
     /// Every command for people; `fspid` calls those that are hidden.
-    fn all() -> Vec<(String, Command)> {
+    pub(super) fn all() -> Vec<(String, Command)> {
         let mut all = commands(&prepared(crate::Arguments::command()), "");
         all.retain(|(_, command)| !command.is_hide_set());
         all

@@ -20,6 +20,8 @@ mod guide;
 mod learn;
 mod no_clock;
 mod one_verdict;
+#[cfg(unix)]
+mod own_files;
 mod packages;
 mod repository;
 mod small_things;

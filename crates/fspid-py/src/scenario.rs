@@ -230,7 +230,7 @@ impl Scenario {
         let answer = interrupt::run(py, move || {
             let found = Certification::of(&study, controller.as_deref(), &Effort::default())?;
             let files = found.results.iter().filter_map(|it| {
-                Some((it.file_name(), certify::to_text(it.certificate()?, &it.origin)))
+                Some((found.file_name(it), certify::to_text(it.certificate()?, &it.origin)))
             });
             let files = files.collect();
             let answer = Answer::new(found.text(), &found.json(), found.all_proved());

@@ -139,7 +139,7 @@ impl Tuning {
         }
         let effort = wanted.effort(&problem);
         let kept_beside = kept_beside.as_deref();
-        let mut place = Kept::beside(wanted.out.as_deref(), kept_beside, problem.controller());
+        let mut place = Kept::beside(wanted.out.as_deref(), kept_beside, problem.file_name());
         let (mut search, _) = place.begun(&problem, &effort, crew)?;
         let mut saving = Saving::default();
         let stop = place.search(&mut search, &mut |search| match then(search) {

@@ -12,6 +12,7 @@
 )]
 
 pub mod aircraft;
+pub mod apart;
 mod carried;
 pub mod dispersion;
 pub mod file;

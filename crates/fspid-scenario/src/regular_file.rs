@@ -1,9 +1,11 @@
 //! Files that are read whole, standard input among them.
 
+use std::fs::File;
 use std::io::Read as _;
 use std::path::Path;
 use std::sync::OnceLock;
 
+use crate::apart;
 use crate::keyed::document::FILE_LIMIT;
 
 /// Why a file could not be read, in the same words everywhere.
@@ -48,20 +50,42 @@ pub(crate) fn read_program(path: &Path) -> Result<Vec<u8>, String> {
     read_within(path, PROGRAM_LIMIT)
 }
 
+/// Opens a regular file; of anything else, such as a pipe, one would wait for somebody who writes.
+///
+/// # Errors
+/// A file that cannot be opened, and what is none.
+pub fn open_regular(path: &Path) -> std::io::Result<File> {
+    let metadata = std::fs::metadata(path)?;
+    match metadata.is_file() {
+        true => File::open(path),
+        false => Err(std::io::Error::other("it is no regular file")),
+    }
+}
+
+/// The text of a file that the program itself has written and may write anew, such as a state.
+///
+/// # Errors
+/// As [`open_regular`]; a file that is not UTF-8, and one that was asked to be written.
+pub fn read_own(path: &Path) -> std::io::Result<String> {
+    let mut text = String::new();
+    let mut file = open_regular(path)?;
+    apart::reading_own(path).map_err(std::io::Error::other)?;
+    file.read_to_string(&mut text)?;
+    Ok(text)
+}
+
 fn read_within(path: &Path, limit: u64) -> Result<Vec<u8>, String> {
     let reason = |error: std::io::Error| unread_in_words(&error);
     if path == Path::new(STANDARD_INPUT) {
         return standard_input();
     }
-    let metadata = std::fs::metadata(path).map_err(reason)?;
-    if !metadata.is_file() {
-        return Err("it is no regular file".to_owned());
-    }
+    let file = open_regular(path).map_err(reason)?;
+    apart::reading(path).map_err(|clash| clash.to_string())?;
+    let metadata = file.metadata().map_err(reason)?;
     let too_large = || format!("it is larger than {} MiB", limit / (1024 * 1024));
     if metadata.len() > limit {
         return Err(too_large());
     }
-    let file = std::fs::File::open(path).map_err(reason)?;
     let mut bytes = Vec::new();
     let mut limited = file.take(limit + 1);
     limited.read_to_end(&mut bytes).map_err(reason)?;

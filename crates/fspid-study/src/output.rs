@@ -1,6 +1,9 @@
 //! Files that are either the old ones or the new ones, never halves.
 
 mod folder;
+mod locked;
+mod names;
+mod unfinished;
 
 use std::collections::BTreeSet;
 use std::fs::{self, File};
@@ -9,7 +12,14 @@ use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
 use std::thread;
 
+use fspid_scenario::apart::{self, Clash, folder_of};
+
 pub use folder::{Contents, is_free, write_folders};
+pub use locked::{Locked, NotLocked};
+pub use names::{Names, Place};
+pub use unfinished::UNFINISHED;
+
+use unfinished::new_file_in;
 
 /// A file or folder that could not be written. Nothing at the path has changed.
 #[derive(Debug, thiserror::Error)]
@@ -19,6 +29,15 @@ pub struct OutputError {
     pub path: PathBuf,
     /// Why.
     pub reason: io::Error,
+}
+
+impl OutputError {
+    /// True where the file may not be written, for something is read there or written by another name: what was asked is
+    /// wrong, and not the disk.
+    #[must_use]
+    pub fn is_clash(&self) -> bool {
+        self.reason.get_ref().is_some_and(|reason| reason.is::<Clash>())
+    }
 }
 
 /// Why a file could not be written; the system's own words would name the new file beside it, which
@@ -31,6 +50,10 @@ pub fn in_words(reason: &io::Error) -> String {
         io::ErrorKind::PermissionDenied => "permission denied",
         io::ErrorKind::ReadOnlyFilesystem => "the file system is read-only",
         io::ErrorKind::IsADirectory => "it is a folder",
+        io::ErrorKind::FileTooLarge => {
+            "files may not be so large here (`ulimit -f` says how large)"
+        }
+        io::ErrorKind::CrossesDevices => "a link there leads to another disk",
         io::ErrorKind::NotADirectory | io::ErrorKind::AlreadyExists => "what is there is no folder",
         _ => return reason.to_string(),
     }
@@ -110,13 +133,6 @@ impl Whole {
     }
 }
 
-fn folder_of(path: &Path) -> &Path {
-    match path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    }
-}
-
 /// Flushes the names in a folder; not every file system knows how, and the files are safe without.
 fn flush(folder: &Path) {
     let _ = File::open(folder).and_then(|folder| folder.sync_all());
@@ -144,10 +160,21 @@ fn begun<T, E: From<OutputError>>(
         let file = File::options().write(true).open(path).map_err(failed)?;
         return Ok((filled(&file, contents, failed)?, None));
     }
-    let file = new_file_in(folder_of(path)).map_err(failed)?;
+    let place = place(path).map_err(failed)?;
+    let file = new_file_in(folder_of(&place)).map_err(failed)?;
     let answer = filled(file.as_file(), contents, failed)?;
     file.as_file().sync_all().map_err(failed)?;
-    Ok((answer, Some(Whole { file, path: path.to_owned() })))
+    Ok((answer, Some(Whole { file, path: place })))
+}
+
+/// Where a file is written that may be: a link stays one, and what it leads to is written.
+fn place(path: &Path) -> io::Result<PathBuf> {
+    apart::writing(path).map_err(|clash| io::Error::new(io::ErrorKind::InvalidInput, clash))?;
+    let place = apart::target(path);
+    match place.is_symlink() {
+        true => Err(io::Error::other("links there lead in a circle")),
+        false => Ok(place),
+    }
 }
 
 fn filled<T, E: From<OutputError>>(
@@ -181,34 +208,12 @@ fn standard_output() -> io::Result<File> {
     }
 }
 
-/// What the names of files begin with until they are whole.
-pub const UNFINISHED: &str = ".fspid-";
-
-fn new_file_in(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(UNFINISHED);
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt as _;
-        // As any new file: the user's mask takes its part away.
-        builder.permissions(fs::Permissions::from_mode(0o666));
-    }
-    builder.tempfile_in(folder)
-}
-
 /// Makes a folder and those above it.
 ///
 /// # Errors
 /// [`OutputError`] with the path.
 pub fn make_folder(path: &Path) -> Result<(), OutputError> {
     fs::create_dir_all(path).map_err(|reason| OutputError { path: path.to_owned(), reason })
-}
-
-/// A name that every file system takes.
-#[must_use]
-pub fn file_name(name: &str) -> String {
-    let fits = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
-    name.chars().map(|c| if fits(c) { c } else { '_' }).collect()
 }
 
 #[cfg(test)]

@@ -91,6 +91,14 @@ pub enum TuneError {
         /// Why it cannot be used.
         reason: String,
     },
+    /// Another process searches for the same design.
+    #[error(
+        "{path}: another process is tuning there; wait until it has ended, or name another file with --out"
+    )]
+    Busy {
+        /// Path of its state.
+        path: String,
+    },
     /// The history cannot be made.
     #[error("{0}")]
     History(#[from] TableError),
@@ -138,4 +146,17 @@ pub enum TuneError {
         /// What was wrong with the best.
         reason: String,
     },
+}
+
+impl TuneError {
+    /// True where something could not be written; else the input is what is wrong.
+    #[must_use]
+    pub fn is_of_output(&self) -> bool {
+        match self {
+            Self::Output(error) => !error.is_clash(),
+            Self::History(_) => true,
+            Self::Campaign(error) => error.is_of_output(),
+            _ => false,
+        }
+    }
 }

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use fspid_optimise::Stop;
-use fspid_scenario::file::unread_in_words;
-use fspid_study::output;
+use fspid_scenario::file::{read_own, unread_in_words};
+use fspid_study::output::{self, Locked, NotLocked, OutputError};
 
 use crate::crew::Crew;
 use crate::error::TuneError;
@@ -34,11 +34,13 @@ pub enum Unfit {
 }
 
 /// Where the state of a search is kept while it goes on.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Debug)]
 pub struct Kept {
     /// None where nothing can be kept.
     path: Option<PathBuf>,
     unfit: Unfit,
+    /// Two searches that keep their states in one file would each write over the other's, and then over its design.
+    lock: Option<Locked>,
 }
 
 /// How a search began.
@@ -56,13 +58,13 @@ impl Kept {
     /// Kept in this file, if there is one.
     #[must_use]
     pub fn at(path: Option<PathBuf>, unfit: Unfit) -> Self {
-        Self { path, unfit }
+        Self { path, unfit, lock: None }
     }
 
     /// Kept beside a design that is written, where a state of another search is refused; beside the scenario where no
-    /// design is, for the controller of that name, where what is there stays.
+    /// design is, by the controller's name in those of files, where what is there stays.
     #[must_use]
-    pub fn beside(design: Option<&Path>, scenario: Option<&Path>, controller: &str) -> Self {
+    pub fn beside(design: Option<&Path>, scenario: Option<&Path>, file_name: &str) -> Self {
         let with = |path: &Path, ending: &str| {
             let mut name = path.as_os_str().to_owned();
             name.push(ending);
@@ -71,7 +73,7 @@ impl Kept {
         match design {
             Some(design) => Self::at(Some(with(design, ".state.json")), Unfit::Refused),
             None => {
-                let ending = format!(".{}.state.json", output::file_name(controller));
+                let ending = format!(".{file_name}.state.json");
                 Self::at(scenario.map(|scenario| with(scenario, &ending)), Unfit::Left)
             }
         }
@@ -80,7 +82,7 @@ impl Kept {
     /// The search where it was, or from the start.
     ///
     /// # Errors
-    /// A start without a cost, and a state that is refused.
+    /// A start without a cost, a state that is refused, and another process that searches there.
     pub fn begun<'a>(
         &mut self,
         problem: &'a TuningProblem,
@@ -88,6 +90,9 @@ impl Kept {
         crew: Crew<'a>,
     ) -> Result<(Search<'a>, Beginning), TuneError> {
         let anew = || Search::begin(problem, effort.clone(), crew);
+        if let Some(why) = self.locked()? {
+            return Ok((anew()?, Beginning::Unkept(why)));
+        }
         let Some(path) = self.path.clone().filter(|path| path.exists()) else {
             return Ok((anew()?, Beginning::Anew));
         };
@@ -100,6 +105,28 @@ impl Kept {
             }
             (Err(error), _) => Err(error),
         }
+    }
+
+    /// Keeps other processes away; why nothing is kept, where another one is there and nobody asked for a file.
+    fn locked(&mut self) -> Result<Option<String>, TuneError> {
+        let wants = self.unfit != Unfit::Replaced && self.lock.is_none();
+        let Some(path) = self.path.clone().filter(|_| wants) else {
+            return Ok(None);
+        };
+        match (Locked::beside(&path), self.unfit) {
+            (Ok(lock), _) => self.lock = Some(lock),
+            // It is told where the state cannot be written.
+            (Err(NotLocked::Failed(_)), Unfit::Left) => {}
+            (Err(NotLocked::Failed(reason)), _) => return Err(OutputError { path, reason }.into()),
+            (Err(busy @ NotLocked::Busy), Unfit::Left) => {
+                self.path = None;
+                return Ok(Some(format!("{}: {busy}", path.display())));
+            }
+            (Err(NotLocked::Busy), _) => {
+                return Err(TuneError::Busy { path: path.display().to_string() });
+            }
+        }
+        Ok(None)
     }
 
     /// Searches to the end; `then` is asked before each generation.
@@ -171,7 +198,7 @@ fn resumed<'a>(
 ) -> Result<Search<'a>, TuneError> {
     let name = path.display().to_string();
     let wrong = |reason: String| TuneError::State { path: name.clone(), reason };
-    let text = std::fs::read_to_string(path).map_err(|error| wrong(unread_in_words(&error)))?;
+    let text = read_own(path).map_err(|error| wrong(unread_in_words(&error)))?;
     let state: State = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
     Search::resume(who, effort, state, &name)
 }

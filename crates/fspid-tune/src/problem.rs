@@ -8,6 +8,7 @@ use fspid_scenario::requirement::Requirement;
 use fspid_scenario::tuning::{TunableParameter, Tuning};
 use fspid_sim::Controller;
 use fspid_study::analysis::AtRest;
+use fspid_study::output::{Names, Place};
 
 use crate::crew::{Crew, Part};
 use crate::error::TuneError;
@@ -23,6 +24,7 @@ pub struct TuningProblem {
     tuning: Tuning,
     flights: Flights,
     digest: String,
+    file_name: String,
 }
 
 impl TuningProblem {
@@ -47,18 +49,26 @@ impl TuningProblem {
         let dispersed = Dispersed { key: "tuning.runs", runs: tuning.runs, seed: tuning.run_seed };
         let cases = flown_cases(source, &controller, &tuning.cases, dispersed)?;
         let digest = digest(&parameters, &tuning, &cases);
+        let all = study.scenario.controllers.iter().map(|named| &named.name);
+        let file_name = Names::of(Place::File, all).name(&controller);
         let measured = measured(&tuning);
         let loads = tuning.removes_constant_load && has_integral(study, &controller);
         let judging = Judging { stability: Stability::Analysed, loads };
         let asked = Asked { controller: controller.clone(), part: Part::Tuning, judging };
         let flights = Flights::new(asked, Space::new(parameters), cases, measured);
-        Ok(Self { controller, tuning, flights, digest })
+        Ok(Self { controller, tuning, flights, digest, file_name })
     }
 
     /// Name of the controller.
     #[must_use]
     pub fn controller(&self) -> &str {
         &self.controller
+    }
+
+    /// Its name in those of files, which no other controller of the scenario has.
+    #[must_use]
+    pub fn file_name(&self) -> &str {
+        &self.file_name
     }
 
     /// What is searched.

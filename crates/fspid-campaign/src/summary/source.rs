@@ -161,6 +161,9 @@ impl Found {
     /// The merged file at a path or in a folder; the parts, where there is none.
     pub(crate) fn at(path: &Path, settings: SummarySettings) -> Result<Self, SummaryError> {
         let folder = Folder::new(path);
+        if path.is_dir() {
+            folder.keep_apart().map_err(|error| SummaryError::Folder(Box::new(error)))?;
+        }
         let mut found = match path.is_dir() {
             false => Self::merged(path)?,
             true if folder.merged_path().exists() => Self::merged(&folder.merged_path())?,

@@ -5,6 +5,8 @@ use std::io::{self, Cursor, Read};
 use std::path::Path;
 
 use bytes::Bytes;
+use fspid_scenario::apart;
+use fspid_scenario::file::open_regular;
 use parquet::errors::ParquetError;
 use parquet::file::reader::{ChunkReader, Length};
 
@@ -24,7 +26,8 @@ pub(super) enum Content {
 impl Content {
     /// Opens a file; how long it is.
     pub(super) fn open(path: &Path) -> io::Result<(Self, u64)> {
-        let mut file = File::open(path)?;
+        let mut file = open_regular(path)?;
+        apart::reading_own(path).map_err(io::Error::other)?;
         let bytes = file.metadata()?.len();
         if bytes > SMALL_BYTES {
             return Ok((Self::File(file), bytes));

@@ -103,16 +103,21 @@ fn prove(path: &Path, arguments: &Arguments) -> Result<(), Failure> {
 
 fn write(certification: &Certification, folder: &Path) -> Result<(), Failure> {
     output::make_folder(folder)?;
+    let mut files = Vec::new();
     for certified in &certification.results {
         let Some(certificate) = certified.certificate() else { continue };
-        let path = folder.join(certified.file_name());
+        certification.changed_name(certified).iter().for_each(note);
         let text = certify::to_text(certificate, &certified.origin);
         // What cannot be read again is not written: a number of the scenario is beyond all ranges.
         certify::from_text(&text).map_err(|refused| {
             let name = &certified.controller;
             Failure::input(format_args!("no certificate can be written of {name}:\n{refused}"))
         })?;
-        output::write(&path, text)?;
+        files.push((folder.join(certification.file_name(certified)), text));
+    }
+    let whole: Vec<_> = files.iter().map(|(path, text)| (path.clone(), text.as_bytes())).collect();
+    output::write_all(&whole)?;
+    for (path, _) in files {
         note(format_args!("wrote {0}; verify it with `fspid certify --check {0}`", path.display()));
     }
     Ok(())

@@ -89,7 +89,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 fn failure(error: TuneError) -> Failure {
     match error {
-        TuneError::Output(_) | TuneError::History(_) => Failure::output(error),
+        _ if error.is_of_output() => Failure::output(error),
         TuneError::Stopped => Failure::interrupted(format_args!(
             "interrupted; the same command goes on from there: {}",
             interrupt::command()

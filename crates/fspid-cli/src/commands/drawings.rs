@@ -1,8 +1,8 @@
 //! Drawings, one file each.
 
 use crate::argument::{Drawings, is_standard};
-use crate::exit::{Failure, wrote};
-use fspid_study::output::{self, file_name};
+use crate::exit::{Failure, note, wrote};
+use fspid_study::output::{self, Names, Place};
 
 /// One drawing into its file; several into a folder, or beside each other if `path` is a file's.
 pub(super) fn write(path: &Drawings, figures: Vec<(&str, &str)>) -> Result<(), Failure> {
@@ -17,18 +17,24 @@ pub(super) fn write(path: &Drawings, figures: Vec<(&str, &str)>) -> Result<(), F
         output::make_folder(path)?;
     }
     let several = figures.len() > 1;
-    for (name, svg) in figures {
+    let names = Names::of(Place::File, figures.iter().map(|(name, _)| name));
+    if several || !is_drawing {
+        names.changed().for_each(note);
+    }
+    let mut files = Vec::new();
+    for ((_, svg), name) in figures.iter().zip(names.iter()) {
         let file = match (is_drawing, several) {
             (true, false) => path.to_path_buf(),
             (true, true) => {
                 let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-                path.with_file_name(format!("{stem}-{}.svg", file_name(name)))
+                path.with_file_name(format!("{stem}-{}.svg", name))
             }
-            (false, _) => path.join(format!("{}.svg", file_name(name))),
+            (false, _) => path.join(format!("{}.svg", name)),
         };
-        output::write(&file, svg)?;
-        wrote(&file);
+        files.push((file, svg.as_bytes()));
     }
+    output::write_all(&files)?;
+    files.iter().for_each(|(file, _)| wrote(file));
     Ok(())
 }
 

@@ -18,8 +18,22 @@ static AT_ONCE: Mutex<Option<String>> = Mutex::new(None);
 /// Ctrl-C ends the program as every failure does, in words and as JSON, unless a command says otherwise.
 pub(crate) fn listen() {
     ends_with(ENDED.to_owned());
+    hold_back_full_files();
     // Where it cannot be heard, the program ends as any other does.
     let _ = ctrlc::set_handler(heard);
+}
+
+/// A file that grows beyond the limit of the shell is an error where it is written, as a full disk is; the signal that
+/// comes with it would end the program there, with nothing told and its new file left.
+fn hold_back_full_files() {
+    #[cfg(unix)]
+    {
+        use nix::sys::signal::{SigSet, Signal};
+        let mut held = SigSet::empty();
+        held.add(Signal::SIGXFSZ);
+        // Threads that begin later have it from this one.
+        let _ = held.thread_block();
+    }
 }
 
 fn heard() {

@@ -39,6 +39,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let simulation = Simulation::of(&study).map_err(Failure::input)?;
     if let Some(path) = &arguments.trace {
+        simulation.column_names().changed().for_each(note);
         output::write(path, simulation.csv())?;
     }
     if let Some(path) = &arguments.report {

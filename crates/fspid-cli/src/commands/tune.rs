@@ -147,12 +147,12 @@ impl Tuning<'_> {
         let problem = TuningProblem::new(source, name).map_err(failure)?;
         problem.warnings().iter().for_each(|it| note(format_args!("warning: {it}")));
         let out = arguments.out.as_ref();
-        let out = out.map(|out| design_file(arguments, out, problem.controller()));
+        let out = out.map(|out| design_file(arguments, out, problem.file_name()));
         if let Some(out) = &out {
             design::check_place(source, out).map_err(failure)?;
         }
         let effort = effort(arguments, &problem);
-        let mut place = kept(arguments, out.as_deref(), problem.controller());
+        let mut place = kept(arguments, out.as_deref(), problem.file_name());
         let tuned = with_crew(self.carrier, arguments.threads, |crew| {
             search(arguments, (&problem, crew), &effort, &mut place)
         });
@@ -171,12 +171,12 @@ impl Tuning<'_> {
 }
 
 /// Where the design of a controller is written.
-fn design_file(arguments: &Arguments, out: &Path, controller: &str) -> PathBuf {
+fn design_file(arguments: &Arguments, out: &Path, file_name: &str) -> PathBuf {
     if !arguments.all || is_standard(out) {
         return out.to_owned();
     }
     let stem = out.file_stem().unwrap_or_default().to_string_lossy();
-    out.with_file_name(format!("{stem}-{}.toml", output::file_name(controller)))
+    out.with_file_name(format!("{stem}-{file_name}.toml"))
 }
 
 /// The gains of a classical rule.
@@ -227,7 +227,7 @@ fn unknown(what: &str, found: &str, known: &[&str]) -> Failure {
 
 fn failure(error: TuneError) -> Failure {
     match error {
-        TuneError::Output(_) | TuneError::History(_) => Failure::output(error),
+        _ if error.is_of_output() => Failure::output(error),
         TuneError::NotKept => Failure::interrupted(error),
         TuneError::Stopped => Failure::interrupted(format_args!(
             "interrupted; the same command goes on from there: {}",
@@ -297,10 +297,10 @@ fn search(
 }
 
 /// Where the state is kept: beside the design; beside the scenario where none is written.
-fn kept(arguments: &Arguments, out: Option<&Path>, controller: &str) -> Kept {
+fn kept(arguments: &Arguments, out: Option<&Path>, file_name: &str) -> Kept {
     let file = |path: &&Path| !is_standard(path);
     let scenario: &Path = &arguments.scenario;
-    Kept::beside(out.filter(file), Some(scenario).filter(file), controller)
+    Kept::beside(out.filter(file), Some(scenario).filter(file), file_name)
 }
 
 /// When a search went on, and how many candidates it had flown by then.

@@ -124,11 +124,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// Writes the replays; their paths, in the order of the lines.
 fn write_replays(verification: &Verification, folder: &Path) -> Result<Vec<String>, Failure> {
     output::make_folder(folder)?;
-    let mut paths = Vec::new();
-    for replay in verification.replays(folder) {
-        let path = folder.join(&replay.name);
-        output::write(&path, &replay.text)?;
-        paths.push(path.display().to_string());
-    }
-    Ok(paths)
+    let replays = verification.replays(folder);
+    let files: Vec<_> =
+        replays.iter().map(|it| (folder.join(&it.name), it.text.as_bytes())).collect();
+    output::write_all(&files)?;
+    Ok(files.iter().map(|(path, _)| path.display().to_string()).collect())
 }

@@ -49,7 +49,9 @@ use crate::tuning::{Contest, TunableParameter, Tuning};
 use fspid_diagnostics::{Place, Report, Span};
 
 pub use crate::carried::{aircraft_names, plant_names, rule_table_names};
-pub use crate::regular_file::{STANDARD_INPUT, read_regular, unread_in_words};
+pub use crate::regular_file::{
+    STANDARD_INPUT, open_regular, read_own, read_regular, unread_in_words,
+};
 pub use crate::requirement::Requirement;
 pub use crate::setting_path::{NewValue, SettingPath};
 pub use aircraft::parse_aircraft_at;

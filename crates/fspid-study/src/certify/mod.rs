@@ -27,6 +27,7 @@ use fspid_proof::{
 use fspid_sim::{LinearPlant, SimError};
 
 use crate::analysis::lasting_plants;
+use crate::output::{Names, Place};
 use fspid_scenario::file::Study;
 
 pub use fspid_proof::Effort;
@@ -66,16 +67,17 @@ impl Certified {
         text::found(self.outcome.as_ref().ok()?).map(|(certificate, _)| certificate)
     }
 
-    /// A file name for its certificate.
-    #[must_use]
-    pub fn file_name(&self) -> String {
-        let plain = |c: char| if c.is_ascii_alphanumeric() || c == '-' { c } else { '-' };
-        let name: String = self.controller.chars().map(plain).collect();
-        let later = match self.from_s {
-            0.0 => String::new(),
-            from_s => format!("-from-{}-s", crate::metrics::short(from_s)),
-        };
-        format!("{}{later}.certificate.json", name.to_lowercase())
+    /// What its certificate is of: the controller, and a plant that is not the first.
+    fn subject(&self) -> String {
+        self.controller.clone() + &later(self.from_s)
+    }
+}
+
+/// What stands behind a controller's name in that of a certificate, for a plant that is not the first.
+fn later(from_s: f64) -> String {
+    match from_s {
+        0.0 => String::new(),
+        from_s => format!("-from-{}-s", crate::metrics::short(from_s)),
     }
 }
 
@@ -86,6 +88,8 @@ pub struct Certification {
     pub scenario: String,
     /// One for each controller and lasting plant.
     pub results: Vec<Certified>,
+    /// Names of their files, among those of all controllers of the scenario.
+    files: Names,
 }
 
 impl Certification {
@@ -129,7 +133,24 @@ impl Certification {
                 });
             }
         }
-        Ok(Self { scenario: scenario.name.clone(), results })
+        let each = |name: &String| {
+            plants.iter().map(|(at, _)| (name.clone(), later(*at))).collect::<Vec<_>>()
+        };
+        let subjects = scenario.controllers.iter().flat_map(|named| each(&named.name));
+        let files = Names::with_endings(Place::PlainFile, subjects);
+        Ok(Self { scenario: scenario.name.clone(), results, files })
+    }
+
+    /// A file name for a certificate, which no other controller of the scenario has.
+    #[must_use]
+    pub fn file_name(&self, certified: &Certified) -> String {
+        format!("{}.certificate.json", self.files.name(&certified.subject()))
+    }
+
+    /// That it is not called as its controller is, in a sentence, if so.
+    #[must_use]
+    pub fn changed_name(&self, certified: &Certified) -> Option<String> {
+        self.files.told(&certified.subject())
     }
 
     /// True if every loop is proved stable.

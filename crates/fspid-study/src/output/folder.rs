@@ -8,7 +8,9 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::{OutputError, failed, flush, make_folder, write_all};
+use fspid_scenario::apart;
+
+use super::{OutputError, failed, flush, make_folder, place, write_all};
 
 /// What the names of folders begin with in which new files are written; one that is left was cut off.
 const NEW: &str = ".fspid-new-";
@@ -56,7 +58,8 @@ pub fn write_folders(folders: &[(&Path, Contents<'_>)]) -> Result<(), OutputErro
         let away = beside(folder, OLD)?.keep();
         made.0.push(away.clone());
         for (name, _) in contents {
-            let place = folder.join(name);
+            // A link stays one, and what it leads to is written.
+            let place = apart::target(&folder.join(name));
             made.folder(place.parent().unwrap_or(folder))?;
             moved.place(&new.path().join(name), &place, &away)?;
         }
@@ -136,6 +139,8 @@ fn staged(
     let new = beside(folder, NEW)?;
     let mut files = Vec::new();
     for (name, bytes) in contents {
+        let at = folder.join(name);
+        place(&at).map_err(|reason| failed(&at, reason))?;
         let path = new.path().join(name);
         let above = path.parent().unwrap_or(folder);
         make_folder(above).map_err(|error| failed(&folder.join(name), error.reason))?;

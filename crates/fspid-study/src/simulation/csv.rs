@@ -4,6 +4,7 @@ use fspid_core::Gains;
 use fspid_sim::{Column, Trace};
 
 use super::{ControllerResult, Simulation};
+use crate::output::{Names, Place};
 use fspid_diagnostics::lines::add;
 use fspid_scenario::units::degrees;
 
@@ -19,10 +20,9 @@ impl Simulation {
     pub fn csv(&self) -> String {
         let mut text = String::from("time_s,setpoint_deg");
         let several = self.results.len() > 1;
-        for result in &self.results {
+        for (result, name) in self.results.iter().zip(self.column_names().iter()) {
+            let prefix = if several { format!("{name}.") } else { String::new() };
             for column in columns(&result.trace) {
-                let prefix =
-                    if several { quoted(&format!("{}.", result.name)) } else { String::new() };
                 text.push(',');
                 text.push_str(&prefix);
                 text.push_str(&column);
@@ -42,6 +42,12 @@ impl Simulation {
             text.push('\n');
         }
         text
+    }
+
+    /// What the columns of the controllers begin with, where there are several.
+    #[must_use]
+    pub fn column_names(&self) -> Names {
+        Names::of(Place::Column, self.results.iter().map(|result| &result.name))
     }
 }
 
@@ -108,9 +114,4 @@ fn in_degrees(column: &Column, value: f64) -> f64 {
 /// The shortest digits that read back as `value`, zero without a sign.
 fn push(text: &mut String, value: f64) {
     add(text, format_args!("{:?}", value + 0.0));
-}
-
-/// A heading that holds a comma, quote or line end, as CSV readers want it.
-fn quoted(name: &str) -> String {
-    name.replace([',', '"', '\n', '\r'], "_")
 }

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use fspid_campaign::Plan;
+use fspid_scenario::file::read_own;
 use fspid_study::output;
 use serde::{Deserialize, Serialize};
 
@@ -113,7 +114,7 @@ impl Task<'_> {
 
     /// What was found before, if it is of the same search.
     fn kept(&self) -> Option<Found> {
-        let text = std::fs::read_to_string(self.path("json")).ok()?;
+        let text = read_own(&self.path("json")).ok()?;
         let found: Found = serde_json::from_str(&text).ok()?;
         let point = &found.point;
         let fits = found.schema == SCHEMA

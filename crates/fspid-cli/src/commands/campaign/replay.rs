@@ -5,7 +5,7 @@ use clap::Args;
 use super::super::{Format, json_text};
 use super::{failure, planned};
 use crate::argument::{self, OutFile, written};
-use crate::exit::{Failure, print};
+use crate::exit::{Failure, note, print};
 use fspid_campaign::{Folder, replay};
 use fspid_study::{output, report};
 
@@ -29,9 +29,12 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let campaign = planned(&Folder::new(&arguments.folder))?;
+    let folder = Folder::new(&arguments.folder);
+    folder.keep_apart().map_err(failure)?;
+    let campaign = planned(&folder)?;
     let replay = replay::replay(&campaign, arguments.run).map_err(failure)?;
     if let Some(path) = &arguments.trace {
+        replay.simulation.column_names().changed().for_each(note);
         output::write(path, replay.simulation.csv())?;
     }
     if let Some(path) = &arguments.report {

@@ -1,0 +1,80 @@
+//! New files beside their places until they are whole, and what killed processes have left of theirs.
+
+use std::collections::BTreeSet;
+use std::ffi::OsStr;
+use std::fs::{self, File, TryLockError};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+/// What the names of files begin with until they are whole.
+pub const UNFINISHED: &str = ".fspid-";
+/// What they end in, so that nothing of a user's is taken for one.
+const ENDING: &str = ".unfinished";
+
+/// A new file that nobody takes for one that was left: its lock ends with the process, however that ends.
+pub(super) fn new_file_in(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
+    remove_left(folder);
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(UNFINISHED).suffix(ENDING);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt as _;
+        // As any new file: the user's mask takes its part away.
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    loop {
+        let file = builder.tempfile_in(folder)?;
+        match file.as_file().try_lock() {
+            // Somebody may have taken it for left before it had its lock.
+            Ok(()) if !file.path().exists() => {}
+            Err(TryLockError::WouldBlock) => {}
+            // On a file system without locks nothing is taken for left either.
+            Ok(()) | Err(TryLockError::Error(_)) => return Ok(file),
+        }
+    }
+}
+
+/// Removes what processes have left in a folder that were killed; each folder is looked at once.
+fn remove_left(folder: &Path) {
+    static SEEN: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+    if !SEEN.lock().unwrap_or_else(PoisonError::into_inner).insert(folder.to_owned()) {
+        return;
+    }
+    for entry in folder.read_dir().into_iter().flatten().flatten() {
+        if is_unfinished(&entry.file_name()) && is_left(&entry.path()) {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
+
+fn is_unfinished(name: &OsStr) -> bool {
+    name.to_str().is_some_and(|name| name.starts_with(UNFINISHED) && name.ends_with(ENDING))
+}
+
+/// True for a file whose process is gone.
+fn is_left(path: &Path) -> bool {
+    let is_file = path.symlink_metadata().is_ok_and(|found| found.is_file());
+    is_file && File::options().write(true).open(path).is_ok_and(|file| file.try_lock().is_ok())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `.fspid-…` of gigabytes stayed for good.
+    #[test]
+    fn what_a_killed_process_left_is_removed_by_the_next_and_nothing_else() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let at = |name: &str| folder.path().join(name);
+        let others = [".fspid-config", "a.unfinished", "a.csv"];
+        for name in others.iter().chain(&[".fspid-1.unfinished", ".fspid-2.unfinished"]) {
+            fs::write(at(name), "x").expect("written");
+        }
+        let held = File::open(at(".fspid-2.unfinished")).expect("opened");
+        held.try_lock().expect("of a process that goes on");
+        let new = new_file_in(folder.path()).expect("a file");
+        assert!(!at(".fspid-1.unfinished").exists() && at(".fspid-2.unfinished").exists());
+        assert!(others.iter().all(|name| at(name).exists()) && new.path().exists());
+    }
+}
