@@ -13,6 +13,7 @@
 
 pub mod aircraft;
 mod carried;
+pub mod count;
 pub mod dispersion;
 pub mod file;
 pub mod flyer;

@@ -3,8 +3,9 @@
 use clap::Args;
 
 use super::{Format, Loading, json_text};
-use crate::argument::{OutFile, Source, written};
+use crate::argument::{OutFile, Source, count, written};
 use crate::exit::{Failure, print, wrote};
+use fspid_scenario::count as counts;
 use fspid_study::fuzzy_system::{AuditQuestion, audit};
 use fspid_study::{output, report};
 
@@ -25,7 +26,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
     rest: Vec<String>,
     /// Most boxes that are looked at for each single question; more of them prove closer bounds.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = count::<u64>(&counts::BOXES))]
     boxes: Option<u64>,
     /// Write a report that opens offline in a browser.
     #[arg(value_parser = written(&["html", "htm"]), long, value_name = "OUT.html")]
