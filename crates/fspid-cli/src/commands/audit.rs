@@ -2,6 +2,7 @@
 
 use clap::Args;
 
+use super::progress::{Telling, alive, tell};
 use super::{Format, Loading, json_text};
 use crate::argument::{OutFile, Source, count, written};
 use crate::exit::{Failure, print, wrote};
@@ -40,7 +41,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let system = arguments.loading.load(&arguments.system)?;
     let question =
         AuditQuestion { spans: &arguments.span, rest: &arguments.rest, boxes: arguments.boxes };
-    let audit = audit(&system, &question).map_err(Failure::input)?;
+    let telling = Telling::for_standard_error();
+    let what = || "auditing; --boxes N looks at fewer boxes".to_owned();
+    let audit = alive(telling, &what, || audit(&system, &question));
+    if telling == Telling::Line {
+        tell(telling, "");
+    }
+    let audit = audit.map_err(Failure::input)?;
     if let Some(path) = &arguments.report {
         output::write(path, report::of_audit(&audit))?;
         wrote(path);
