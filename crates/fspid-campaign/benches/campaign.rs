@@ -7,7 +7,7 @@ use divan::counter::ItemsCount;
 use fspid_campaign::bench::{SCENARIO, Work};
 use fspid_campaign::sample::Sampling;
 use fspid_campaign::table::{ColumnTable, Writer};
-use fspid_campaign::{Campaign, Folder, Progress, Question, Range, local, merge, plan};
+use fspid_campaign::{Campaign, Folder, Progress, Question, Range, Shards, local, merge, plan};
 
 /// Flights of a sample: four groups in lanes.
 const FLIGHTS: u64 = 32;
@@ -113,7 +113,7 @@ fn rows_merged(bencher: Bencher<'_, '_>) {
         runs: ROWS,
         seed: 1,
         sampling: Sampling::Random,
-        shard_runs: Some(ROWS / 4),
+        shards: Shards::Of(ROWS / 4),
     };
     let campaign = plan(&question, &folder).expect("a plan");
     folder.put_plan(campaign.plan()).expect("written");

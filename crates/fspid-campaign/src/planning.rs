@@ -24,9 +24,45 @@ pub struct Question<'a> {
     pub seed: u64,
     /// How points are chosen.
     pub sampling: Sampling,
-    /// Runs of each shard but the last; as many as take a second or more if none is given.
-    pub shard_runs: Option<u64>,
+    /// How runs are cut into shards.
+    pub shards: Shards,
 }
+
+/// How a campaign's runs are cut into shards, which changes nothing in its rows.
+///
+/// Whoever does not ask for a number goes on with the cut of the plan that is in the folder already.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Shards {
+    /// So many runs in each but the last.
+    Of(u64),
+    /// For threads that fly a shard together: as many runs as take them a second or more.
+    #[default]
+    ForThreads,
+    /// For workers that fly a shard each: the same, but small campaigns are cut finer, so that nobody waits long for
+    /// the last worker.
+    ForWorkers,
+}
+
+impl Shards {
+    /// Runs of each shard but the last.
+    fn runs(self, runs: u64, side_by_side: bool, there: Option<u64>) -> u64 {
+        let usual = if side_by_side { SHARD_RUNS } else { SLOW_SHARD_RUNS };
+        match self {
+            Self::Of(asked) => asked,
+            Self::ForThreads => there.unwrap_or(usual),
+            Self::ForWorkers => there.unwrap_or_else(|| {
+                let least = usual / FINEST;
+                (runs / WORKERS_SHARDS).next_multiple_of(least).clamp(least, usual)
+            }),
+        }
+    }
+}
+
+/// Into how many shards a campaign for workers is cut if its shards do not get too small.
+const WORKERS_SHARDS: u64 = 64;
+/// How much smaller they may get than those for threads: with 512 runs, a worker of Ray is as fast as with 8192
+/// (docs/measurements.md, Python).
+const FINEST: u64 = 16;
 
 /// Plans a campaign in a folder; nothing is written yet.
 ///
@@ -43,8 +79,8 @@ pub fn plan(question: &Question<'_>, folder: &Folder) -> Result<Campaign, Campai
     // Flights side by side are some hundred times as fast as six degrees of freedom.
     let side_by_side = template.study().scenario.flies_side_by_side()
         && template.study().scenario.externals.is_empty();
-    let usual = if side_by_side { SHARD_RUNS } else { SLOW_SHARD_RUNS };
-    let shard_runs = question.shard_runs.unwrap_or(usual);
+    let there = folder.plan().ok().map(|plan| plan.shard_runs);
+    let shard_runs = question.shards.runs(question.runs, side_by_side, there);
     counts::SHARD_RUNS.check(shard_runs)?;
     let plan = Plan {
         scenario_digest: template.study().digest.clone(),

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use fspid_campaign::sample::Sampling;
 use fspid_campaign::table::{Reader, Values};
 use fspid_campaign::{
-    Campaign, CampaignError, Folder, Progress, Question, local, merge, plan, shard,
+    Campaign, CampaignError, Folder, Progress, Question, Shards, local, merge, plan, shard,
 };
 
 fn scenario() -> PathBuf {
@@ -13,13 +13,17 @@ fn scenario() -> PathBuf {
 }
 
 fn planned(folder: &Folder, runs: u64, shard_runs: u64) -> Campaign {
+    cut(folder, runs, Shards::Of(shard_runs))
+}
+
+fn cut(folder: &Folder, runs: u64, shards: Shards) -> Campaign {
     let question = Question {
         scenario: &scenario(),
         overrides: &["loop.duration_s=10.0".to_owned()],
         runs,
         seed: 7,
         sampling: Sampling::LatinHypercube,
-        shard_runs: Some(shard_runs),
+        shards,
     };
     let campaign = plan(&question, folder).unwrap_or_else(|error| panic!("{error}"));
     folder.put_plan(campaign.plan()).expect("written");
@@ -44,6 +48,21 @@ fn the_merged_file_has_the_same_bytes_for_any_number_of_threads_and_size_of_shar
 }
 
 #[test]
+fn a_small_campaign_is_cut_finer_for_workers_unless_it_is_cut_already() {
+    let home = tempfile::tempdir().expect("a folder");
+    let runs = |name: &str, runs, shards| {
+        cut(&Folder::new(&home.path().join(name)), runs, shards).plan().shard_runs
+    };
+    assert_eq!(runs("workers", 10_000, Shards::ForWorkers), 512);
+    assert_eq!(runs("workers", 10_000, Shards::ForThreads), 512, "it goes on as it was cut");
+    assert_eq!(runs("threads", 10_000, Shards::ForThreads), 8192);
+    assert_eq!(runs("threads", 10_000, Shards::ForWorkers), 8192, "it goes on as it was cut");
+    assert_eq!(runs("large", 300_000, Shards::ForWorkers), 5120);
+    assert_eq!(runs("larger", 1_000_000_000, Shards::ForWorkers), 8192);
+    assert_eq!(runs("one", 1, Shards::ForWorkers), 512);
+}
+
+#[test]
 fn nonlinear_aircraft_in_gusts_of_their_own_fly_the_same_on_any_number_of_threads() {
     let name =
         Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/campaign-turbulence.toml");
@@ -56,7 +75,7 @@ fn nonlinear_aircraft_in_gusts_of_their_own_fly_the_same_on_any_number_of_thread
             runs: 9,
             seed: 2,
             sampling: Sampling::Sobol,
-            shard_runs: Some(4),
+            shards: Shards::Of(4),
         };
         let campaign = plan(&question, &folder).unwrap_or_else(|error| panic!("{error}"));
         folder.put_plan(campaign.plan()).expect("written");

@@ -8,7 +8,9 @@ use fspid_campaign::summary::{
     ControllerSummary, MeasureSummary, Note, Summary, SummaryError, SummarySettings, json, text,
 };
 use fspid_campaign::table::{Cell, Column, ColumnTable, Kind, Schema, Writer};
-use fspid_campaign::{Folder, Plan, Progress, Question, Range, local, merge, plan, report, shard};
+use fspid_campaign::{
+    Folder, Plan, Progress, Question, Range, Shards, local, merge, plan, report, shard,
+};
 use proptest::prelude::*;
 
 const RUNS: u64 = 90;
@@ -34,7 +36,7 @@ fn flown(runs: u64, shard_runs: u64) -> Flown {
         runs,
         seed: 7,
         sampling: Sampling::Random,
-        shard_runs: Some(shard_runs),
+        shards: Shards::Of(shard_runs),
     };
     let campaign = plan(&question, &folder).unwrap_or_else(|error| panic!("{error}"));
     folder.put_plan(campaign.plan()).expect("written");

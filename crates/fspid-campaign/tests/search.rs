@@ -4,7 +4,7 @@ use std::path::Path;
 
 use fspid_campaign::sample::Sampling;
 use fspid_campaign::search::{self, Worst};
-use fspid_campaign::{Campaign, CampaignError, Folder, Question, local, plan};
+use fspid_campaign::{Campaign, CampaignError, Folder, Question, Shards, local, plan};
 use fspid_scenario::dispersion::Drawn;
 
 fn campaign() -> Campaign {
@@ -15,7 +15,7 @@ fn campaign() -> Campaign {
         runs: 1,
         seed: 1,
         sampling: Sampling::Random,
-        shard_runs: None,
+        shards: Shards::ForThreads,
     };
     plan(&question, &Folder::new(Path::new("."))).unwrap_or_else(|error| panic!("{error}"))
 }

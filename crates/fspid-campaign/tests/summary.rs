@@ -14,7 +14,7 @@ use fspid_campaign::summary::{
 use fspid_campaign::table::{
     Cell, Column, ColumnTable, Kind, Reader, Schema, TableError, Values, Writer,
 };
-use fspid_campaign::{Folder, Progress, Question, local, plan};
+use fspid_campaign::{Folder, Progress, Question, Shards, local, plan};
 use fspid_study::metrics::LEFT_RANGE;
 use proptest::prelude::*;
 
@@ -428,7 +428,7 @@ fn campaign_file(runs: u64) -> File {
         runs,
         seed: 7,
         sampling: Sampling::LatinHypercube,
-        shard_runs: None,
+        shards: Shards::ForThreads,
     };
     let campaign = plan(&question, &folder).unwrap_or_else(|error| panic!("{error}"));
     folder.put_plan(campaign.plan()).expect("written");

@@ -33,8 +33,8 @@ mod view;
 pub use analysis::{
     BodeFigure, CLOSED_LOOP_DB, CellState, Crossing, Exclusion, GainCell, GainMap, GainSet,
     GainSurface, LocusSample, LoopCurve, LoopPoint, MapCell, MapPoint, Margin, MarginDisk,
-    MarginMark, NicholsFigure, NyquistFigure, PeakMark, PoleZeroMap, RadiusFigure, RootLocus,
-    SensitivityFigure, Transfer,
+    MarginMark, NicholsFigure, NyquistFigure, PeakMark, Polar, PoleZeroMap, RadiusFigure,
+    RootLocus, SensitivityFigure, Transfer,
 };
 pub use campaign::{
     DistributionFigure, DistributionRow, EnvelopeBand, EnvelopeFigure, EnvelopePanel,

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use fspid::scenario::file::Study;
+use fspid::study::analysis::Columns;
 use fspid::study::report::{self, traces::Drawing};
 use fspid::study::simulation::Simulation;
 use pyo3::prelude::*;
@@ -30,16 +31,27 @@ pub(crate) struct Answer {
     /// Files that go with it, each with its name.
     #[pyo3(get)]
     files: Vec<(String, String)>,
+    /// Curves that go with it, each with its name and columns.
+    #[pyo3(get)]
+    curves: Vec<(String, Vec<Column>)>,
 }
 
 impl Answer {
     pub(crate) fn new(text: String, json: &serde_json::Value, good: bool) -> Self {
         let json = fspid::study::json::answer_text(json);
-        Self { text, json, good, page: None, files: Vec::new() }
+        Self { text, json, good, page: None, files: Vec::new(), curves: Vec::new() }
     }
 
     pub(crate) fn with_page(self, page: String) -> Self {
         Self { page: Some(page), ..self }
+    }
+
+    pub(crate) fn with_curves(self, curves: Vec<(String, Columns)>) -> Self {
+        let column = |(name, values): (&str, Vec<f64>)| Column::new(name.to_owned(), values);
+        let curve = |(name, columns): (String, Columns)| {
+            (name, columns.into_iter().map(column).collect::<Vec<_>>())
+        };
+        Self { curves: curves.into_iter().map(curve).collect(), ..self }
     }
 
     pub(crate) fn with_files(self, files: Vec<(String, String)>) -> Self {

@@ -14,6 +14,7 @@ const FLOAT64: &str = if cfg!(target_endian = "little") { "<f8" } else { ">f8" }
 
 /// A column of numbers of 64 bits: a sequence, and an array for NumPy without a copy.
 #[pyclass(frozen, module = "fspid", weakref, sequence)]
+#[derive(Clone)]
 pub(crate) struct Column {
     name: String,
     values: Float64Array,

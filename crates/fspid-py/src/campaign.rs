@@ -8,7 +8,7 @@ use fspid::campaign::sample::Sampling;
 use fspid::campaign::shard::{self, Done};
 use fspid::campaign::summary::{self, Summary, SummaryError, SummarySettings};
 use fspid::campaign::table::{Reader, TableError};
-use fspid::campaign::{self, CampaignError, Folder, Progress, Question, local, merge};
+use fspid::campaign::{self, CampaignError, Folder, Progress, Question, Shards, local, merge};
 use pyo3::prelude::*;
 
 use crate::answer::Answer;
@@ -54,11 +54,14 @@ impl Campaign {
         seed: u64,
         sampling: &str,
         shard_runs: Option<u64>,
+        for_workers: bool,
     ) -> PyResult<Self> {
         let (path, sampling) = (scenario.file(py)?, self::sampling(py, sampling)?);
         let overrides = scenario.overrides();
         let folder = Folder::new(&out);
-        let question = Question { scenario: &path, overrides, runs, seed, sampling, shard_runs };
+        let cut = if for_workers { Shards::ForWorkers } else { Shards::ForThreads };
+        let shards = shard_runs.map_or(cut, Shards::Of);
+        let question = Question { scenario: &path, overrides, runs, seed, sampling, shards };
         let planned = py.detach(|| {
             let planned = campaign::plan(&question, &folder)?;
             folder.put_plan(planned.plan())?;

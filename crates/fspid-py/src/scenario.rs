@@ -215,7 +215,7 @@ impl Scenario {
             let analysis = Analysis::of(&study, question)?;
             let page = report::of_analysis(&study, &analysis)?;
             let answer = Answer::new(analysis.text(), &analysis.json(), analysis.all_held());
-            Ok::<_, fspid::sim::SimError>(answer.with_page(page))
+            Ok::<_, fspid::sim::SimError>(answer.with_page(page).with_curves(analysis.open_loops()))
         })?;
         answer.map_err(|found| error::input(py, found))
     }

@@ -40,6 +40,16 @@ def test_a_job_flies_shards_where_the_drivers_folder_is_not_seen(scenario, here,
     assert campaign.file.read_bytes() == here
 
 
+def test_a_campaign_that_is_cut_otherwise_is_flown_as_it_is_cut_now(scenario, here, tmp_path):
+    coarse = scenario.plan_campaign(tmp_path / "coarse", runs=RUNS, shard_runs=RUNS)
+    ShardJob.of(coarse).fly(0)
+    fine = planned(scenario, tmp_path)
+    job = ShardJob.of(fine)
+    assert fine.id == coarse.id
+    fine.put(1, job.fly(1))
+    assert 1 not in fine.missing()
+
+
 def test_files_that_a_scenario_names_travel_with_it(tmp_path):
     (tmp_path / "plants").mkdir()
     (tmp_path / "work" / "scenarios").mkdir(parents=True)

@@ -182,6 +182,26 @@ def test_every_preset_is_a_scenario_and_pages_have_drawings_by_their_titles():
     assert figures["Open loop: gain and phase"].startswith("<svg")
 
 
+def test_an_open_loop_has_its_margins_where_they_are_read_off_and_is_drawn_on_two_axes():
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    pyplot.switch_backend("agg")
+    analysis = fspid.Scenario.preset("pitch-hold").analyse()
+    for name, loop in analysis.open_loops.items():
+        known = analysis[name]
+        above = [gain > 0.0 for gain in loop["gain_db"]]
+        last = max(number for number, it in enumerate(above) if it)
+        # The gain crossover lies between two neighbouring points.
+        assert loop["frequency_rad_s"][last] <= known["gain_crossover_rad_s"] <= loop["frequency_rad_s"][last + 1]
+        margins = sorted(180.0 + loop["phase_deg"][number] for number in (last, last + 1))
+        assert margins[0] <= known["phase_margin_deg"] <= margins[1]
+    gain, phase = analysis.plot()
+    assert list(phase.lines[0].get_ydata()) == list(analysis.open_loops["PID"]["phase_deg"])
+    assert [text.get_text() for text in gain.get_legend().get_texts()] == list(analysis.open_loops)
+    with pytest.raises(fspid.InputError, match="this draws on two"):
+        analysis.plot(ax=[gain])
+    pyplot.close("all")
+
+
 def test_answers_draw_themselves_into_axes_that_are_given(step, tmp_path):
     pyplot = pytest.importorskip("matplotlib.pyplot")
     pyplot.switch_backend("agg")
@@ -203,5 +223,14 @@ def test_answers_draw_themselves_into_axes_that_are_given(step, tmp_path):
     assert drawn(design)[1] == [each["path"] for each in design.to_dict()["parameters"]]
     summary = fspid.Scenario.preset("campaign").campaign(tmp_path / "c", runs=20).summary()
     assert drawn(summary)[1] == ["PID", "FSPID"]
+    proofs = fspid.Scenario.preset("campaign").certify()
+    assert drawn(proofs)[1][0].startswith(f"PID, {proofs.to_dict()['controllers'][0]['verdict']}: kp ")
+    contest = fspid.Scenario.preset("contest").contest(tmp_path / "contest", budget=8)
+    ax, labels = drawn(contest)
+    facts = contest.to_dict()
+    assert [label.split(" (")[0] for label in labels] == facts["ranking"]
+    assert ax.get_title() == facts["verdict"]["words"]
+    with pytest.raises(fspid.InputError, match="iae_deg_s"):
+        contest.plot(measure="beauty")
     ax, _ = drawn(step.simulate()["PID"])
     assert list(ax.lines[0].get_ydata()) == list(step.simulate()["PID"]["theta_deg"])

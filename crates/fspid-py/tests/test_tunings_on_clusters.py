@@ -372,7 +372,7 @@ def test_what_workers_of_dask_fly_is_there_again_when_all_who_held_it_were_kille
         job = engine.share(FlightsJob.of(scenario._core))
         for _ in range(2):
             # Whoever reads the order has the job.
-            with pytest.raises(fspid.Error, match="nonsense"):
+            with pytest.raises(fspid.Error, match="this is no order"):
                 list(engine.fly(job, units))
             gone = client.run(os.getpid)
             for pid in gone.values():

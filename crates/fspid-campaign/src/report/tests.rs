@@ -5,7 +5,7 @@ use std::path::Path;
 use super::*;
 use crate::plan::Plan;
 use crate::sample::Sampling;
-use crate::{Folder, Progress, Question, local, plan};
+use crate::{Folder, Progress, Question, Shards, local, plan};
 
 const HEAD: &str = "schema = 1\nname = \"a test\"\n[plant]\npreset = \"b747-paper\"\n[loop]\nsample_period_s = 0.05\nduration_s = 10.0\n";
 const STEP: &str = "[setpoint]\nkind = \"step\"\namplitude_deg = 1.0\n";
@@ -48,7 +48,7 @@ fn fly(scenario: &Path, folder: &Folder, runs: u64) {
         runs,
         seed: 3,
         sampling: Sampling::Random,
-        shard_runs: None,
+        shards: Shards::ForThreads,
     };
     let campaign = plan(&question, folder).unwrap_or_else(|error| panic!("{error}"));
     folder.put_plan(campaign.plan()).expect("written");

@@ -1,19 +1,18 @@
 //! The cells of a column of a row group, decoded.
 
-use std::fs::File;
-
 use parquet::column::reader::ColumnReaderImpl;
 use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader as _, RowGroupReader};
 use parquet::file::serialized_reader::SerializedFileReader;
 
+use super::content::Content;
 use super::pages::Guard;
 use super::{Damage, Kind, MAX_TEXT_BYTES, Values};
 
 /// A column of a row group.
 pub(super) struct Chunk<'a> {
-    pub(super) file: &'a SerializedFileReader<File>,
+    pub(super) file: &'a SerializedFileReader<Content>,
     pub(super) row_group: usize,
     pub(super) column: usize,
     pub(super) kind: Kind,

@@ -9,8 +9,7 @@
 //! Source: the compact protocol of Apache Thrift and `parquet.thrift` of Apache Parquet: in a
 //! `FileMetaData` field 2 is the list of `SchemaElement`, whose field 5 is the number of children.
 
-use std::fs::File;
-use std::io::{self, Read as _, Seek as _, SeekFrom};
+use std::io::{self, Read, Seek, SeekFrom};
 
 use super::checks::Refusal;
 use super::{Damage, Foreign};
@@ -49,7 +48,10 @@ const TAIL_BYTES: u64 = 8;
 /// The footer of a file of so many bytes.
 ///
 /// The inner error is for bytes that are there but wrong, the outer one for those that cannot be read.
-pub(super) fn read(file: &mut File, bytes: u64) -> io::Result<Result<Vec<u8>, Refusal>> {
+pub(super) fn read(
+    file: &mut (impl Read + Seek),
+    bytes: u64,
+) -> io::Result<Result<Vec<u8>, Refusal>> {
     let not_parquet = Ok(Err(Refusal::NotParquet(bytes)));
     let Some(room) = bytes.checked_sub(TAIL_BYTES + MAGIC.len() as u64) else { return not_parquet };
     let (mut head, mut length, mut tail) = ([0; 4], [0; 4], [0; 4]);

@@ -25,6 +25,7 @@
 
 mod checks;
 mod chunk;
+mod content;
 mod digest;
 mod error;
 mod footer;

@@ -1,7 +1,6 @@
 //! Tables from a Parquet file.
 
 use std::cell::Cell;
-use std::fs::File;
 use std::marker::PhantomData;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
@@ -13,6 +12,7 @@ use parquet::file::serialized_reader::{ReadOptionsBuilder, SerializedFileReader}
 
 use super::checks::{self, Refusal};
 use super::chunk::Chunk;
+use super::content::Content;
 use super::{
     COLUMNS_KEY, ColumnTable, DIGEST_KEY, Damage, Digest, Digester, Kind, Schema, TableError,
     Values, footer,
@@ -30,7 +30,7 @@ use super::{
 /// the file once a thread.
 pub struct Reader {
     path: PathBuf,
-    file: SerializedFileReader<File>,
+    file: SerializedFileReader<Content>,
     schema: Arc<Schema>,
     metadata: Vec<(String, String)>,
     digest: Digest,
@@ -47,26 +47,25 @@ impl Reader {
     pub fn open(path: impl AsRef<Path>) -> Result<Self, TableError> {
         let path = path.as_ref();
         let open = || {
-            let mut file = File::open(path)?;
-            let bytes = file.metadata()?.len();
-            let footer = footer::read(&mut file, bytes)?;
-            Ok((file, bytes, footer))
+            let (mut content, bytes) = Content::open(path)?;
+            let footer = content.footer(bytes)?;
+            Ok((content, bytes, footer))
         };
-        let (file, bytes, footer) =
+        let (content, bytes, footer) =
             open().map_err(|source| TableError::Open { path: path.to_owned(), source })?;
         let refused = |refusal: Refusal| refusal.of(path);
         footer.and_then(|footer| footer::check(&footer)).map_err(refused)?;
-        guarded(path, || Self::parse(path, file, bytes).map_err(refused))
+        guarded(path, || Self::parse(path, content, bytes).map_err(refused))
     }
 
     /// Reads a footer that has been looked at.
-    fn parse(path: &Path, file: File, bytes: u64) -> Result<Self, Refusal> {
+    fn parse(path: &Path, content: Content, bytes: u64) -> Result<Self, Refusal> {
         // Statistics are not used, and the library would panic at some that are too short.
         let options = ReadOptionsBuilder::new()
             .with_column_stats_policy(ParquetStatisticsPolicy::SkipAll)
             .with_size_stats_policy(ParquetStatisticsPolicy::SkipAll)
             .build();
-        let file = SerializedFileReader::new_with_options(file, options)
+        let file = SerializedFileReader::new_with_options(content, options)
             .map_err(|source| Damage::Metadata { source })?;
         let mut metadata = checks::key_values(file.metadata());
         checks::seal(&mut metadata)?;

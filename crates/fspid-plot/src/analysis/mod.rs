@@ -37,5 +37,5 @@ pub use nichols::{CLOSED_LOOP_DB, Exclusion, NicholsFigure};
 pub use nyquist::{MarginDisk, NyquistFigure};
 pub use pole_zero::PoleZeroMap;
 pub use radius::RadiusFigure;
-pub use response::{LoopCurve, LoopPoint, Margin, MarginMark};
+pub use response::{LoopCurve, LoopPoint, Margin, MarginMark, Polar};
 pub use sensitivity::{PeakMark, SensitivityFigure, Transfer};

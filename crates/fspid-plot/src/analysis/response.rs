@@ -29,10 +29,13 @@ pub struct LoopPoint {
 
 /// Gain and unwrapped phase at one frequency.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Polar {
-    pub(super) frequency_rad_s: f64,
-    pub(super) gain_db: f64,
-    pub(super) phase_deg: f64,
+pub struct Polar {
+    /// Frequency (rad/s).
+    pub frequency_rad_s: f64,
+    /// Gain (dB).
+    pub gain_db: f64,
+    /// Phase (deg).
+    pub phase_deg: f64,
 }
 
 /// Where a margin is read off a curve, and how large it is.
@@ -60,7 +63,8 @@ impl LoopCurve {
     ///
     /// The phase of the first point is taken between -270 and 90 deg, so that a loop with one or two
     /// integrators begins near -90 or -180 deg; each later point continues from the one before.
-    pub(super) fn polar(&self) -> Vec<Polar> {
+    #[must_use]
+    pub fn polar(&self) -> Vec<Polar> {
         let mut before: Option<f64> = None;
         self.points
             .iter()

@@ -14,7 +14,7 @@ from typing import Any
 from . import aircraft, lti
 from ._core import VERSION as __version__
 from ._core import Column
-from .answers import Absent, Analysis, Answer, Certification, Contest, Design, Flight, Trace, Verification
+from .answers import Absent, Analysis, Answer, Certification, Columns, Contest, Design, Flight, Trace, Verification
 from .campaign import Campaign, CampaignSummary
 from .controllers import Controller, Fspid, Pid
 from .errors import Error, FileError, InputError, Problem, ScenarioError
@@ -30,6 +30,7 @@ __all__ = [
     "CampaignSummary",
     "Certification",
     "Column",
+    "Columns",
     "Contest",
     "Controller",
     "Design",

@@ -56,6 +56,8 @@ class Answer:
     def page(self) -> str | None: ...
     @property
     def files(self) -> list[tuple[str, str]]: ...
+    @property
+    def curves(self) -> list[tuple[str, list[Column]]]: ...
 
 @final
 class Flight:
@@ -125,7 +127,7 @@ class Worker:
 class Campaign:
     @staticmethod
     def plan(
-        scenario: Scenario, out: Path, runs: int, seed: int, sampling: str, shard_runs: int | None
+        scenario: Scenario, out: Path, runs: int, seed: int, sampling: str, shard_runs: int | None, for_workers: bool
     ) -> Campaign: ...
     @staticmethod
     def planned(out: Path) -> Campaign: ...

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -127,17 +127,52 @@ class _Paged(Answer):
         return target
 
 
-class Trace(Mapping[str, "_core.Column"]):
-    """One controller's flight: columns by name, measures, verdict.
+class Columns(Mapping[str, "_core.Column"]):
+    """Columns of one length by name, which ends in the unit.
 
-    Columns are sequences of numbers of 64 bits, one a sample. ``numpy.asarray(trace["theta_deg"])`` takes no copy.
-    Their names end in their units; angles are in degrees, nose up is positive.
+    They are sequences of numbers of 64 bits. ``numpy.asarray(columns["theta_deg"])`` takes no copy.
+    """
+
+    def __init__(self, name: str, columns: list[_core.Column]) -> None:
+        self._columns = {column.name: column for column in columns}
+        self.name = name
+
+    def __arrow_c_schema__(self) -> object:
+        return self._table().__arrow_c_schema__()
+
+    def __arrow_c_stream__(self, requested_schema: object | None = None) -> object:
+        """The columns for Arrow: ``polars.DataFrame(trace)`` and ``pyarrow.table(trace)`` take no copy."""
+        return self._table().__arrow_c_stream__(requested_schema)
+
+    def _table(self) -> _core.Table:
+        return _core.Table(list(self._columns.values()))
+
+    def __getitem__(self, column: str) -> _core.Column:
+        try:
+            return self._columns[column]
+        except KeyError:
+            raise KeyError(f"no column {column!r}; there are {', '.join(self._columns)}") from None
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._columns)
+
+    def __len__(self) -> int:
+        return len(self._columns)
+
+    def __repr__(self) -> str:
+        rows = len(next(iter(self._columns.values())))
+        return f"<{type(self).__name__} {self.name}: {rows} rows of {', '.join(self._columns)}>"
+
+
+class Trace(Columns):
+    """One controller's flight: columns by name, one number a sample; measures, verdict.
+
+    Angles are in degrees, nose up is positive.
     """
 
     def __init__(self, name: str, columns: list[_core.Column], facts: dict[str, Any]) -> None:
-        self._columns = {column.name: column for column in columns}
+        super().__init__(name, columns)
         self._facts = facts
-        self.name = name
 
     @property
     def verdict(self) -> str:
@@ -167,28 +202,6 @@ class Trace(Mapping[str, "_core.Column"]):
     def to_dict(self) -> dict[str, Any]:
         """All that is known of the flight but its columns."""
         return self._facts
-
-    def __arrow_c_schema__(self) -> object:
-        return self._table().__arrow_c_schema__()
-
-    def __arrow_c_stream__(self, requested_schema: object | None = None) -> object:
-        """The columns for Arrow: ``polars.DataFrame(trace)`` and ``pyarrow.table(trace)`` take no copy."""
-        return self._table().__arrow_c_stream__(requested_schema)
-
-    def _table(self) -> _core.Table:
-        return _core.Table(list(self._columns.values()))
-
-    def __getitem__(self, column: str) -> _core.Column:
-        try:
-            return self._columns[column]
-        except KeyError:
-            raise KeyError(f"no column {column!r}; there are {', '.join(self._columns)}") from None
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._columns)
-
-    def __len__(self) -> int:
-        return len(self._columns)
 
     def __repr__(self) -> str:
         rows = len(self._columns["time_s"])
@@ -311,6 +324,30 @@ class Analysis(_Paged):
         none = Absent("only a loop that is stable has margins")
         return {**dict.fromkeys(_MARGINS, none), **known} if known["stable"] is not True else known
 
+    @property
+    def open_loops(self) -> dict[str, Columns]:
+        """Each controller's open loop over ``frequency_rad_s``: ``real``, ``imaginary``, ``gain_db``, ``phase_deg``.
+
+        Of several plants it is the worst. The phase is continuous and begins between -270 and 90 deg.
+        """
+        return {name: Columns(name, columns) for name, columns in self._native.curves}
+
+    def plot(self, ax: Sequence[Axes] | None = None) -> Sequence[Axes]:
+        """Draw gain and phase of the open loops over frequency (Bode) with matplotlib.
+
+        Parameters
+        ----------
+        ax : two of matplotlib.axes.Axes, optional
+            For the gain and for the phase; new ones if left out.
+
+        Returns
+        -------
+        two of matplotlib.axes.Axes
+        """
+        from .plot import bode
+
+        return bode(ax, self.open_loops)
+
 
 class Verification(Answer):
     """Requirements, each judged by its worst case."""
@@ -338,6 +375,12 @@ class Certification(Answer):
     def certificates(self) -> dict[str, str]:
         """Certificates by file name: ``fspid certify --check`` verifies them without trust in who wrote them."""
         return dict(self._native.files)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the gains that each verdict is about with matplotlib, each over the middle of its range."""
+        from .plot import boxes
+
+        return boxes(ax, self.to_dict()["controllers"])
 
     def save(self, folder: str | PathLike[str]) -> list[Path]:
         """Write the certificates into a folder, which is made if it is not there."""
@@ -378,6 +421,20 @@ class Design(Answer):
 
 class Contest(_Paged):
     """Controllers tuned alike and judged on what none of them was tuned on."""
+
+    def plot(self, ax: Axes | None = None, measure: str = "iae_deg_s") -> Axes:
+        """Draw a measure of every controller, best first, with matplotlib: median and quartiles of its searches.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to; new axes if left out.
+        measure : str
+            Which measure, such as ``cost``, by which controllers are ranked.
+        """
+        from .plot import ranked
+
+        return ranked(ax, self.to_dict(), measure)
 
 
 def _by_name(facts: list[dict[str, Any]], name: str) -> dict[str, Any]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from .errors import Error
+from .errors import Error, InputError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -13,13 +13,75 @@ if TYPE_CHECKING:
 
 def axes(ax: Axes | None) -> Axes:
     """These axes, or new ones."""
-    if ax is not None:
-        return ax
+    return _pyplot().subplots()[1] if ax is None else ax
+
+
+def _pyplot() -> Any:
     try:
         from matplotlib import pyplot
     except ImportError as missing:
-        raise Error("drawing needs matplotlib: pip install fspid[plot]; without it, .svg() draws") from missing
-    return pyplot.subplots()[1]
+        raise Error(
+            "drawing needs matplotlib: pip install fspid[plot]; without it, .svg() and .figures draw"
+        ) from missing
+    return pyplot
+
+
+def bode(ax: Sequence[Axes] | None, loops: Mapping[str, Mapping[str, Any]]) -> Sequence[Axes]:
+    """Gain and phase over frequency, with 0 dB and -180 deg."""
+    if ax is None:
+        ax = _pyplot().subplots(2, 1, sharex=True)[1]
+    if len(ax) != 2:
+        raise InputError(f"{len(ax)} axes; this draws on two, the gain on the first and the phase on the second")
+    for part, column, label, critical in (
+        (ax[0], "gain_db", "gain of the open loop (dB)", 0.0),
+        (ax[1], "phase_deg", "phase of the open loop (deg)", -180.0),
+    ):
+        for name, curve in loops.items():
+            part.semilogx(list(curve["frequency_rad_s"]), list(curve[column]), label=name)
+        part.axhline(critical, color="black", linewidth=0.8)
+        part.set_ylabel(label)
+        part.grid(True, which="both", alpha=0.3)
+    ax[0].legend()
+    ax[1].set_xlabel("frequency (rad/s)")
+    return ax
+
+
+def boxes(ax: Axes | None, controllers: Sequence[Mapping[str, Any]]) -> Axes:
+    """Ranges of gains over their middles, in the colour of the verdict; a gain that does not move is a mark."""
+    ax = axes(ax)
+    colours = {"proved": "tab:green", "refuted": "tab:red"}
+    for each in controllers:
+        colour = colours.get(each["verdict"], "tab:gray")
+        for gain, (lower, upper) in (each.get("gains") or {}).items():
+            middle = 0.5 * (lower + upper) or 1.0
+            end = f" to {upper:.4g}" if upper > lower else ""
+            name = f"{each['name']}, {each['verdict']}: {gain} {lower:.4g}{end}"
+            ax.plot([lower / middle, upper / middle], [name, name], "-|", color=colour, linewidth=6, markersize=12)
+    ax.invert_yaxis()
+    ax.set_xlabel("gain over the middle of its range")
+    return ax
+
+
+def ranked(ax: Axes | None, contest: Mapping[str, Any], measure: str) -> Axes:
+    """Median and quartiles of a measure in the order of the ranking, with the flights that failed."""
+    found = {each["name"]: each for each in contest["controllers"]}
+    order = [found.pop(name) for name in contest["ranking"]] + list(found.values())
+    known = sorted({name for each in order for name in each.get("measures", {})})
+    if measure not in known:
+        raise InputError(f"no measure {measure!r}; there are {', '.join(known)}")
+    ax = axes(ax)
+    for place, each in enumerate(order):
+        spread = each.get("measures", {}).get(measure) or {}
+        if (at := spread.get("median")) is not None:
+            ends = [[at - spread["lower_quartile"]], [spread["upper_quartile"] - at]]
+            colour = "tab:red" if each["flights"]["failed"] else "tab:green"
+            ax.errorbar([at], [place], xerr=ends, fmt="o", capsize=4, color=colour)
+    failed = [f"{each['name']} ({each['flights']['failed']} of {each['flights']['of']} flights fail)" for each in order]
+    ax.set_yticks(range(len(order)), failed)
+    ax.set_ylim(len(order) - 0.5, -0.5)
+    ax.set_xlabel(f"{measure}, median and quartiles of the searches")
+    ax.set_title(contest["verdict"]["words"])
+    return ax
 
 
 def over_limits(ax: Axes | None, requirements: Sequence[Mapping[str, Any]]) -> Axes:

@@ -302,13 +302,15 @@ class Scenario:
         sampling : {"random", "latin-hypercube", "sobol"}
             How the points are spread.
         shard_runs : int, optional
-            Runs of a shard; by default a second or two of flights.
+            Runs of a shard; by default a second or two of flights, and less of a small campaign on other engines.
         threads : int
             0 for as many as the machine has. The result is the same.
         engine : {"local", "ray", "dask"}
             Who flies, with what :meth:`Campaign.run` takes for it: ``engine="ray", address="10.0.0.1:6379"``.
         """
-        planned = self.plan_campaign(out, runs=runs, seed=seed, sampling=sampling, shard_runs=shard_runs)
+        planned = self.plan_campaign(
+            out, runs=runs, seed=seed, sampling=sampling, shard_runs=shard_runs, engine=engine
+        )
         planned.run(threads=threads, engine=engine, **options)
         return planned
 
@@ -320,9 +322,11 @@ class Scenario:
         seed: int = 1,
         sampling: str = "random",
         shard_runs: int | None = None,
+        engine: str = "local",
     ) -> Campaign:
         """As :meth:`campaign`, and flies nothing yet."""
-        return Campaign(_core.Campaign.plan(self._core, Path(out), runs, seed, sampling, shard_runs))
+        elsewhere = engine != "local"
+        return Campaign(_core.Campaign.plan(self._core, Path(out), runs, seed, sampling, shard_runs, elsewhere))
 
     def contest(
         self,

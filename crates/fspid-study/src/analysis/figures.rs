@@ -6,7 +6,7 @@ use fspid_sim::flown::trajectory::{TrajectoryLinearisation, TrajectoryPoint};
 
 use super::answer::{Margins, decibels};
 use super::frozen::{FrozenMap, FrozenPoint};
-use super::{AnalysedLoop, Analysis, PlantLoop};
+use super::{AnalysedLoop, Analysis, Columns, PlantLoop};
 use fspid_plot::{
     BodeFigure, CLOSED_LOOP_DB, Crossing, Exclusion, GainMap, GainSurface, LocusSample, LoopCurve,
     LoopPoint, MapCell, MapPoint, Margin, MarginDisk, MarginMark, NicholsFigure, NyquistFigure,
@@ -50,6 +50,11 @@ impl<'a> LoopFigures<'a> {
     /// False if there is no loop to draw.
     pub(crate) fn any(&self) -> bool {
         !self.shown.is_empty()
+    }
+
+    /// The curves as columns.
+    pub(super) fn columns(&self) -> Vec<(String, Columns)> {
+        self.curves.iter().map(|curve| (curve.name.clone(), columns(curve))).collect()
     }
 
     fn nyquist_rad_s(&self) -> Option<f64> {
@@ -126,6 +131,17 @@ impl<'a> LoopFigures<'a> {
             width_px: WIDTH_PX,
         }
     }
+}
+
+fn columns(curve: &LoopCurve) -> Columns {
+    let (values, polar) = (&curve.points, curve.polar());
+    vec![
+        ("frequency_rad_s", values.iter().map(|it| it.frequency_rad_s).collect()),
+        ("real", values.iter().map(|it| it.real).collect()),
+        ("imaginary", values.iter().map(|it| it.imaginary).collect()),
+        ("gain_db", polar.iter().map(|it| it.gain_db).collect()),
+        ("phase_deg", polar.iter().map(|it| it.phase_deg).collect()),
+    ]
 }
 
 fn factor(db: f64) -> f64 {

@@ -77,6 +77,9 @@ pub struct Analysis {
     pub left_out: Vec<String>,
 }
 
+/// Columns by name, which ends in the unit.
+pub type Columns = Vec<(&'static str, Vec<f64>)>;
+
 impl Analysis {
     /// Analyses every controller of a study.
     ///
@@ -102,6 +105,14 @@ impl Analysis {
         let externals = scenario.externals.iter().map(flown).collect::<Result<_, _>>()?;
         let left_out = not_in_the_linear_loop(scenario);
         Ok(Self { scenario: scenario.name.clone(), question, loops, externals, left_out })
+    }
+
+    /// The open loop of each controller in the worst plant over frequency (rad/s), 600 points in five decades up to the
+    /// Nyquist frequency: value, gain (dB), phase (deg). The phase is continuous and begins between -270 and 90 deg.
+    /// Loops without margins to be read off have their curve as well; those of external controllers have none.
+    #[must_use]
+    pub fn open_loops(&self) -> Vec<(String, Columns)> {
+        figures::LoopFigures::of(self).columns()
     }
 
     /// True if no loop is known to be unstable, or to have no gains at rest, with margins or without.

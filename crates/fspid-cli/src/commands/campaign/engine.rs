@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use clap::{Args, ValueEnum};
-use fspid_campaign::{Campaign, Folder, shard};
+use fspid_campaign::{Campaign, Folder, Shards, shard};
 use fspid_scenario::count as counts;
 use fspid_study::{output, shell};
 use serde_json::{Value, json};
@@ -73,6 +73,11 @@ impl Cluster {
             Engine::Slurm => self.submitted(&place, campaign),
             Engine::Command => self.listed(&place, folder, campaign),
         }
+    }
+
+    /// How a campaign is cut for whoever flies.
+    pub(super) fn cut(&self) -> Shards {
+        if self.engine == Engine::Local { Shards::ForThreads } else { Shards::ForWorkers }
     }
 
     /// Refuses a store where nobody would put anything into it.

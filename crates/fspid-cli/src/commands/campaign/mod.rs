@@ -10,13 +10,15 @@ mod run;
 mod search;
 mod shard;
 
+use std::path::Path;
+
 use clap::{Args, Subcommand, ValueEnum};
 
 use super::external_controller::Beside;
 use crate::argument::{self, count};
 use crate::exit::{Failure, note};
 use fspid_campaign::sample::Sampling;
-use fspid_campaign::{Campaign, CampaignError, Folder, Question};
+use fspid_campaign::{Campaign, CampaignError, Folder, Question, Shards};
 use fspid_scenario::count as counts;
 
 /// Fly a scenario many times with numbers drawn anew, and say how often it fails.
@@ -141,7 +143,8 @@ struct Planned {
     /// How the drawn points are spread; at random if left out.
     #[arg(long, value_enum)]
     sampling: Option<Spread>,
-    /// Runs of a shard, the least that an interruption can lose; by default a second or two of flights.
+    /// Runs of a shard, the least that an interruption can lose; by default a second or two of flights, and
+    /// less of a small campaign on other engines.
     #[arg(long, value_name = "RUNS", value_parser = count::<u64>(&counts::SHARD_RUNS))]
     shard_runs: Option<u64>,
 }
@@ -165,7 +168,8 @@ impl Planned {
         options.into_iter().find(|(given, _)| *given).map(|(_, option)| option)
     }
 
-    fn campaign(&self, scenario: &std::path::Path, folder: &Folder) -> Result<Campaign, Failure> {
+    /// Plans it in a folder, cut for whoever flies it where nobody asks for a number.
+    fn campaign(&self, scenario: &Path, folder: &Folder, cut: Shards) -> Result<Campaign, Failure> {
         let overrides = self.beside.overrides(&self.overrides)?;
         let question = Question {
             scenario,
@@ -173,7 +177,7 @@ impl Planned {
             runs: self.runs.unwrap_or(RUNS),
             seed: self.seed.unwrap_or(SEED),
             sampling: self.sampling.unwrap_or(Spread::Random).into(),
-            shard_runs: self.shard_runs,
+            shards: self.shard_runs.map_or(cut, Shards::Of),
         };
         let campaign = fspid_campaign::plan(&question, folder).map_err(failure)?;
         for warning in &campaign.template().study().warnings {

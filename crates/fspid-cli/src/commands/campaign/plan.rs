@@ -7,6 +7,7 @@ use super::super::Format;
 use super::{Planned, PlannedFolder};
 use crate::argument::InFile;
 use crate::exit::Failure;
+use fspid_campaign::Shards;
 use fspid_diagnostics::digits::counted;
 
 /// Plan a campaign without flying it: for machines that share the shards.
@@ -25,7 +26,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let folder = arguments.place.folder();
-    let campaign = arguments.planned.campaign(&arguments.scenario, &folder)?;
+    let campaign = arguments.planned.campaign(&arguments.scenario, &folder, Shards::ForWorkers)?;
     let plan = campaign.plan();
     let last = plan.shards().saturating_sub(1);
     let (path, shards) = (folder.plan_path(), plan.shards());

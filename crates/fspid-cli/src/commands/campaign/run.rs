@@ -41,7 +41,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     arguments.cluster.check_store()?;
     let folder = arguments.place.folder();
     let campaign = match &arguments.scenario {
-        Some(scenario) => arguments.planned.campaign(scenario, &folder)?,
+        Some(scenario) => arguments.planned.campaign(scenario, &folder, arguments.cluster.cut())?,
         None => match arguments.planned.given() {
             None => planned(&folder)?,
             Some(option) => {

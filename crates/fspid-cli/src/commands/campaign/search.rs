@@ -48,7 +48,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         runs: 1,
         seed: arguments.seed,
         sampling: Sampling::Random,
-        shard_runs: None,
+        shards: fspid_campaign::Shards::ForThreads,
     };
     interrupt::ends_with(
         "interrupted; a search for the worst case keeps nothing, so that it begins anew".to_owned(),
