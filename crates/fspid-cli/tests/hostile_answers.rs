@@ -38,6 +38,11 @@ const HOSTILE: [&str; 22] = [
 /// Keys that give the reason of a null beside or below them.
 const REASONS: [&str; 4] = ["absent", "reasons", "reason", "null"];
 
+/// Keys whose null says that there is no such thing, which is no number that is missing: no range of stable gains below,
+/// a grid without a controller, a factor that nothing was refused at.
+const NONE: [&str; 6] =
+    ["lowest_gain", "relative_dead_time", "supervisor", "controller", "not_proved", "open_because"];
+
 #[test]
 fn no_answer_holds_an_infinity_a_nan_or_a_null_without_its_reason() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -81,7 +86,10 @@ fn bare_null(value: &Value, path: &str, explained: bool) -> Option<String> {
         Value::Object(keys) => {
             let explained = explained || REASONS.iter().any(|reason| keys.get(*reason).is_some());
             let mut below = keys.iter();
-            below.find_map(|(key, value)| bare_null(value, &format!("{path}.{key}"), explained))
+            below.find_map(|(key, value)| {
+                let explained = explained || (value.is_null() && NONE.contains(&key.as_str()));
+                bare_null(value, &format!("{path}.{key}"), explained)
+            })
         }
         Value::Array(list) => {
             list.iter().find_map(|value| bare_null(value, &format!("{path}[]"), explained))

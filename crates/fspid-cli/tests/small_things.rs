@@ -205,7 +205,7 @@ fn a_number_that_overflows_is_told_by_its_key() {
     let folder = folder.path();
     assert_eq!(code(&fspid(&["init", "a.toml"], folder)), 0);
     for (command, set, key) in [
-        ("simulate", "controller.PID.kd=1e308", "controller[0].kd: found 1e308"),
+        ("simulate", "controller.PID.kd=1e308", "found: 1e308; allowed: -1e100 to 1e100"),
         ("analyse", "controller.PID.kd=-1e308", "-1e100 to 1e100"),
         ("check", "actuator.time_constant_s=1e-310", "actuator.time_constant_s: so short"),
     ] {
