@@ -4,6 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use fspid_scenario::apart;
+use fspid_scenario::count::CountError;
 use fspid_scenario::file::{LoadError, Problems};
 use fspid_study::output::{OutputError, in_words};
 use thiserror::Error;
@@ -38,16 +39,9 @@ pub enum CampaignError {
         /// The scenario.
         path: String,
     },
-    /// A number that is not allowed.
-    #[error("{what} is {found}; allowed is {allowed}")]
-    Number {
-        /// What it is.
-        what: &'static str,
-        /// What was given.
-        found: String,
-        /// What is allowed.
-        allowed: String,
-    },
+    /// A count beyond its limits.
+    #[error("{0}")]
+    Count(#[from] CountError),
     /// The points cannot be drawn.
     #[error("{0}")]
     Sample(#[from] SampleError),

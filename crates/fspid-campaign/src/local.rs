@@ -1,5 +1,6 @@
 //! A campaign flown on this machine: shard after shard on all threads, then merged.
 
+use fspid_scenario::count::THREADS;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::campaign::{Campaign, Progress};
@@ -50,7 +51,7 @@ pub fn run(
 /// Calls a function in a pool of so many threads; 0 for as many as the machine has.
 ///
 /// # Errors
-/// [`CampaignError::Threads`].
+/// More than a machine can have; [`CampaignError::Threads`].
 pub fn in_threads<T: Send>(
     threads: usize,
     work: impl FnOnce() -> T + Send,
@@ -60,6 +61,7 @@ pub fn in_threads<T: Send>(
 
 /// A pool of so many threads; 0 for as many as the machine has.
 pub(crate) fn pool(threads: usize) -> Result<ThreadPool, CampaignError> {
+    THREADS.check(threads)?;
     let pool = ThreadPoolBuilder::new().num_threads(threads).build();
     pool.map_err(|error| CampaignError::Threads(error.to_string()))
 }

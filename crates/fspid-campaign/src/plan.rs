@@ -5,6 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
+use fspid_scenario::count;
 use fspid_scenario::file::{Extra, Template};
 use serde_json::{Value, json};
 
@@ -17,9 +18,9 @@ use crate::table::Digest;
 /// Version of the plan's format.
 const SCHEMA: u64 = 1;
 /// Most runs of a campaign.
-pub const MOST_RUNS: u64 = 1_000_000_000;
+pub const MOST_RUNS: u64 = count::RUNS.most;
 /// Most runs of a shard, whose rows are in memory together: some 100 MB.
-pub const MOST_SHARD_RUNS: u64 = 65_536;
+pub const MOST_SHARD_RUNS: u64 = count::SHARD_RUNS.most;
 /// Runs of a shard where nothing else is asked for: a second or two of flights in lanes.
 pub const SHARD_RUNS: u64 = 8192;
 /// The same for flights that are flown one by one.

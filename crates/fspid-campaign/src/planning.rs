@@ -2,12 +2,13 @@
 
 use std::path::{Component, Path, PathBuf};
 
+use fspid_scenario::count::{self as counts, RUNS};
 use fspid_scenario::file::{Extra, LoadError, Template, read_text};
 
 use crate::campaign::Campaign;
 use crate::error::CampaignError;
 use crate::folder::Folder;
-use crate::plan::{MOST_RUNS, MOST_SHARD_RUNS, Plan, SHARD_RUNS, SLOW_SHARD_RUNS};
+use crate::plan::{Plan, SHARD_RUNS, SLOW_SHARD_RUNS};
 use crate::sample::Sampling;
 
 /// What to plan.
@@ -68,7 +69,7 @@ const FINEST: u64 = 16;
 /// # Errors
 /// A scenario that is wrong, or wrong with what its dispersions draw; numbers that are not allowed.
 pub fn plan(question: &Question<'_>, folder: &Folder) -> Result<Campaign, CampaignError> {
-    check("the number of runs", question.runs, MOST_RUNS)?;
+    RUNS.check(question.runs)?;
     let text = read_text(question.scenario)?;
     let path = question.scenario.display().to_string();
     let home = question.scenario.parent().unwrap_or(Path::new(""));
@@ -80,7 +81,7 @@ pub fn plan(question: &Question<'_>, folder: &Folder) -> Result<Campaign, Campai
         && template.study().scenario.externals.is_empty();
     let there = folder.plan().ok().map(|plan| plan.shard_runs);
     let shard_runs = question.shards.runs(question.runs, side_by_side, there);
-    check("the number of runs in a shard", shard_runs, MOST_SHARD_RUNS)?;
+    counts::SHARD_RUNS.check(shard_runs)?;
     let plan = Plan {
         scenario_digest: template.study().digest.clone(),
         scenario_text: text,
@@ -94,14 +95,6 @@ pub fn plan(question: &Question<'_>, folder: &Folder) -> Result<Campaign, Campai
         program: Plan::this_program(),
     };
     Campaign::of_template(plan, template)
-}
-
-fn check(what: &'static str, found: u64, most: u64) -> Result<(), CampaignError> {
-    if (1..=most).contains(&found) {
-        return Ok(());
-    }
-    let allowed = format!("1 to {most}");
-    Err(CampaignError::Number { what, found: found.to_string(), allowed })
 }
 
 /// The way from a folder that may not be there yet to one that is; absolute where there is none.

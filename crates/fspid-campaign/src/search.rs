@@ -7,6 +7,7 @@
 use std::sync::OnceLock;
 
 use fspid_optimise::{LShade, NelderMead, Optimiser, Start, minimise};
+use fspid_scenario::count::FLIGHTS;
 use fspid_scenario::dispersion::{Dispersion, Distribution, Drawn, standard_normal};
 use fspid_scenario::file::known_words;
 use rayon::prelude::*;
@@ -137,13 +138,7 @@ impl<'a> Target<'a> {
             let known = measure_names().map(|(name, _)| name).chain(ids).collect();
             return Err(unknown("measure", &question.measure, known));
         }
-        if question.budget == 0 {
-            return Err(CampaignError::Number {
-                what: "the budget",
-                found: "0".to_owned(),
-                allowed: "1 flight or more".to_owned(),
-            });
-        }
+        FLIGHTS.check(question.budget)?;
         let controller = name.to_owned();
         let tails = campaign.draws().in_cube(tails);
         let failed = OnceLock::new();

@@ -81,7 +81,7 @@ fn what_cannot_be_asked_is_refused_with_what_can() {
     let refused = |question: search::Question| {
         let found = search::search(&campaign(), &question);
         match found.expect_err("refused") {
-            CampaignError::Number { what, allowed, .. } => (what, allowed),
+            CampaignError::Count(error) => (error.count.what, error.to_string()),
             CampaignError::Unknown { what, known, .. } => (what, known),
             other => panic!("{other}"),
         }
@@ -91,5 +91,8 @@ fn what_cannot_be_asked_is_refused_with_what_can() {
     let nobody = Some("nobody".to_owned());
     let (what, allowed) = refused(search::Question { controller: nobody, ..asked("iae_deg_s") });
     assert!(what == "controller" && allowed.contains("CPID, FSPID"), "{what}: {allowed}");
-    assert_eq!(refused(search::Question { budget: 0, ..asked("iae_deg_s") }).0, "the budget");
+    for budget in [0, usize::MAX] {
+        let (what, _) = refused(search::Question { budget, ..asked("iae_deg_s") });
+        assert_eq!(what, "the number of flights");
+    }
 }

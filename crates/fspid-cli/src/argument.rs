@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::builder::{
     OsStringValueParser, StringValueParser, TypedValueParser, ValueParser, ValueParserFactory,
 };
+use fspid_scenario::count::Count;
 
 /// What stands for standard input and output.
 pub(crate) const STANDARD: &str = "-";
@@ -175,17 +176,14 @@ pub(crate) fn written(endings: &'static [&'static str]) -> ValueParser {
     OsStringValueParser::new().try_map(ended).into()
 }
 
-/// A whole number with its least and most.
-pub(crate) fn count<N>(least: u64, most: u64) -> ValueParser
+/// A whole number within the limits of the table.
+pub(crate) fn count<N>(count: &'static Count) -> ValueParser
 where
     N: TryFrom<u64> + Clone + Send + Sync + 'static,
 {
     let counted = move |text: String| {
-        let number = text.parse().ok().filter(|number| (least..=most).contains(number));
-        number.and_then(|number| N::try_from(number).ok()).ok_or_else(|| match most {
-            u64::MAX => format!("allowed is a whole number, {least} or more"),
-            most => format!("allowed is a whole number from {least} to {most}"),
-        })
+        let number = text.parse().ok().filter(|number| count.allows(*number));
+        number.and_then(|number| N::try_from(number).ok()).ok_or_else(|| count.allowed())
     };
     StringValueParser::new().try_map(counted).into()
 }
@@ -198,6 +196,7 @@ fn has_ending(path: &Path, endings: &[&str]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fspid_scenario::count::SEEDS;
 
     #[test]
     fn a_drawing_in_an_unknown_format_is_refused_and_not_taken_for_a_folder() {
@@ -210,15 +209,15 @@ mod tests {
 
     #[test]
     fn a_count_says_its_least_and_most() {
-        let parser = count::<u64>(1, 9);
+        let parser = count::<u64>(&SEEDS);
         let command = clap::Command::new("it").arg(clap::Arg::new("n").value_parser(parser));
         let told = |text: &str| {
             let parsed = command.clone().no_binary_name(true).try_get_matches_from([text]);
             parsed.err().map(|error| error.to_string()).unwrap_or_default()
         };
-        assert_eq!(told("9"), "");
-        for wrong in ["0", "10", "x", "1.5"] {
-            assert!(told(wrong).contains("a whole number from 1 to 9"), "{}", told(wrong));
+        assert_eq!(told("1000"), "");
+        for wrong in ["0", "1001", "x", "1.5"] {
+            assert!(told(wrong).contains("a whole number from 1 to 1000"), "{}", told(wrong));
         }
     }
 

@@ -11,6 +11,7 @@ use fspid_scenario::apart::{self, Clash, Named};
 
 use crate::argument::{Drawings, InFile, NamedFile, OutFile, STANDARD, Source};
 use crate::exit::{Failure, Output};
+use fspid_scenario::count::{Count, of_option};
 
 /// The arguments of the program; `None` in place of a failure where only help was asked for.
 pub(crate) fn parsed<P: Parser>() -> Result<P, Option<Failure>> {
@@ -103,12 +104,26 @@ fn named_files(
 }
 
 /// The command with what every argument has: numbers may be negative, so that the mistake is told in words; and files
-/// say what `-` is.
+/// say what `-` is, counts what is allowed.
 pub(crate) fn prepared(command: Command) -> Command {
-    command.mut_args(argument).mut_subcommands(prepared)
+    below(command, "")
 }
 
-fn argument(argument: Arg) -> Arg {
+/// The same for what stands below a path, such as `campaign `.
+fn below(command: Command, path: &str) -> Command {
+    let command = command.mut_args(|it| argument(it, path.trim_end()));
+    command.mut_subcommands(|it| {
+        let path = format!("{path}{} ", it.get_name());
+        below(it, &path)
+    })
+}
+
+/// The count that an argument of a command asks for.
+fn count(argument: &Arg, command: &str) -> Option<Count> {
+    argument.get_long().and_then(|long| of_option(command, long))
+}
+
+fn argument(argument: Arg, command: &str) -> Arg {
     if !argument.get_action().takes_values() {
         return argument;
     }
@@ -116,14 +131,16 @@ fn argument(argument: Arg) -> Arg {
         true => argument,
         false => argument.allow_negative_numbers(true),
     };
-    let Some(what) = standard(&argument) else {
-        return argument;
+    let more = match (standard(&argument), count(&argument, command)) {
+        (Some(what), _) => format!("`-` is {what}"),
+        (None, Some(Count { least, most, .. })) => format!("from {least} to {most}"),
+        (None, None) => return argument,
     };
     let with = |help: &StyledStr| {
         let help = help.to_string();
         match help.contains("`-`") {
             true => help,
-            false => format!("{}; `-` is {what}", help.trim_end_matches('.')),
+            false => format!("{}; {more}", help.trim_end_matches('.')),
         }
     };
     let (short, long) = (argument.get_help().map(with), argument.get_long_help().map(with));
@@ -245,7 +262,8 @@ mod tests {
     use clap::CommandFactory as _;
 
     use super::*;
-    use crate::argument::Folder;
+    use crate::argument::{Folder, NamedFile};
+    use fspid_scenario::count::COUNTS;
 
     /// Every command with its path, such as `campaign run`; groups of commands are no commands themselves.
     fn commands(command: &Command, path: &str) -> Vec<(String, Command)> {
@@ -291,6 +309,45 @@ mod tests {
                 assert!(!is_named || !help.contains("`-`"), "{place}: {help}");
             }
         }
+    }
+
+    /// Whole numbers that name one of many, and are no counts.
+    const NAMES: [&str; 3] = ["seed", "run", "number"];
+
+    /// `--seeds 18446744073709551615` panicked, `--population 100000000` and `--threads 1000000` asked for more than there is.
+    #[test]
+    fn every_count_has_a_limit_in_the_table_and_is_refused_beyond_it() {
+        let (mut counts, whole) = (Vec::new(), [is::<u16>, is::<u32>, is::<u64>, is::<usize>]);
+        for (path, command) in all() {
+            for argument in command.get_arguments().filter(|it| whole.iter().any(|is| is(it))) {
+                if NAMES.contains(&argument.get_id().as_str()) {
+                    continue;
+                }
+                let place = format!("{path} {}", name(argument));
+                let limits = count(argument, &path);
+                let limits = limits.unwrap_or_else(|| panic!("{place} has no row in the table"));
+                for found in [u64::MAX, limits.most + 1, limits.least.wrapping_sub(1)] {
+                    let told = refused(argument, found);
+                    assert!(told.contains(&limits.allowed()), "{place} {found}: {told}");
+                }
+                for good in [limits.least, limits.most] {
+                    assert_eq!(refused(argument, good), "", "{place} {good}");
+                }
+                let help = argument.get_help().map(ToString::to_string).unwrap_or_default();
+                assert!(help.ends_with(&format!("to {}", limits.most)), "{place}: {help}");
+                counts.push(place);
+            }
+        }
+        let rows = COUNTS.iter().flat_map(|count| count.options);
+        rows.for_each(|row| assert!(counts.iter().any(|it| it == row), "no command has {row}"));
+    }
+
+    /// What is told of a value of one argument; nothing if it is taken.
+    fn refused(argument: &Arg, value: u64) -> String {
+        let alone = Arg::new("it").long("it").value_parser(argument.get_value_parser().clone());
+        let line = ["--it".to_owned(), value.to_string()];
+        let parsed = Command::new("it").no_binary_name(true).arg(alone).try_get_matches_from(line);
+        parsed.err().map(|error| error.to_string()).unwrap_or_default()
     }
 
     #[test]

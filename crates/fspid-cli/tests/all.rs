@@ -17,6 +17,7 @@ mod fly;
 mod foreign_fmu;
 mod fuzzy_system;
 mod guide;
+mod hostile_answers;
 mod learn;
 mod no_clock;
 mod one_verdict;

@@ -124,9 +124,9 @@ fn every_problem_of_a_certificate_stands_behind_its_file() {
 #[test]
 fn a_loop_of_too_many_states_is_refused_by_name() {
     let (_folder, scenario, _) = design();
-    let delay = ["--set", "actuator.delay_samples=10000"];
+    let delay = ["--set", "actuator.delay_samples=300"];
     let refused = fspid(&[&["certify", text(&scenario)][..], &delay].concat());
     assert_eq!(code(&refused), 1, "{}", told(&refused));
-    let expected = "NOT PROVABLE: loop: 10008 states";
+    let expected = "NOT PROVABLE: loop: 308 states";
     assert!(out(&refused).contains(expected), "{}{}", out(&refused), told(&refused));
 }

@@ -302,12 +302,12 @@ fn a_negative_count_says_what_is_allowed() {
             "campaign run a.toml --runs 0 --out c",
             "--runs is 0; allowed is a whole number from 1 to 1000000000",
         ),
-        ("tune a.toml --budget -5", "--budget is -5; allowed is a whole number, 1 or more"),
-        ("tune a.toml --budget 0", "--budget is 0; allowed is a whole number, 1 or more"),
+        ("tune a.toml --budget -5", "--budget is -5; allowed is a whole number from 1 to 10000000"),
+        ("tune a.toml --budget 0", "--budget is 0; allowed is a whole number from 1 to 10000000"),
         ("campaign report -", "fspid: -: a file with a name is needed"),
         ("convert tip.toml a.png", "fspid: a.png: unknown ending"),
         ("tune a.toml --seed x", "--seed is x; allowed is a whole number, 0 or more"),
-        ("analyse a.toml --map -1", "--map is -1; allowed is 0 to 201"),
+        ("analyse a.toml --map -1", "--map is -1; allowed is a whole number from 0 to 201"),
         ("audit printed --range x", "--range is x; allowed is a number"),
     ] {
         let output = fspid(&words.split(' ').collect::<Vec<_>>(), folder.path());

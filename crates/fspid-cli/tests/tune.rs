@@ -246,7 +246,7 @@ fn what_is_wrong_is_told_before_anything_runs() {
         assert!(told.contains(message), "{from} -> {to}: {told}");
     }
     for (arguments, message) in [
-        (["--budget", "0"], "--budget is 0; allowed is a whole number, 1 or more"),
+        (["--budget", "0"], "--budget is 0; allowed is a whole number from 1 to 10000000"),
         (["--optimiser", "cmaes"], "there is no optimiser `cmaes`; did you mean `cma-es`?"),
         (["--controller", "FSPID"], "the controller is \"FSPID\"; allowed is PID"),
         (["--set", "controller.PID.kq=1"], "did you mean"),

@@ -2,6 +2,7 @@
 //!
 //! No features. Not here: any format, and any quantity; whoever reads says what is wrong.
 
+pub mod attributes;
 pub mod digits;
 pub mod lines;
 mod nearest;

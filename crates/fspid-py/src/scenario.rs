@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
+use fspid::scenario::count::MAP_POINTS;
 use fspid::scenario::file::{self, STARTERS, Study};
 use fspid::study::analysis::{Analysis, BreakPoint, Question};
 use fspid::study::certify::{self, Certification, Effort};
@@ -207,6 +208,7 @@ impl Scenario {
                 return Err(error::input(py, message));
             }
         };
+        MAP_POINTS.check(map_points).map_err(|found| error::input(py, found))?;
         let study = Arc::clone(&self.study);
         let question = Question { point, map_points, fly, ..Question::default() };
         let answer = interrupt::run(py, move || {

@@ -14,6 +14,7 @@
 pub mod aircraft;
 pub mod apart;
 mod carried;
+pub mod count;
 pub mod dispersion;
 pub mod file;
 pub mod flyer;

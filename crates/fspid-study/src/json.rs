@@ -21,7 +21,17 @@ pub fn answer_text(answer: &Value) -> String {
 
 /// A number, or in words which of the numbers that JSON does not have.
 pub(crate) fn finite(value: f64) -> Value {
-    if value.is_finite() { json!(value) } else { json!(format!("{value}")) }
+    match value {
+        value if value.is_finite() => json!(value),
+        f64::INFINITY => json!("infinite"),
+        f64::NEG_INFINITY => json!("-infinite"),
+        _ => json!("not a number"),
+    }
+}
+
+/// The same for each of some numbers.
+pub(crate) fn finite_all(values: &[f64]) -> Value {
+    values.iter().copied().map(finite).collect()
 }
 
 /// An object without its keys that have no value.

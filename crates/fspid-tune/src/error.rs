@@ -2,6 +2,7 @@
 
 use fspid_campaign::CampaignError;
 use fspid_campaign::table::TableError;
+use fspid_scenario::count::CountError;
 use fspid_scenario::file::{LoadError, Problems};
 use fspid_study::output::OutputError;
 use thiserror::Error;
@@ -71,6 +72,9 @@ pub enum TuneError {
         /// What is allowed.
         allowed: String,
     },
+    /// A count beyond its limits.
+    #[error("{0}")]
+    Count(#[from] CountError),
     /// The start does not fly, or has no value of the objective.
     #[error(
         "the start has no cost, so that a search from it would be blind:\n{}\n    give the marks a `start` that flies in every case, or begin anywhere with --anywhere",
@@ -98,6 +102,14 @@ pub enum TuneError {
     Busy {
         /// Path of its state.
         path: String,
+    },
+    /// A file that this program wrote for itself, and that is not what was written.
+    #[error("{path}: {reason}; move it away to begin anew")]
+    Changed {
+        /// Path of the file.
+        path: String,
+        /// How that is known.
+        reason: String,
     },
     /// The history cannot be made.
     #[error("{0}")]

@@ -3,12 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use fspid_optimise::Stop;
-use fspid_scenario::file::{read_own, unread_in_words};
 use fspid_study::output::{self, Locked, NotLocked, OutputError};
 
 use crate::crew::Crew;
 use crate::error::TuneError;
 use crate::problem::TuningProblem;
+use crate::sealed;
 use crate::search::{Effort, Search, State};
 
 /// What is done before the next generation.
@@ -29,7 +29,7 @@ pub enum Unfit {
     Refused,
     /// It stays as it is, and the search keeps no state: hours of somebody's work may be in it.
     Left,
-    /// It is written over.
+    /// It is written over, unless it was changed after it was written.
     Replaced,
 }
 
@@ -98,8 +98,11 @@ impl Kept {
         };
         match (resumed(&path, (problem, crew), effort), self.unfit) {
             (Ok(search), _) => Ok((search, Beginning::Resumed(path))),
-            (Err(_), Unfit::Replaced) => Ok((anew()?, Beginning::Anew)),
-            (Err(TuneError::State { path, reason }), Unfit::Left) => {
+            (Err(TuneError::State { .. }), Unfit::Replaced) => Ok((anew()?, Beginning::Anew)),
+            (
+                Err(TuneError::State { path, reason } | TuneError::Changed { path, reason }),
+                Unfit::Left,
+            ) => {
                 self.path = None;
                 Ok((anew()?, Beginning::Unkept(format!("{path}: {reason}"))))
             }
@@ -170,8 +173,7 @@ impl Kept {
         let Some(path) = &self.path else {
             return Ok(false);
         };
-        let state = serde_json::to_value(search.state()).unwrap_or_default();
-        match output::write(path, format!("{state:#}\n")) {
+        match output::write(path, sealed::text(&search.state())) {
             Ok(()) => Ok(true),
             // Nobody asked for a file there: the folder may be one that nobody may write to.
             Err(_) if self.unfit == Unfit::Left => Ok(false),
@@ -196,9 +198,6 @@ fn resumed<'a>(
     who: (&'a TuningProblem, Crew<'a>),
     effort: &Effort,
 ) -> Result<Search<'a>, TuneError> {
-    let name = path.display().to_string();
-    let wrong = |reason: String| TuneError::State { path: name.clone(), reason };
-    let text = read_own(path).map_err(|error| wrong(unread_in_words(&error)))?;
-    let state: State = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
-    Search::resume(who, effort, state, &name)
+    let state: State = sealed::read_file(path)?;
+    Search::resume(who, effort, state, &path.display().to_string())
 }

@@ -25,6 +25,7 @@ mod kept;
 mod problem;
 pub mod rule;
 mod score;
+mod sealed;
 mod search;
 mod source;
 mod space;

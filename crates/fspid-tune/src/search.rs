@@ -4,6 +4,7 @@ use fspid_campaign::Plan as Campaign;
 use fspid_optimise::{
     Kind, NsgaII, Optimiser, ParetoOptimiser, Plan, Snapshot, Start, Stop, hypervolume,
 };
+use fspid_scenario::count::{BUDGET, POPULATION};
 use fspid_scenario::file::known_words;
 use fspid_study::shell::word;
 use serde::{Deserialize, Serialize};
@@ -68,9 +69,7 @@ impl Effort {
         let wrong = |what, found: String, allowed: &str| {
             Err(TuneError::Value { what, found, allowed: allowed.to_owned() })
         };
-        if self.budget == 0 {
-            return wrong("the budget", "0".to_owned(), "1 candidate or more");
-        }
+        BUDGET.check(self.budget)?;
         if !Self::optimisers().contains(&self.optimiser.as_str()) {
             let found = self.optimiser.clone();
             let known = known_words(&found, &Self::optimisers());
@@ -84,9 +83,7 @@ impl Effort {
                 "another one, or two [[tuning.objective]] or more",
             );
         }
-        if self.population.is_some_and(|count| count < 2) {
-            return wrong("the population", "below 2".to_owned(), "2 candidates or more");
-        }
+        self.population.map_or(Ok(()), |count| POPULATION.check(count))?;
         Ok(())
     }
 }

@@ -4,8 +4,9 @@ use clap::{Args, ValueEnum};
 
 use super::external_controller::{Beside, leave_out};
 use super::{Format, json_text};
-use crate::argument::{InFile, OutFile, written};
+use crate::argument::{InFile, OutFile, count, written};
 use crate::exit::{Failure, note, print, wrote};
+use fspid_scenario::count as counts;
 use fspid_scenario::file;
 use fspid_study::analysis::{Analysis, BreakPoint, Question, Stability};
 use fspid_study::{output, report};
@@ -28,7 +29,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_enum, default_value_t = Point::Command)]
     broken_at: Point,
     /// Points along each input of the frozen-gain map; 0 for no map.
-    #[arg(long, value_name = "N", default_value_t = 9, value_parser = clap::value_parser!(u16).range(0..=201))]
+    #[arg(long, value_name = "N", default_value_t = 9, value_parser = count::<u16>(&counts::MAP_POINTS))]
     map: u16,
     /// Fly as well: how much gain, delay and lag the flight bears with all its limits, limit cycles, and what small
     /// disturbances do along the way. Takes seconds, and proves nothing.

@@ -2,9 +2,11 @@
 
 use clap::Args;
 
+use super::progress::{Telling, alive, tell};
 use super::{Format, Loading, json_text};
-use crate::argument::{OutFile, Source, written};
+use crate::argument::{OutFile, Source, count, written};
 use crate::exit::{Failure, print, wrote};
+use fspid_scenario::count as counts;
 use fspid_study::fuzzy_system::{AuditQuestion, audit};
 use fspid_study::{output, report};
 
@@ -25,7 +27,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
     rest: Vec<String>,
     /// Most boxes that are looked at for each single question; more of them prove closer bounds.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = count::<u64>(&counts::BOXES))]
     boxes: Option<u64>,
     /// Write a report that opens offline in a browser.
     #[arg(value_parser = written(&["html", "htm"]), long, value_name = "OUT.html")]
@@ -39,7 +41,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let system = arguments.loading.load(&arguments.system)?;
     let question =
         AuditQuestion { spans: &arguments.span, rest: &arguments.rest, boxes: arguments.boxes };
-    let audit = audit(&system, &question).map_err(Failure::input)?;
+    let telling = Telling::for_standard_error();
+    let what = || "auditing; --boxes N looks at fewer boxes".to_owned();
+    let audit = alive(telling, &what, || audit(&system, &question));
+    if telling == Telling::Line {
+        tell(telling, "");
+    }
+    let audit = audit.map_err(Failure::input)?;
     if let Some(path) = &arguments.report {
         output::write(path, report::of_audit(&audit))?;
         wrote(path);

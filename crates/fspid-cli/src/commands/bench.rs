@@ -1,8 +1,9 @@
 //! `fspid bench`: how fast this machine is.
 
+use crate::argument::count;
 use clap::Args;
-use clap::builder::RangedU64ValueParser;
 use fspid_campaign::bench::{Bench, Effort};
+use fspid_scenario::count as counts;
 
 use super::{Format, json_text};
 use crate::exit::{Failure, print};
@@ -22,7 +23,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
     /// How many threads "all" are; 0 for as many as this machine runs at once.
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = RangedU64ValueParser::<usize>::new().range(0..=1024))]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = count::<usize>(&counts::THREADS))]
     threads: usize,
     /// Less than a second of measuring, and less certain.
     #[arg(long)]

@@ -1,15 +1,17 @@
 //! `fspid certify`: stability while the gains move.
 
 use std::path::Path;
+use std::sync::Mutex;
 
 use clap::Args;
 
 use super::external_controller::leave_out;
-use super::progress::{Telling, tell};
+use super::progress::{Telling, alive, tell};
 use super::{Format, json_text};
 use crate::argument::{Folder, InFile};
 use crate::exit::{Failure, note, print};
-use fspid_scenario::file;
+use fspid_scenario::file::{self, Study};
+use fspid_sim::SimError;
 use fspid_study::certify::{self, Answer, Certification, CheckedFile, Effort};
 use fspid_study::output;
 
@@ -69,16 +71,11 @@ fn prove(path: &Path, arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::input(format_args!("there is no controller `{name}`{known}")));
     }
     let telling = Telling::for_standard_error();
-    let watch = |text: String| {
-        if telling == Telling::Line {
-            tell(telling, &text);
-        }
-    };
-    let certification = Certification::watched(&study, only, &Effort::default(), &mut |name| {
-        watch(format!("certifying {name}; a self-tuning controller can take half a minute"));
-    });
+    let certification = watched(&study, only, telling);
     // The answer begins on an empty line.
-    watch(String::new());
+    if telling == Telling::Line {
+        tell(telling, "");
+    }
     let certification = certification.map_err(Failure::input)?;
     if let Some(folder) = &arguments.out {
         write(&certification, folder)?;
@@ -99,6 +96,22 @@ fn prove(path: &Path, arguments: &Arguments) -> Result<(), Failure> {
         return Ok(());
     }
     Err(Failure::not_met("a loop is not proved stable"))
+}
+
+/// Certifies, and tells whom and for how long.
+fn watched(study: &Study, only: Option<&str>, telling: Telling) -> Result<Certification, SimError> {
+    let whom = Mutex::new(String::new());
+    let what = || {
+        let whom = whom.lock().map_or(String::new(), |name| name.clone());
+        format!("certifying {whom}; a self-tuning controller can take half a minute")
+    };
+    alive(telling, &what, || {
+        Certification::watched(study, only, &Effort::default(), &mut |name| {
+            if let Ok(mut whom) = whom.lock() {
+                name.clone_into(&mut whom);
+            }
+        })
+    })
 }
 
 fn write(certification: &Certification, folder: &Path) -> Result<(), Failure> {

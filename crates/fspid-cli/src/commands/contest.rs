@@ -10,6 +10,7 @@ use super::{Format, interrupt, json_text};
 use crate::argument::{Folder, InFile, count};
 use crate::exit::{Failure, note, print};
 use fspid_diagnostics::digits::{counted, grouped};
+use fspid_scenario::count as counts;
 use fspid_tune::contest::{Contest, Options, Progress, Then};
 use fspid_tune::{Crew, Source, TuneError};
 
@@ -34,16 +35,16 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "DIR")]
     out: Folder,
     /// How many seeds each controller is tuned with; by default as the scenario says.
-    #[arg(long, value_name = "K", value_parser = count::<u64>(1, u64::MAX))]
+    #[arg(long, value_name = "K", value_parser = count::<u64>(&counts::SEEDS))]
     seeds: Option<u64>,
     /// How many candidates each tuning flies; by default as the scenario says.
-    #[arg(long, value_name = "N", value_parser = count::<usize>(1, u64::MAX))]
+    #[arg(long, value_name = "N", value_parser = count::<usize>(&counts::BUDGET))]
     budget: Option<usize>,
     /// Set a value before anything is read, e.g. `--set loop.duration_s=30`.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
     /// How many threads; 0 for as many as the machine has. The result is the same.
-    #[arg(long, default_value_t = 0)]
+    #[arg(long, default_value_t = 0, value_parser = count::<usize>(&counts::THREADS))]
     threads: usize,
     #[command(flatten)]
     cluster: Cluster,

@@ -10,12 +10,13 @@ use serde_json::json;
 
 use super::external_controller::leave_out;
 use super::{Format, json_text};
-use crate::argument::{Folder, InFile};
+use crate::argument::{Folder, InFile, count};
 use crate::exit::{Failure, note, print};
 use fspid_diagnostics::listed;
 use fspid_export::program::Precision;
 use fspid_export::table::is_sampled;
 use fspid_export::{Angles, Export, File, Request, Target, export_called, prefix, prefixes};
+use fspid_scenario::count as counts;
 use fspid_scenario::file::{self, Study};
 use fspid_scenario::fuzzy_system;
 use fspid_scenario::tuning::TunableParameter;
@@ -56,11 +57,11 @@ pub(crate) struct Arguments {
     #[arg(long, value_enum, default_value_t = Unit::Radians)]
     angles: Unit,
     /// How many samples the vectors have.
-    #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = count::<u32>(&counts::SAMPLES))]
     samples: u32,
     /// How many points a table has along each input: 6m + 1, so that the centres of the sets are among them; 49 if left
     /// out.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = count::<usize>(&counts::TABLE_POINTS))]
     points: Option<usize>,
     /// Write data for a review into this folder: traces, changes that the vectors find, what a proof is asked, and a
     /// script that makes the rest; for c, takes a minute.

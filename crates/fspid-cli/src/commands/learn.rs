@@ -3,8 +3,9 @@
 use clap::{ArgGroup, Args, ValueEnum};
 
 use super::{Format, Loading, interrupt, json_text};
-use crate::argument::{InFile, OutFile, Source, is_standard, written};
+use crate::argument::{InFile, OutFile, Source, count, is_standard, written};
 use crate::exit::{Failure, note, print, wrote};
+use fspid_scenario::count as counts;
 use fspid_scenario::fuzzy_system;
 use fspid_scenario::fuzzy_system::{NUMBER_GRID, Parts, Target};
 use fspid_study::output;
@@ -27,7 +28,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "SYSTEM", requires = "points")]
     teacher: Option<Source>,
     /// How many points the grid has along each input of the teacher, such as `15,15`.
-    #[arg(long, value_name = "N,N", value_delimiter = ',', requires = "teacher")]
+    #[arg(long, value_name = "N,N", value_delimiter = ',', requires = "teacher", value_parser = count::<usize>(&counts::TAUGHT_POINTS))]
     points: Vec<usize>,
     /// Give every rule a conclusion of its own in place of those of the file.
     #[arg(long, value_enum, value_name = "WHAT")]
@@ -36,7 +37,7 @@ pub(crate) struct Arguments {
     #[arg(value_parser = written(&["toml", "fis", "t2fis", "fcl", "fll", "xml"]), long, value_name = "OUT")]
     out: OutFile,
     /// Most epochs.
-    #[arg(long, default_value_t = Plan::default().epochs)]
+    #[arg(long, default_value_t = Plan::default().epochs, value_parser = count::<usize>(&counts::EPOCHS))]
     epochs: usize,
     /// Length of the first step of the sets, in spans of their inputs.
     #[arg(long, default_value_t = Plan::default().step)]
@@ -51,7 +52,7 @@ pub(crate) struct Arguments {
     #[arg(long, default_value_t = Plan::default().seed)]
     seed: u64,
     /// Ends after so many epochs without a better error of those rows.
-    #[arg(long, default_value_t = Plan::default().patience)]
+    #[arg(long, default_value_t = Plan::default().patience, value_parser = count::<usize>(&counts::PATIENCE))]
     patience: usize,
     /// How the errors are told.
     #[arg(long, value_enum, default_value_t = Format::Text)]

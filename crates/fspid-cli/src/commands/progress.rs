@@ -1,7 +1,9 @@
 //! How far a long work is, for people: a line that moves on a terminal, plain lines in a file.
 
 use std::io::{self, IsTerminal as _, Write as _};
-use std::time::Duration;
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::thread;
+use std::time::{Duration, Instant};
 
 /// How often the line on a terminal is drawn anew.
 const REDRAW: Duration = Duration::from_millis(200);
@@ -48,6 +50,28 @@ pub(crate) fn answer_after(telling: Telling, line: &str) {
     if telling == Telling::Line {
         let _ = writeln!(io::stderr());
     }
+}
+
+/// Works, and tells every now and then that it still does, and for how long.
+pub(crate) fn alive<T>(
+    telling: Telling,
+    what: &(dyn Fn() -> String + Sync),
+    work: impl FnOnce() -> T,
+) -> T {
+    let (working, ended) = mpsc::channel::<()>();
+    thread::scope(|scope| {
+        // Gone with this closure, even where the work panics.
+        let working = working;
+        scope.spawn(move || {
+            let begun = Instant::now();
+            while ended.recv_timeout(telling.period()) == Err(RecvTimeoutError::Timeout) {
+                tell(telling, &format!("{}, {}", what(), duration(begun.elapsed().as_secs_f64())));
+            }
+        });
+        let answer = work();
+        drop(working);
+        answer
+    })
 }
 
 /// A time in words.

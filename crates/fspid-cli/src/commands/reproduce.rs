@@ -6,10 +6,11 @@ use clap::Args;
 use serde_json::{Map, Value, json};
 
 use super::Format;
-use crate::argument::Folder;
+use crate::argument::{Folder, count};
 use crate::exit::{Failure, note};
 use fspid_paper::identify::{Options, identify};
 use fspid_paper::{Library, Reproduction, Status, Stored, fallen, recorded_toml};
+use fspid_scenario::count as counts;
 use fspid_study::output;
 
 /// Regenerate the paper's figures, judge every claim in it, and write one report.
@@ -28,7 +29,7 @@ pub(crate) struct Arguments {
     #[arg(long, default_value_t = 1, requires = "identify")]
     seed: u64,
     /// Number of seeds; the best is kept and the spread reported.
-    #[arg(long, default_value_t = 3, requires = "identify", value_parser = clap::value_parser!(u64).range(1..=100))]
+    #[arg(long, default_value_t = 3, requires = "identify", value_parser = count::<u64>(&counts::SEEDS))]
     seeds: u64,
     /// How the answer is written.
     #[arg(long, value_enum, default_value_t = Format::Text)]

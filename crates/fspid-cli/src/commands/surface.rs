@@ -5,6 +5,7 @@ use clap::Args;
 use super::{Format, Inputs, Which, drawings, json_text};
 use crate::argument::{Drawings, OutFile, count, written};
 use crate::exit::{Failure, print, wrote};
+use fspid_scenario::count as counts;
 use fspid_study::fuzzy_system::{SliceQuestion, slice};
 use fspid_study::output;
 
@@ -31,7 +32,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "NAME")]
     output: Option<String>,
     /// Nodes along each input.
-    #[arg(long, value_name = "N", value_parser = count::<usize>(2, u64::MAX))]
+    #[arg(long, value_name = "N", value_parser = count::<usize>(&counts::NODES))]
     nodes: Option<usize>,
     /// The drawing, or the folder for one drawing an output.
     #[arg(long, value_name = "FILE.svg or FOLDER")]

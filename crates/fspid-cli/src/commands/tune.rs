@@ -12,6 +12,7 @@ use super::{Format, interrupt, json_text};
 use crate::argument::{InFile, OutFile, count, is_standard, written};
 use crate::exit::{Failure, note, print, wrote};
 use fspid_diagnostics::digits::grouped;
+use fspid_scenario::count as counts;
 use fspid_scenario::file::known_words;
 use fspid_study::output;
 use fspid_tune::baseline::Baseline;
@@ -47,13 +48,13 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "NAME")]
     optimiser: Option<String>,
     /// How many candidates to fly; by default as the scenario says.
-    #[arg(long, value_name = "N", value_parser = count::<usize>(1, u64::MAX))]
+    #[arg(long, value_name = "N", value_parser = count::<usize>(&counts::BUDGET))]
     budget: Option<usize>,
     /// Seed of the search; by default as the scenario says.
     #[arg(long, value_name = "S")]
     seed: Option<u64>,
     /// Candidates of a generation; by default what serves the optimiser.
-    #[arg(long, value_name = "N", value_parser = count::<usize>(2, u64::MAX))]
+    #[arg(long, value_name = "N", value_parser = count::<usize>(&counts::POPULATION))]
     population: Option<usize>,
     /// Search for nothing: take the gains of a classical rule. `--rule list` tells them all.
     #[arg(long, value_name = "NAME", conflicts_with_all = ["optimiser", "budget", "seed", "population", "anywhere", "history", "engine"])]
@@ -77,7 +78,7 @@ pub(crate) struct Arguments {
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
     /// How many threads; 0 for as many as the machine has. The result is the same.
-    #[arg(long, default_value_t = 0)]
+    #[arg(long, default_value_t = 0, value_parser = count::<usize>(&counts::THREADS))]
     threads: usize,
     #[command(flatten)]
     cluster: Cluster,

@@ -18,7 +18,7 @@ use crate::finding::{Findings, Origin};
 use crate::model::Model;
 use crate::{MAX_DEPTH, MAX_INPUT_BYTES};
 use element::Element;
-use fspid_diagnostics::{Note, Place, Problem, Problems};
+use fspid_diagnostics::{Note, Place, Problem, Problems, attributes};
 
 /// Most elements and texts of a file; each takes some hundred bytes of memory.
 const MAX_NODES: u32 = 2_000_000;
@@ -54,6 +54,7 @@ fn parse(text: &str) -> Result<Tree<'_>, Problem> {
         return Err(too_long(text.len()));
     }
     doctype::check(text)?;
+    attributes::too_many(text).map_or(Ok(()), Err)?;
     let options =
         ParsingOptions { allow_dtd: true, nodes_limit: MAX_NODES, ..ParsingOptions::default() };
     Tree::parse_with_options(text, options).map_err(|error| not_well_formed(&error))

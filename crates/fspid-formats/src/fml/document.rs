@@ -10,7 +10,7 @@ use crate::number;
 use crate::report::{Report, wrong};
 use crate::vocabulary::known;
 use crate::work;
-use fspid_diagnostics::{Place, Problem};
+use fspid_diagnostics::{Place, Problem, attributes};
 
 /// An element. Names of elements and attributes are found in any case.
 #[derive(Clone, Copy)]
@@ -25,6 +25,7 @@ pub(super) fn parse(text: &str) -> Result<Document<'_>, Problem> {
     }
     work::add(text.len());
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    attributes::too_many(text).map_or(Ok(()), Err)?;
     let options =
         ParsingOptions { allow_dtd: false, nodes_limit: MAX_NODES, ..ParsingOptions::default() };
     Document::parse_with_options(text, options).map_err(|error| {

@@ -149,6 +149,9 @@ impl<'a> Prover<'a> {
         effort: &'a Effort,
     ) -> Result<Self, NotProvable> {
         description.clone().provable()?;
+        if let Some(wrong) = description.too_large_to_search() {
+            return Err(NotProvable::TooLarge(wrong));
+        }
         let enclosed = description.enclosed()?;
         let model = enclosed.midpoint();
         let increments = match &description.controller {

@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
+use fspid::scenario::count::ENVIRONMENTS;
 use fspid::sim::Outcome;
 use fspid::sim::batch::{Formation, LANES};
 use pyo3::prelude::*;
@@ -135,6 +136,7 @@ impl Environments {
     /// So many of a scenario.
     #[new]
     fn new(py: Python<'_>, scenario: &Scenario, wanted: Wanted, count: usize) -> PyResult<Self> {
+        ENVIRONMENTS.check(count).map_err(|found| error::input(py, found))?;
         let setting = Setting::new(py, scenario, &wanted)?;
         let crews = (0..count).step_by(LANES).map(|first| Crew::new(LANES.min(count - first)));
         Ok(Self { setting, count, crews: Mutex::new(crews.collect()) })

@@ -114,7 +114,8 @@ impl Lag {
 
     /// In how many pieces a time is followed, so that no event between them goes unseen. A response
     /// of first order is monotone and needs one.
-    pub(super) fn pieces(&self, duration_s: f64) -> u32 {
+    #[must_use]
+    pub fn pieces(&self, duration_s: f64) -> u32 {
         let Kind::Second { natural_frequency_rad_s, damping } = self.0 else {
             return 1;
         };

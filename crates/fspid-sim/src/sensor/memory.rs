@@ -41,6 +41,29 @@ const SAME_SAMPLE: f64 = 1e-6;
 const MOST_SAMPLES: f64 = 1e6;
 
 impl Sensor {
+    /// How many samples of the loop it remembers.
+    ///
+    /// # Errors
+    /// [`SimError::Number`] for a delay or sampling time of more than a million samples.
+    pub fn memory_samples(&self, dt_s: f64) -> Result<usize, SimError> {
+        let model = self.model;
+        let period_s = if model.period_s > 0.0 { model.period_s } else { dt_s };
+        let samples = ((model.delay_s + period_s) / dt_s).ceil() + 2.0;
+        let what = "sensor delay and period";
+        let allowed = "at most a million sample periods";
+        // Written so that NaN fails.
+        if !(samples <= MOST_SAMPLES) {
+            return Err(SimError::Number { what, found: samples, allowed });
+        }
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "between 2 and a million"
+        )]
+        let samples = samples as usize;
+        Ok(samples)
+    }
+
     /// The memory for a flight that is sampled every `dt_s`; after this nothing is allocated.
     ///
     /// # Errors
@@ -48,22 +71,7 @@ impl Sensor {
     pub fn start(&self, dt_s: f64) -> Result<SensorState, SimError> {
         let model = self.model;
         let period_s = if model.period_s > 0.0 { model.period_s } else { dt_s };
-        let samples = ((model.delay_s + period_s) / dt_s).ceil() + 2.0;
-        // Written so that NaN fails.
-        if !(samples <= MOST_SAMPLES) {
-            let allowed = "at most a million sample periods";
-            return Err(SimError::Number {
-                what: "sensor delay and period",
-                found: samples,
-                allowed,
-            });
-        }
-        #[allow(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "between 2 and a million"
-        )]
-        let history = vec![0.0; samples as usize];
+        let history = vec![0.0; self.memory_samples(dt_s)?];
         let normal = |source: u64| standard_normal(self.seed, self.stream(source), 0);
         let kept = if model.drift > 0.0 { exp(-period_s / model.drift_time_s) } else { 0.0 };
         Ok(SensorState {

@@ -118,7 +118,10 @@ fn push_plant(out: &mut String, plant: &PlantLoop) {
 pub(super) fn mode(pole: Complex, dt_s: f64) -> Mode {
     // A pole at the origin is gone after one sample, faster than any frequency.
     let gone = Mode { natural_frequency_rad_s: f64::INFINITY, damping_ratio: 1.0 };
-    Mode::of_sampled_pole(pole, dt_s).unwrap_or(gone)
+    // One at 1 stays where it is: a mode of no frequency, of which no damping can be told.
+    let stays = Mode { natural_frequency_rad_s: 0.0, damping_ratio: 0.0 };
+    let none = if modulus(pole) < 0.5 { gone } else { stays };
+    Mode::of_sampled_pole(pole, dt_s).unwrap_or(none)
 }
 
 fn push_unstable_poles(out: &mut String, plant: &PlantLoop) {

@@ -3,7 +3,7 @@
 use fspid_fuzzy::system::{Answer, Defuzzifier, Output, Source, System, Universe, Workspace};
 use serde_json::{Map, Value, json};
 
-use crate::json::{merged, present};
+use crate::json::{finite, merged, present};
 use fspid_diagnostics::known_words;
 use fspid_scenario::supervisor::Refused;
 
@@ -204,9 +204,9 @@ impl<'a> Asked<'a> {
     fn answer(&self, index: usize, output: &Output, answer: &Answer) -> Value {
         let is_of_rules = answer.source == Source::Rules;
         merged([
-            json!({ "value": answer.value, "rule": rule(output), "source": source(answer.source) }),
+            json!({ "value": answer.value.map(finite), "rule": rule(output), "source": source(answer.source) }),
             present(json!({
-                "error_bound": Some(answer.error_bound).filter(|bound| *bound > 0.0),
+                "error_bound": Some(answer.error_bound).filter(|bound| *bound > 0.0).map(finite),
                 "interval": self.workspace.interval(index),
                 "reason": (!is_of_rules).then(|| self.reason(index, output)),
             })),
@@ -226,7 +226,7 @@ impl<'a> Asked<'a> {
             let interval = self.workspace.interval(index);
             let between = interval.map(|[from, to]| format!(", middle of {from:.6} to {to:.6}"));
             let between = between.unwrap_or_default();
-            let number = answer.value.map_or("none".to_owned(), |value| format!("{value:.12}"));
+            let number = answer.value.map_or("none".to_owned(), in_words);
             let name = &output.name;
             let remarks = match substitute(answer.source) {
                 Some(substitute) => format!("{}{substitute}", self.reason(index, output)),
@@ -239,6 +239,16 @@ impl<'a> Asked<'a> {
             out.push_str(&format!("{name} lies outside of its range; {done}\n"));
         }
         out
+    }
+}
+
+/// A number with its digits; in words where the rules conclude one that is infinite.
+fn in_words(value: f64) -> String {
+    match value {
+        f64::INFINITY => "infinite".to_owned(),
+        f64::NEG_INFINITY => "-infinite".to_owned(),
+        value if value.is_nan() => "no number".to_owned(),
+        value => format!("{value:.12}"),
     }
 }
 

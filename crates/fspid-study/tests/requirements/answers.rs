@@ -112,7 +112,7 @@ fn a_margin_without_an_end_is_a_word_in_json() {
     let (_folder, path) = written(&format!("{JUMBO}\n{requirement}"));
     let verification = verified(&path, &[], &[]);
     assert!(verification.all_met());
-    assert_eq!(verification.json(None)["requirements"][0]["value"], "inf");
+    assert_eq!(verification.json(None)["requirements"][0]["value"], "infinite");
     assert!(verification.text(None).contains("without end"));
 }
 

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::Learned;
+use super::{Epoch, Learned};
 
 impl Learned {
     /// The answer of `learn --format text`.
@@ -17,7 +17,11 @@ impl Learned {
             best.training, first.training
         ));
         if let (Some(best), Some(first)) = (best.validation, first.validation) {
-            out.push_str(&format!("validation  {best:.6e}, {first:.6e} at first\n"));
+            let first = match first.is_finite() {
+                true => format!("{first:.6e}"),
+                false => "beyond the range of 64-bit numbers".to_owned(),
+            };
+            out.push_str(&format!("validation  {best:.6e}, {first} at first\n"));
         }
         out.push_str("Errors are roots of the mean square over rows and outputs.\n");
         out
@@ -29,7 +33,16 @@ impl Learned {
         json!({
             "stop": self.stop.to_string(),
             "best_epoch": self.best + 1,
-            "epochs": self.history,
+            "epochs": self.history.iter().map(epoch).collect::<Vec<_>>(),
         })
     }
+}
+
+/// JSON has no infinity: an error of validation beyond all numbers is told in a word.
+fn epoch(epoch: &Epoch) -> Value {
+    let mut answer = json!(epoch);
+    if epoch.validation.is_some_and(|error| !error.is_finite()) {
+        answer["validation"] = json!("infinite");
+    }
+    answer
 }

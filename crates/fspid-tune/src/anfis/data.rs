@@ -6,13 +6,14 @@ use std::path::Path;
 
 use fspid_campaign::sample::{Cube, Sampling};
 use fspid_fuzzy::system::{Parts, System};
+use fspid_scenario::count::TAUGHT_POINTS;
 use fspid_scenario::file::unread_in_words;
 use fspid_study::rows::{self, RowAnswers, RowsError};
 
 use super::error::AnfisError;
 
 /// Most points of a grid.
-const GRID_LIMIT: usize = 1_000_000;
+const GRID_LIMIT: usize = TAUGHT_POINTS.most as usize;
 
 /// Rows of inputs with the answers that belong to them, all finite.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,12 +1,16 @@
 //! Why nothing was learned.
 
 use fspid_fuzzy::system::{GradientError, InputError, SystemError};
+use fspid_scenario::count::CountError;
 use thiserror::Error;
 
 /// Why nothing was learned.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum AnfisError {
+    /// A count beyond its limits.
+    #[error("{0}")]
+    Count(#[from] CountError),
     /// A table of data that could not be read; each problem with its line.
     #[error("{}", .problems.join("\n"))]
     Table {
@@ -97,7 +101,7 @@ pub enum AnfisError {
     Overflow,
     /// Rows for validation at which the learned system answers beyond the range of numbers.
     #[error(
-        "the error of the rows for validation is {found} in every epoch: the answers there, or the numbers to be answered, are so large that their squares leave the range of 64-bit numbers; choose other units, or look at these rows"
+        "the error of the rows for validation is no finite number in any epoch: the answers there, or the numbers to be answered, are so large that their squares leave the range of 64-bit numbers; choose other units, or look at these rows"
     )]
     Validation {
         /// What was found.

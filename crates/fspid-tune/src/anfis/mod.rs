@@ -40,6 +40,7 @@ mod start;
 use std::fmt;
 
 use fspid_fuzzy::system::{Parts, System};
+use fspid_scenario::count::{EPOCHS, PATIENCE};
 use serde::Serialize;
 
 use consequents::{Consequents, squared_error};
@@ -94,9 +95,10 @@ impl Default for Plan {
 
 impl Plan {
     fn check(&self) -> Result<(), AnfisError> {
+        EPOCHS.check(self.epochs)?;
+        PATIENCE.check(self.patience)?;
         let positive = "a finite number above 0";
         let checks = [
-            ("the number of epochs", self.epochs as f64, self.epochs > 0, "at least 1"),
             ("the step", self.step, self.step > 0.0 && self.step.is_finite(), positive),
             ("the least step", self.least_step, self.least_step >= 0.0, "0 or above"),
             (
@@ -112,7 +114,6 @@ impl Plan {
                 (0.0..1.0).contains(&self.validation_share),
                 "0 or above, below 1",
             ),
-            ("the patience", self.patience as f64, self.patience > 0, "at least 1"),
         ];
         match checks.into_iter().find(|(_, _, good, _)| !good) {
             Some((what, found, _, allowed)) => Err(AnfisError::Plan { what, found, allowed }),

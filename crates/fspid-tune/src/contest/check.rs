@@ -1,6 +1,7 @@
 //! Whether a contest can be held, and fairly: everything that is wrong is told at once.
 
 use fspid_campaign::engine::{Judging, Stability};
+use fspid_scenario::count::{BUDGET, SEEDS};
 use fspid_scenario::file::{Study, Template};
 use fspid_scenario::tuning::{Contest as Rules, Tuning};
 
@@ -104,16 +105,13 @@ fn efforts(
     problems: &mut Vec<String>,
 ) -> Vec<Effort> {
     let seeds = options.seeds.unwrap_or(rules.seeds);
-    if seeds == 0 {
-        problems.push("0 seeds: each controller is tuned with one or more".to_owned());
-    }
+    let limits = (SEEDS.check(seeds), options.budget.map_or(Ok(()), |budget| BUDGET.check(budget)));
+    problems
+        .extend([limits.0, limits.1].into_iter().filter_map(Result::err).map(|it| it.to_string()));
     let Some(tuning) = tuning else {
         return Vec::new();
     };
     let budget = options.budget.unwrap_or(tuning.budget);
-    if budget == 0 {
-        problems.push("a budget of 0: each tuning flies one candidate or more".to_owned());
-    }
     let effort = |number: u64| Effort {
         optimiser: tuning.optimiser.clone(),
         budget,
@@ -121,7 +119,7 @@ fn efforts(
         population: None,
         anywhere: false,
     };
-    (0..seeds).map(effort).collect()
+    (0..seeds.min(SEEDS.most)).map(effort).collect()
 }
 
 /// The scenario with the changes of each case.

@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 
 use fspid_campaign::Plan;
-use fspid_scenario::file::read_own;
 use fspid_study::output;
 use serde::{Deserialize, Serialize};
 
@@ -12,6 +11,7 @@ use crate::design;
 use crate::error::TuneError;
 use crate::kept::{Kept, Then, Unfit};
 use crate::problem::TuningProblem;
+use crate::sealed;
 use crate::search::{Effort, stop_in_words};
 use crate::source::Source;
 use crate::tuned::{Number, Tuned};
@@ -88,7 +88,7 @@ impl Task<'_> {
         crew: Crew<'_>,
         tell: &mut dyn FnMut(&Progress) -> Then,
     ) -> Result<Found, TuneError> {
-        if let Some(found) = self.kept() {
+        if let Some(found) = self.kept()? {
             return match tell(&self.progress(found.candidates, true)) {
                 Then::Stop => Err(TuneError::Stopped),
                 _ => Ok(found),
@@ -106,25 +106,37 @@ impl Task<'_> {
         let space = self.problem.space();
         let text = design::text(self.source, space, &tuned.best.point, &heading)?;
         output::write(&self.path("toml"), text)?;
-        output::write(&self.path("json"), json(&found))?;
+        output::write(&self.path("json"), sealed::text(&found))?;
         // A state that stays is not used again: what was found comes before it.
         let _ = place.remove();
         Ok(found)
     }
 
     /// What was found before, if it is of the same search.
-    fn kept(&self) -> Option<Found> {
-        let text = read_own(&self.path("json")).ok()?;
-        let found: Found = serde_json::from_str(&text).ok()?;
+    ///
+    /// # Errors
+    /// A file that is not what was written: whose design it is nobody knows.
+    fn kept(&self) -> Result<Option<Found>, TuneError> {
+        let path = self.path("json");
+        if !path.exists() {
+            return Ok(None);
+        }
+        match sealed::read_file(&path) {
+            Ok(found) => Ok(Some(found).filter(|found| self.fits(found))),
+            Err(TuneError::State { .. }) => Ok(None),
+            Err(changed) => Err(changed),
+        }
+    }
+
+    fn fits(&self, found: &Found) -> bool {
         let point = &found.point;
-        let fits = found.schema == SCHEMA
+        found.schema == SCHEMA
             && found.program == Plan::this_program()
             && found.of == self.problem.digest()
             && found.effort == self.effort
             && point.len() == self.problem.space().dimension()
             && point.iter().all(|x| (0.0..=1.0).contains(x))
-            && self.path("toml").exists();
-        fits.then_some(found)
+            && self.path("toml").exists()
     }
 
     fn progress(&self, spent: usize, was_there: bool) -> Progress {
@@ -154,8 +166,4 @@ impl Task<'_> {
             point: best.point.clone(),
         }
     }
-}
-
-fn json(value: &impl Serialize) -> String {
-    format!("{:#}\n", serde_json::to_value(value).unwrap_or_default())
 }

@@ -54,7 +54,7 @@ fn plant(plant: &PlantLoop) -> Value {
 }
 
 fn margins_of(margins: &Margins) -> Value {
-    json!({
+    let mut answer = json!({
         "gain_margin_db": margins.gain_margin_db,
         "phase_margin_deg": margins.phase_margin_deg,
         "gain_crossover_rad_s": margins.gain_crossover_rad_s,
@@ -62,7 +62,12 @@ fn margins_of(margins: &Margins) -> Value {
         "disk_margin": margins.disk_margin,
         "sensitivity_peak": margins.sensitivity_peak,
         "spectral_radius": margins.spectral_radius,
-    })
+    });
+    let [low, high] = margins.gain_margin_db;
+    if [low, high, margins.phase_margin_deg].iter().any(|margin| !margin.is_finite()) {
+        answer["null"] = json!("no such change makes the loop unstable");
+    }
+    answer
 }
 
 impl Serialize for UltimatePoint {

@@ -6,6 +6,7 @@ use std::process::{Command, Stdio};
 
 use clap::{Args, ValueEnum};
 use fspid_campaign::{Campaign, Folder, Shards, shard};
+use fspid_scenario::count as counts;
 use fspid_study::{output, shell};
 use serde_json::{Value, json};
 
@@ -46,7 +47,7 @@ pub(super) struct Cluster {
     #[arg(long, value_name = "PROGRAM", default_value = "python3")]
     python: String,
     /// Tasks of Slurm's array, each of which flies its share of the shards.
-    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = count::<u64>(1, 1_000_000))]
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = count::<u64>(&counts::TASKS))]
     tasks: u64,
     /// The image with fspid in it, for the manifest.
     #[arg(long, value_name = "IMAGE", default_value = concat!("fspid:", env!("CARGO_PKG_VERSION")))]

@@ -19,6 +19,7 @@ use crate::argument::{self, count};
 use crate::exit::{Failure, note};
 use fspid_campaign::sample::Sampling;
 use fspid_campaign::{Campaign, CampaignError, Folder, Question, Shards};
+use fspid_scenario::count as counts;
 
 /// Fly a scenario many times with numbers drawn anew, and say how often it fails.
 ///
@@ -134,7 +135,7 @@ struct Planned {
     #[command(flatten)]
     beside: Beside,
     /// How many runs; 1000 if left out.
-    #[arg(long, value_parser = count::<u64>(1, fspid_campaign::MOST_RUNS))]
+    #[arg(long, value_parser = count::<u64>(&counts::RUNS))]
     runs: Option<u64>,
     /// Seed of everything that is drawn; 1 if left out.
     #[arg(long)]
@@ -144,7 +145,7 @@ struct Planned {
     sampling: Option<Spread>,
     /// Runs of a shard, the least that an interruption can lose; by default a second or two of flights, and
     /// less of a small campaign on other engines.
-    #[arg(long, value_name = "RUNS")]
+    #[arg(long, value_name = "RUNS", value_parser = count::<u64>(&counts::SHARD_RUNS))]
     shard_runs: Option<u64>,
 }
 

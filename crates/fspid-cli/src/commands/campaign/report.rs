@@ -3,10 +3,11 @@
 use clap::Args;
 
 use super::super::{Format, json_text};
-use crate::argument::{NamedFile, OutFile, written};
+use crate::argument::{NamedFile, OutFile, count, written};
 use crate::exit::{Failure, print, wrote};
 use fspid_campaign::report;
 use fspid_campaign::summary::{self, Summary, SummarySettings};
+use fspid_scenario::count as counts;
 use fspid_study::output;
 
 /// Say what a campaign found: how often it fails, with confidence bounds, and what that depends on.
@@ -24,7 +25,7 @@ pub(super) struct Arguments {
     #[arg(long)]
     incomplete: bool,
     /// Most rows whose values are sorted for exact quantiles; of more, each quantile says how far it may be off.
-    #[arg(long, value_name = "ROWS", default_value_t = SummarySettings::default().exact_rows)]
+    #[arg(long, value_name = "ROWS", default_value_t = SummarySettings::default().exact_rows, value_parser = count::<u64>(&counts::EXACT_ROWS))]
     exact_rows: u64,
     /// How the answer is written.
     #[arg(long, value_enum, default_value_t = Format::Text)]

@@ -8,10 +8,11 @@ use super::super::{Format, interrupt};
 use super::engine::{Asked, Cluster, Engine};
 use super::progress::told;
 use super::{Planned, PlannedFolder, failure, planned};
-use crate::argument::InFile;
+use crate::argument::{InFile, count};
 use crate::exit::Failure;
 use fspid_campaign::table::{Digest, Reader};
 use fspid_campaign::{Folder, local};
+use fspid_scenario::count as counts;
 use fspid_study::shell;
 
 /// Plan, fly and merge a campaign, on this machine or on a cluster; again after an interruption, it goes on.
@@ -26,7 +27,7 @@ pub(super) struct Arguments {
     #[command(flatten)]
     cluster: Cluster,
     /// How many threads; 0 for as many as the machine has. The result is the same.
-    #[arg(long, default_value_t = 0)]
+    #[arg(long, default_value_t = 0, value_parser = count::<usize>(&counts::THREADS))]
     threads: usize,
     /// Say nothing while flying.
     #[arg(long)]

@@ -8,6 +8,7 @@ use crate::argument::{InFile, count};
 use crate::exit::{Failure, print};
 use fspid_campaign::sample::Sampling;
 use fspid_campaign::{Folder, Question, local, search};
+use fspid_scenario::count as counts;
 
 /// Look for the worst case inside the box of the dispersions, on purpose and not by chance.
 #[derive(Debug, Args)]
@@ -24,7 +25,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "NAME")]
     controller: Option<String>,
     /// How many flights may be flown.
-    #[arg(long, default_value_t = 2000, value_parser = count::<usize>(1, u64::MAX))]
+    #[arg(long, default_value_t = 2000, value_parser = count::<usize>(&counts::FLIGHTS))]
     budget: usize,
     /// Seed of the search.
     #[arg(long, default_value_t = 1)]
@@ -33,7 +34,7 @@ pub(super) struct Arguments {
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
     /// How many threads; 0 for as many as the machine has. The result is the same.
-    #[arg(long, default_value_t = 0)]
+    #[arg(long, default_value_t = 0, value_parser = count::<usize>(&counts::THREADS))]
     threads: usize,
     /// How the answer is written.
     #[arg(long, value_enum, default_value_t = Format::Text)]

@@ -7,9 +7,11 @@ use super::super::progress::Telling;
 use super::super::{Format, interrupt};
 use super::progress::told;
 use super::{PlannedFolder, failure};
+use crate::argument::count;
 use crate::exit::Failure;
 use fspid_campaign::shard::{self, Done};
 use fspid_campaign::{CampaignError, local};
+use fspid_scenario::count as counts;
 
 /// Fly one shard of a planned campaign, unless it is there whole; several machines may do so at once.
 #[derive(Debug, Args)]
@@ -19,7 +21,7 @@ pub(super) struct Arguments {
     #[command(flatten)]
     place: PlannedFolder,
     /// How many threads; 0 for as many as the machine has. The result is the same.
-    #[arg(long, default_value_t = 0)]
+    #[arg(long, default_value_t = 0, value_parser = count::<usize>(&counts::THREADS))]
     threads: usize,
     /// Say nothing while flying.
     #[arg(long)]

@@ -4,6 +4,7 @@ mod actuator;
 mod air;
 mod airframe;
 mod controller;
+mod cost;
 pub(crate) mod data;
 mod derived;
 mod ends;
@@ -108,6 +109,7 @@ pub(crate) fn scenario(
     };
     if section.sound {
         timing::check_flight(report, section, &scenario);
+        cost::check(report, section, &scenario);
     }
     Some(Built {
         range_rule: RangeRule::of(section, &scenario),

@@ -3,6 +3,7 @@
 use super::data::{GRIDS_TABLE, NUMBER_GRIDS_TABLE};
 use super::{ANGLE_LIMIT_DEG, angle};
 use crate::carried::rule_table_names;
+use crate::keyed::KindOf;
 use crate::keyed::word::{words, words_of};
 use crate::keyed::{
     Choice, DEFUZZIFIER_NAME, FILE_PATH, Key, KeyRow, Range, Rules, Section, TEXT, Table, Way,
@@ -66,10 +67,17 @@ words_of!(Change { Rate = "rate", Delta = "delta" });
 
 pub(crate) const NAME: Key<str> =
     required("name", TEXT, "Name in traces and reports; each only once.");
-pub(crate) const P_KP: Key<f64> = required("kp", finite(""), "Command per error.");
-pub(crate) const KP: Key<f64> = optional("kp", finite(""), "Proportional gain, command per error.");
-pub(crate) const KI: Key<f64> = optional("ki", finite("1/s"), "Integral gain; 0 if left out.");
-pub(crate) const KD: Key<f64> = optional("kd", finite("s"), "Derivative gain; 0 if left out.");
+/// Largest gain either way: what the loop at rest multiplies it with twice stays within the range of 64-bit numbers.
+const MOST_GAIN: f64 = 1e100;
+
+const fn gain(unit: &'static str) -> KindOf<f64> {
+    number(unit, Range::Between(-MOST_GAIN, MOST_GAIN))
+}
+
+pub(crate) const P_KP: Key<f64> = required("kp", gain(""), "Command per error.");
+pub(crate) const KP: Key<f64> = optional("kp", gain(""), "Proportional gain, command per error.");
+pub(crate) const KI: Key<f64> = optional("ki", gain("1/s"), "Integral gain; 0 if left out.");
+pub(crate) const KD: Key<f64> = optional("kd", gain("s"), "Derivative gain; 0 if left out.");
 pub(crate) const ISA: Key<Section> = optional("isa", table(&ISA_TABLE), "The gains in ISA form.");
 pub(crate) const NOMINAL: Key<Section> =
     optional("nominal", table(&PARALLEL_TABLE), "The gains that the supervisor adds to.");
@@ -166,9 +174,9 @@ pub(crate) const RATE_GAIN: Key<f64> = defaulted(
 );
 
 pub(crate) const NOMINAL_KP: Key<f64> =
-    required("kp", finite(""), "Proportional gain, command per error.");
-pub(crate) const NOMINAL_KI: Key<f64> = defaulted("ki", finite("1/s"), 0.0, "Integral gain.");
-pub(crate) const NOMINAL_KD: Key<f64> = defaulted("kd", finite("s"), 0.0, "Derivative gain.");
+    required("kp", gain(""), "Proportional gain, command per error.");
+pub(crate) const NOMINAL_KI: Key<f64> = defaulted("ki", gain("1/s"), 0.0, "Integral gain.");
+pub(crate) const NOMINAL_KD: Key<f64> = defaulted("kd", gain("s"), 0.0, "Derivative gain.");
 
 static PARALLEL_TABLE: Table =
     plain("Gains in parallel form.", &[&[&NOMINAL_KP, &NOMINAL_KI, &NOMINAL_KD]]);

@@ -1,5 +1,6 @@
 //! How a scenario is tuned, and on what tuned controllers are compared.
 
+use crate::count;
 use crate::file::overrides;
 use crate::keyed::document::Item;
 use crate::keyed::word::words;
@@ -43,7 +44,7 @@ pub(crate) const OPTIMISER: Key<str> = defaulted(
 );
 pub(crate) const BUDGET: Key<i64> = defaulted(
     "budget",
-    whole(1, 100_000_000),
+    whole(count::BUDGET.least as i64, count::BUDGET.most as i64),
     1000,
     "Candidates that are flown; `--budget` comes first.",
 );
@@ -151,7 +152,7 @@ static LIMIT_TABLE: Table = plain(
 
 pub(crate) const SEEDS: Key<i64> = defaulted(
     "seeds",
-    whole(1, 1000),
+    whole(count::SEEDS.least as i64, count::SEEDS.most as i64),
     5,
     "How many times each controller is tuned, with seeds from that of the tuning on.",
 );

@@ -4,10 +4,11 @@ use fspid_fuzzy::audit::{AlongInput, Extreme, OutputSurface, Statement, Symmetry
 use serde_json::{Map, Value, json};
 
 use super::{Audit, Mark};
-use crate::json::{merged, present};
+use crate::json::{finite_all, merged, present};
 
 impl Audit<'_> {
-    /// The audit as JSON. Every pair of numbers is a proved lower and upper bound.
+    /// The audit as JSON. Every pair of numbers is a proved lower and upper bound; one that is `"infinite"` or
+    /// `"-infinite"` says that none was proved.
     #[must_use]
     pub fn json(&self) -> Value {
         let parts = self.system.parts();
@@ -56,7 +57,7 @@ impl Audit<'_> {
         json!({
             "least": self.extreme(&found.least),
             "most": self.extreme(&found.most),
-            "at_rest": found.at_rest,
+            "at_rest": finite_all(&found.at_rest),
             "coverage": {
                 "least": self.extreme(&found.coverage.least),
                 "everywhere": statement(&found.coverage.statement),
@@ -69,7 +70,7 @@ impl Audit<'_> {
     }
 
     fn extreme(&self, extreme: &Extreme) -> Value {
-        json!({ "bounds": extreme.bounds, "at": self.named(&extreme.at), "settled": extreme.settled })
+        json!({ "bounds": finite_all(&extreme.bounds), "at": self.named(&extreme.at), "settled": extreme.settled })
     }
 
     fn symmetry(&self, symmetry: &Symmetry) -> Value {
@@ -83,21 +84,21 @@ impl Audit<'_> {
         let monotone = &along.monotone;
         let counterexample = match &monotone.statement {
             Statement::Refuted(found) => Some(json!({
-                "from": self.named(&found.from), "to": self.named(&found.to), "change": found.change,
+                "from": self.named(&found.from), "to": self.named(&found.to), "change": finite_all(&found.change),
             })),
             Statement::Proved | Statement::Open => None,
         };
         merged([
             json!({
-                "least_slope": along.least_slope.bounds,
-                "most_slope": along.most_slope.bounds,
-                "lipschitz": along.lipschitz,
-                "slope_at_rest": along.slope_at_rest,
-                "sector": [along.sector[0].bounds, along.sector[1].bounds],
+                "least_slope": finite_all(&along.least_slope.bounds),
+                "most_slope": finite_all(&along.most_slope.bounds),
+                "lipschitz": finite_all(&along.lipschitz),
+                "slope_at_rest": finite_all(&along.slope_at_rest),
+                "sector": along.sector.iter().map(|end| finite_all(&end.bounds)).collect::<Vec<_>>(),
                 "rises": monotone.rises,
                 "monotone": statement(&monotone.statement),
                 "wrong_share": monotone.wrong_share,
-                "wrong_slope": monotone.worst,
+                "wrong_slope": finite_all(&monotone.worst),
             }),
             present(json!({ "counterexample": counterexample })),
         ])

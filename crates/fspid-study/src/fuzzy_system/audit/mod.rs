@@ -15,6 +15,7 @@ use fspid_fuzzy::system::System;
 use super::answer::named;
 use super::slice::spans;
 use super::words;
+use fspid_scenario::count;
 use fspid_scenario::supervisor::Refused;
 
 /// Where to look, and how hard.
@@ -84,12 +85,23 @@ pub struct Chapter {
     pub findings: Vec<Finding>,
 }
 
+/// Most rules of a system that is audited: the pairs of 10 000 are 50 million, those of 300 000 are 45 000 million.
+const MOST_RULES: usize = 10_000;
+
 /// Looks at a system.
 ///
 /// # Errors
 /// [`Refused`] with everything that is wrong with the question.
 pub fn audit<'a>(system: &'a System, question: &Question<'_>) -> Result<Audit<'a>, Refused> {
     let mut problems = Vec::new();
+    let boxes = question.boxes.map_or(Ok(()), |boxes| count::BOXES.check(boxes));
+    problems.extend(boxes.err().map(|error| error.to_string()));
+    let rules: usize = system.parts().blocks.iter().map(|block| block.rules.len()).sum();
+    if rules > MOST_RULES {
+        problems.push(format!(
+            "{rules} rules: each is compared with every other and enclosed in every box, which takes hours; allowed are up to {MOST_RULES}"
+        ));
+    }
     let domain = domain(system, question, &mut problems);
     let rest = rest(system, question, &domain, &mut problems);
     if !problems.is_empty() {

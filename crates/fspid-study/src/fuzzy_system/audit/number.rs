@@ -2,8 +2,11 @@
 
 use fspid_diagnostics::digits::without_zeros;
 
-/// A number with at most five significant digits.
+/// A number with at most five significant digits; in words where it is none, as an end of bounds that nothing proved.
 pub(crate) fn short(value: f64) -> String {
+    if !value.is_finite() {
+        return "no proved bound".to_owned();
+    }
     if value == 0.0 {
         return "0".to_owned();
     }
@@ -16,6 +19,12 @@ pub(crate) fn short(value: f64) -> String {
 
 /// A number that lies between proved bounds: one number where they are close, else both.
 pub(crate) fn between([lower, upper]: [f64; 2]) -> String {
+    match (lower.is_finite(), upper.is_finite()) {
+        (true, true) => {}
+        (true, false) => return format!("at least {}", short(lower)),
+        (false, true) => return format!("at most {}", short(upper)),
+        (false, false) => return "a number without proved bounds".to_owned(),
+    }
     let size = lower.abs().max(upper.abs());
     if upper - lower <= 1e-3 * size.max(1e-3) {
         return short(0.5 * lower + 0.5 * upper);
@@ -57,6 +66,12 @@ mod tests {
         assert_eq!(between([-4.234_089_8, -4.234_089_7]), "-4.2341");
         assert_eq!(between([1.2, 1.4]), "between 1.2 and 1.4");
         assert_eq!(between([0.0, 0.0]), "0");
+        // Was "NaN".
+        let entire = [f64::NEG_INFINITY, f64::INFINITY];
+        assert_eq!(between(entire), "a number without proved bounds");
+        assert_eq!(between([1.5, f64::INFINITY]), "at least 1.5");
+        assert_eq!(between([f64::NAN, 1.5]), "at most 1.5");
+        assert_eq!(about(f64::INFINITY, 1.0), "no proved bound");
         assert_eq!(percent([0.0571, 0.0589]), "5.7 to 5.9 %");
     }
 }

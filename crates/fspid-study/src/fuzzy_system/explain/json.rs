@@ -58,7 +58,8 @@ impl Explanation<'_> {
             let part = if shares.basis == Basis::Weights { "weight_share" } else { "area_share" };
             json!({
                 "block": block + 1, "rule": rule + 1, "term": self.term(output, share.of.term),
-                "degree": share.of.degree, part: share.part, "contribution": share.contribution,
+                "degree": share.of.degree, part: share.part,
+                "contribution": number(share.contribution),
             })
         };
         let polygon = shares.pieces.iter().flat_map(|piece| {
@@ -68,7 +69,7 @@ impl Explanation<'_> {
         let interval = self.asked.workspace().interval(output);
         let is_outline = shares.basis == Basis::Outline;
         merged([
-            json!({ "basis": basis, "sum": shares.sum, "rules": list }),
+            json!({ "basis": basis, "sum": number(shares.sum), "rules": list }),
             present(json!({
                 "of": interval.map(|_| "upper sets"),
                 "polygon": is_outline.then(|| polygon.collect::<Vec<_>>()),
@@ -97,4 +98,9 @@ impl Explanation<'_> {
             "rules": why_not.rules.iter().map(one).collect::<Vec<_>>(),
         })
     }
+}
+
+/// A number, or that there is none: a rule concludes something infinite, or its set has no area.
+fn number(found: Option<f64>) -> Value {
+    found.map_or_else(|| json!("no number"), |number| json!(number))
 }

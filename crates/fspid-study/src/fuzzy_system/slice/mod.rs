@@ -6,6 +6,7 @@ use fspid_fuzzy::audit::SurfaceError;
 use fspid_fuzzy::system::System;
 use serde_json::{Value, json};
 
+use crate::json::present;
 use fspid_plot::{LineFigure, LinePanel, Series, SeriesStyle, Surface, SurfaceKind, Svg};
 use fspid_scenario::supervisor::Refused;
 
@@ -137,7 +138,7 @@ impl Slice<'_> {
     }
 
     /// The answer for programs: the nodes along each input, where the others stay, and the values of each output, the
-    /// first input running fastest; null where there is no answer.
+    /// first input running fastest; null where there is no answer, which the key `null` tells.
     #[must_use]
     pub fn json(&self) -> Value {
         let axis = |(input, nodes): &(usize, Vec<f64>)| json!({ "input": self.input_name(*input), "nodes": nodes });
@@ -147,12 +148,14 @@ impl Slice<'_> {
                 values.iter().map(|value| Some(*value).filter(|it| it.is_finite())).collect();
             json!({ "output": self.output_name(*output), "values": values })
         };
-        json!({
+        let has_none = self.values.iter().flatten().any(|value| !value.is_finite());
+        present(json!({
             "schema": 1,
+            "null": has_none.then_some("the rules gave no finite answer there"),
             "axes": self.axes.iter().map(axis).collect::<Vec<_>>(),
             "fixed": self.fixed.iter().map(fixed).collect::<Vec<_>>(),
             "outputs": self.outputs.iter().zip(&self.values).map(values).collect::<Vec<_>>(),
-        })
+        }))
     }
 
     /// The grid as CSV: the inputs that are drawn along, then the outputs.

@@ -5,13 +5,12 @@ use fspid_fuzzy::system::{Input, Membership, System, Universe};
 use super::{Question, Slice};
 use crate::fuzzy_system::answer::named;
 use fspid_diagnostics::known_words;
+use fspid_scenario::count;
 
 /// Nodes along each input of a surface.
 const NODES: usize = 81;
 /// Points of a curve.
 const POINTS: usize = 401;
-/// Most nodes along an input.
-const MOST_NODES: usize = 1001;
 
 /// Collects what is wrong with a question.
 pub(super) struct Asking<'a> {
@@ -38,9 +37,9 @@ impl<'a> Asking<'a> {
         if x.is_some() && x == y {
             self.problems.push("--x and --y name the same input".to_owned());
         }
-        let count = question.nodes.unwrap_or(if chosen.len() == 1 { POINTS } else { NODES });
-        if !(2..=MOST_NODES).contains(&count) {
-            self.problems.push(format!("--nodes is {count}; allowed is 2 to {MOST_NODES}"));
+        let nodes_along = question.nodes.unwrap_or(if chosen.len() == 1 { POINTS } else { NODES });
+        if let Err(error) = count::NODES.check(nodes_along) {
+            self.problems.push(error.to_string());
             return None;
         }
         let mut axes = Vec::new();
@@ -49,7 +48,7 @@ impl<'a> Asking<'a> {
                 let name = parts.inputs.get(input).map_or("", |input| input.name.as_str());
                 self.problems.push(format!("{name} is drawn along, so it cannot be fixed"));
             }
-            axes.extend(self.span(input, &spans).map(|span| (input, nodes(span, count))));
+            axes.extend(self.span(input, &spans).map(|span| (input, nodes(span, nodes_along))));
         }
         let mut fixed = Vec::new();
         for (input, value) in given.iter().enumerate().filter(|(n, _)| !chosen.contains(n)) {
