@@ -96,7 +96,7 @@ fn what_cannot_be_is_refused_with_what_can() {
         ),
         (
             vec!["campaign", "plan", "pitch.toml", "--shard-runs", "65537", "--out", "x"],
-            "in a shard is 65537",
+            "--shard-runs is 65537; allowed is a whole number from 1 to 65536",
         ),
         (vec!["campaign", "run", "pitch.toml", "--out", "here"], "another campaign is there"),
         (
