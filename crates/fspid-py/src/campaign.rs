@@ -44,7 +44,7 @@ fn sampling(py: Python<'_>, name: &str) -> PyResult<Sampling> {
 
 #[pymethods]
 impl Campaign {
-    /// Plans a campaign in a folder, or finds it there.
+    /// Plans a campaign in a folder, or finds it there; it is cut into shards of so many runs, or for workers or threads.
     #[staticmethod]
     fn plan(
         py: Python<'_>,
@@ -53,12 +53,12 @@ impl Campaign {
         runs: u64,
         seed: u64,
         sampling: &str,
-        shard_runs: Option<u64>,
-        for_workers: bool,
+        cut: (Option<u64>, bool),
     ) -> PyResult<Self> {
         let (path, sampling) = (scenario.file(py)?, self::sampling(py, sampling)?);
         let overrides = scenario.overrides();
         let folder = Folder::new(&out);
+        let (shard_runs, for_workers) = cut;
         let cut = if for_workers { Shards::ForWorkers } else { Shards::ForThreads };
         let shards = shard_runs.map_or(cut, Shards::Of);
         let question = Question { scenario: &path, overrides, runs, seed, sampling, shards };

@@ -123,7 +123,7 @@ counts! {
 pub fn of_option(command: &str, option: &str) -> Option<Count> {
     let asks =
         |it: &&str| it.strip_prefix(command).and_then(|it| it.strip_prefix(" --")) == Some(option);
-    COUNTS.iter().copied().find(|count| count.options.iter().any(|it| asks(&it)))
+    COUNTS.iter().copied().find(|count| count.options.iter().any(&asks))
 }
 
 #[cfg(test)]

@@ -127,7 +127,7 @@ class Worker:
 class Campaign:
     @staticmethod
     def plan(
-        scenario: Scenario, out: Path, runs: int, seed: int, sampling: str, shard_runs: int | None, for_workers: bool
+        scenario: Scenario, out: Path, runs: int, seed: int, sampling: str, cut: tuple[int | None, bool]
     ) -> Campaign: ...
     @staticmethod
     def planned(out: Path) -> Campaign: ...

@@ -325,8 +325,8 @@ class Scenario:
         engine: str = "local",
     ) -> Campaign:
         """As :meth:`campaign`, and flies nothing yet."""
-        elsewhere = engine != "local"
-        return Campaign(_core.Campaign.plan(self._core, Path(out), runs, seed, sampling, shard_runs, elsewhere))
+        cut = (shard_runs, engine != "local")
+        return Campaign(_core.Campaign.plan(self._core, Path(out), runs, seed, sampling, cut))
 
     def contest(
         self,
