@@ -1,4 +1,6 @@
 //! `.fcl`: reading never panics; what is written comes back as itself.
-#![no_main]
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| fspid_formats::fuzzing::fcl(bytes));
+pub(crate) fn read(bytes: &[u8]) -> Option<()> {
+    fspid_formats::fuzzing::fcl(bytes);
+    fspid_formats::fcl::read(std::str::from_utf8(bytes).ok()?).ok().map(drop)
+}

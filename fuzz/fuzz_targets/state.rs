@@ -1,20 +1,21 @@
 //! Arbitrary text as the saved state of a tuning: refused, or a search that goes on. What no optimiser can have been in
 //! is refused, so that one which is resumed asks for points of the cube and takes their costs.
 
-#![no_main]
-
-use fspid_optimise::Snapshot;
+use fspid_optimise::{NsgaII, Snapshot};
 use fspid_tune::State;
 use serde_json::Value;
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
-    let Ok(text) = std::str::from_utf8(bytes) else { return };
-    let _ = serde_json::from_str::<State>(text);
+pub(crate) fn read(bytes: &[u8]) -> Option<()> {
+    let text = std::str::from_utf8(bytes).ok()?;
+    let state = serde_json::from_str::<State>(text).is_ok();
     // The part of a state that is the optimiser's own memory.
-    let Ok(value) = serde_json::from_str::<Value>(text) else { return };
-    let Some(engine) = value.pointer("/engine/one") else { return };
-    let Ok(snapshot) = serde_json::from_value::<Snapshot>(engine.clone()) else { return };
-    let Ok(mut optimiser) = snapshot.resume() else { return };
+    let value: Value = serde_json::from_str(text).ok()?;
+    if let Some(front) = value.pointer("/engine/front") {
+        let front: NsgaII = serde_json::from_value(front.clone()).ok()?;
+        return front.resumed().ok().filter(|_| state).map(drop);
+    }
+    let snapshot: Snapshot = serde_json::from_value(value.pointer("/engine/one")?.clone()).ok()?;
+    let mut optimiser = snapshot.resume().ok()?;
     for _ in 0..2 {
         let asked = optimiser.ask();
         for point in &asked {
@@ -23,4 +24,5 @@ libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
         let costs: Vec<f64> = (0..asked.len()).map(|place| place as f64).collect();
         optimiser.tell(&costs);
     }
-});
+    state.then_some(())
+}

@@ -1,6 +1,6 @@
 //! What can be wrong with an aircraft, as one enum whose variants hold the values found and allowed.
 
-use fspid_lti::LtiError;
+use fspid_lti::{InWords, LtiError};
 use thiserror::Error;
 
 /// Why an aircraft could not be built or a question about it not be answered.
@@ -8,7 +8,7 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum AircraftError {
     /// A quantity that must be above zero and finite.
-    #[error("the {what} is {value}; it must be above zero and finite")]
+    #[error("the {what} is {}; it must be above zero and finite", InWords(*value))]
     NotPositive {
         /// Which quantity, with its unit.
         what: &'static str,
@@ -16,7 +16,7 @@ pub enum AircraftError {
         value: f64,
     },
     /// A quantity that is NaN or infinite.
-    #[error("the {what} is {value}; it must be a finite number")]
+    #[error("the {what} is {}; it must be a finite number", InWords(*value))]
     NotFinite {
         /// Which quantity, with its unit.
         what: &'static str,

@@ -200,9 +200,5 @@ impl CampaignError {
 
 /// The reason of the system below a table's error, in words.
 fn reason(error: &TableError) -> String {
-    let mut innermost: &dyn std::error::Error = error;
-    while let Some(source) = innermost.source() {
-        innermost = source;
-    }
-    innermost.downcast_ref::<io::Error>().map_or_else(|| innermost.to_string(), in_words)
+    error.of_system().map_or_else(|| error.to_string(), in_words)
 }

@@ -12,7 +12,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use fspid_scenario::file::read_text;
-use fspid_study::output::{self, UNFINISHED};
+use fspid_study::output::{self, is_unfinished};
 
 use crate::error::CampaignError;
 use crate::plan::Plan;
@@ -173,9 +173,7 @@ impl Folder {
     /// A folder that cannot be read or written.
     pub fn remove_unfinished(&self) -> Result<(), CampaignError> {
         for path in self.files()? {
-            let name = path.file_name().unwrap_or_default().to_string_lossy();
-            let is_lock = path.extension().is_some_and(|end| end == "lock");
-            if name.starts_with(UNFINISHED) || is_lock {
+            if is_unfinished(path.file_name().unwrap_or_default()) || is_lock(&path) {
                 fs::remove_file(&path).map_err(|reason| CampaignError::Io { path, reason })?;
             }
         }
@@ -198,6 +196,16 @@ fn lock_file(path: &Path) -> Result<File, CampaignError> {
     }
     CampaignError::unless_apart(path)?;
     File::options().create(true).append(true).open(path).map_err(failed)
+}
+
+/// True for the lock of a shard; a file of a user that ends so is none.
+fn is_lock(path: &Path) -> bool {
+    let is_number = |text: &str| !text.is_empty() && text.bytes().all(|it| it.is_ascii_digit());
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let is_range =
+        stem.split_once('-').is_some_and(|(one, other)| is_number(one) && is_number(other));
+    let is_empty = || path.symlink_metadata().is_ok_and(|it| it.is_file() && it.len() == 0);
+    is_range && path.extension().is_some_and(|end| end == "lock") && is_empty()
 }
 
 /// In what two plans differ, in words.

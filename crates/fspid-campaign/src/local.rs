@@ -7,6 +7,7 @@ use crate::campaign::{Campaign, Progress};
 use crate::error::CampaignError;
 use crate::folder::Folder;
 use crate::merge::merge;
+use crate::range::Range;
 use crate::shard::{self, Done};
 use crate::table::Digest;
 
@@ -32,18 +33,30 @@ pub fn run(
     threads: usize,
     progress: &Progress,
 ) -> Result<Flown, CampaignError> {
+    in_threads(threads, || run_here(folder, campaign, progress, &mut |_| Ok(())))?
+}
+
+/// As [`run`], on all threads of the pool that this is called in. `done` is told of each shard once it is there; its error ends
+/// the campaign, which goes on from there when it is called again.
+///
+/// # Errors
+/// As [`run`], and that of `done`.
+pub fn run_here(
+    folder: &Folder,
+    campaign: &Campaign,
+    progress: &Progress,
+    done: &mut (dyn FnMut(Range) -> Result<(), CampaignError> + Send),
+) -> Result<Flown, CampaignError> {
     let _lock = folder.lock(true)?;
     folder.remove_unfinished()?;
     let (mut flown, mut found) = (0, 0);
-    in_threads(threads, || {
-        for number in 0..campaign.plan().shards() {
-            match shard::fly(folder, campaign, number, progress)? {
-                Done::Flown => flown += 1,
-                Done::Found => found += 1,
-            }
+    for number in 0..campaign.plan().shards() {
+        match shard::fly(folder, campaign, number, progress)? {
+            Done::Flown => flown += 1,
+            Done::Found => found += 1,
         }
-        Ok::<_, CampaignError>(())
-    })??;
+        campaign.plan().shard(number).map_or(Ok(()), &mut *done)?;
+    }
     let digest = merge(folder, campaign, &folder.merged_path())?;
     Ok(Flown { flown, found, digest })
 }

@@ -23,7 +23,7 @@ pub const HIT_GROUND: &str = "hit the ground";
 pub const CONTROLLER_LOST: &str = "controller lost";
 
 /// Version of the rows.
-pub const FORMAT: u32 = 1;
+pub const FORMAT: u32 = 2;
 
 /// Column of the run's number.
 pub const RUN: &str = "run";
@@ -33,6 +33,10 @@ pub const CONTROLLER: &str = "controller";
 pub const FAILED: &str = "failed";
 /// Column of the verdict in a word.
 pub const VERDICT: &str = "verdict";
+/// Column of the loop's stability at rest, in a word. Rows of format 1 have none.
+pub const STABILITY: &str = "stability";
+/// What stands there where it could not be told.
+pub const UNDECIDED: &str = "undecided";
 /// Column of the time at which a flight diverged.
 pub const DIVERGED_AT: &str = "diverged_at_s";
 /// Column of the time at which an aircraft left the range of its model.
@@ -224,6 +228,7 @@ impl Rows {
             (!reasons.is_empty()).into(),
             flight.map_or(REFUSED, |flight| word(flight.metrics.verdict)).into(),
             Some(reasons).filter(|reasons| !reasons.is_empty()).into(),
+            flight.and_then(|flight| flight.at_rest.stability_word()).into(),
             flight.and_then(FlightResult::diverged_at_s).into(),
         ];
         cells.extend(run.drawn.iter().map(cell));
@@ -249,6 +254,8 @@ const VERDICT_IS: &str =
     "settled, not settled, flown (no step to settle), diverged, unstable, or refused";
 const VERDICT_IN_AIR: &str = "settled, not settled, flown (no step to settle), diverged, hit the ground, unstable, or refused";
 
+const STABILITY_IS: &str = "of the loop at rest: stable, unstable or undecided; empty where it could not be asked, as of a program without equations";
+
 /// The columns of every campaign; only a nonlinear aircraft has a ground and a range.
 fn head(has_ground: bool) -> Vec<Column> {
     let column = |name, kind, meaning: &str| Column::new(name, kind).meaning(meaning);
@@ -260,6 +267,7 @@ fn head(has_ground: bool) -> Vec<Column> {
         column(FAILED, Kind::Boolean, failed),
         column(VERDICT, Kind::Text, verdict),
         column(REASONS, Kind::Text, "why it failed; empty where it did not"),
+        column(STABILITY, Kind::Text, STABILITY_IS),
         column(DIVERGED_AT, Kind::Float, "when the flight diverged").unit("s"),
     ]
 }

@@ -94,7 +94,7 @@ fn an_interrupted_campaign_goes_on_and_flies_nothing_twice() {
         shard::fly(&folder, &campaign, number, &progress).expect("flown");
     }
     // A part that was being written when the machine went down, and one that was damaged since.
-    std::fs::write(folder.shards_path().join(".fspid-half"), b"PAR1").expect("written");
+    std::fs::write(folder.shards_path().join(".fspid-half.unfinished"), b"PAR1").expect("written");
     let damaged = folder.shard_path(campaign.plan().shard(2).expect("there is one"));
     let mut bytes = std::fs::read(&damaged).expect("written");
     // Every byte of the first column's first page, some of which no number is made of.
@@ -107,7 +107,28 @@ fn an_interrupted_campaign_goes_on_and_flies_nothing_twice() {
     assert_eq!(std::fs::read(folder.merged_path()).expect("merged"), flown(30, 30, 1).0);
     let again = local::run(&folder, &campaign, 2, &Progress::default()).expect("flown");
     assert_eq!((again.found, again.flown), (4, 0));
-    assert!(!folder.shards_path().join(".fspid-half").exists());
+    assert!(!folder.shards_path().join(".fspid-half.unfinished").exists());
+}
+
+#[test]
+fn a_part_of_a_worker_with_any_bit_changed_is_refused() {
+    let home = tempfile::tempdir().expect("a folder");
+    let worker = Folder::new(&home.path().join("worker"));
+    let campaign = planned(&worker, 4, 2);
+    shard::fly(&worker, &campaign, 1, &Progress::default()).expect("flown");
+    let range = campaign.plan().shard(1).expect("there is one");
+    let part = std::fs::read(worker.shard_path(range)).expect("written");
+    let folder = Folder::new(&home.path().join("driver"));
+    let campaign = planned(&folder, 4, 2);
+    // Values, the statistics around them, names, the footer.
+    for place in (0..part.len()).step_by(part.len() / 300 | 1) {
+        let mut damaged = part.clone();
+        damaged[place] ^= 1 << (place % 8);
+        let told = shard::put(&folder, &campaign, 1, &damaged);
+        assert!(told.is_err(), "byte {place} of {}", part.len());
+        assert!(!folder.shard_path(range).exists(), "byte {place} of {}", part.len());
+    }
+    shard::put(&folder, &campaign, 1, &part).expect("it is as it was written");
 }
 
 #[test]

@@ -147,7 +147,8 @@ fn a_folder_without_parts_with_damaged_ones_and_with_strange_ones_is_refused() {
     // A byte of a value is another: the footer is whole, the digest differs.
     let whole = std::fs::read(path(2)).expect("read");
     let mut damaged = whole.clone();
-    damaged[whole.len() / 2] ^= 1;
+    // Values stand in front of the metadata, which takes most of so small a file.
+    damaged[whole.len() / 4] ^= 1;
     std::fs::write(path(2), &damaged).expect("written");
     for settings in [SKETCHED, SummarySettings::default()] {
         let told = refused(settings);

@@ -28,10 +28,13 @@ pub fn shortest(value: f64) -> String {
 /// As [`shortest`], with a power of ten for sizes outside of `plain`.
 #[must_use]
 pub fn shortest_within(value: f64, plain: Range<f64>) -> String {
-    match value == 0.0 || plain.contains(&value.abs()) || !value.is_finite() {
+    match value {
+        f64::INFINITY => "infinite".to_owned(),
+        f64::NEG_INFINITY => "minus infinite".to_owned(),
+        value if value.is_nan() => "not a number".to_owned(),
         // No sign of a zero.
-        true => format!("{}", value + 0.0),
-        false => format!("{value:e}"),
+        value if value == 0.0 || plain.contains(&value.abs()) => format!("{}", value + 0.0),
+        value => format!("{value:e}"),
     }
 }
 
@@ -76,7 +79,8 @@ mod tests {
             ["1.50", "2.000", "100", "1.00e-7"].map(without_zeros),
             ["1.5", "2", "100", "1.00e-7"]
         );
-        assert_eq!(shortest(f64::INFINITY), "inf");
+        let none = [f64::INFINITY, f64::NEG_INFINITY, f64::NAN].map(shortest);
+        assert_eq!(none, ["infinite", "minus infinite", "not a number"]);
         assert_eq!(shortest(0.1 + 0.2), "0.30000000000000004");
     }
 

@@ -182,8 +182,11 @@ fn of_single(reason: ConfigError) -> String {
                 found as f32
             )
         }
-        ConfigError::Number { what, found, allowed } => {
+        ConfigError::Number { what, found, allowed } if found.is_finite() => {
             format!("{what} is {:?}; allowed is {allowed}", found as f32)
+        }
+        ConfigError::Number { what, .. } => {
+            format!("{what} lies beyond them; allowed is at most {:e}", f32::MAX)
         }
         other => other.to_string(),
     }

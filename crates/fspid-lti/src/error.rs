@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use crate::in_words::InWords;
+
 /// Why a linear system could not be built or a question about it not be answered.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
@@ -13,7 +15,7 @@ pub enum LtiError {
         what: &'static str,
     },
     /// An entry that is NaN or infinite.
-    #[error("entry {index} of the {what} is {value}; every entry must be a finite number")]
+    #[error("entry {index} of the {what} is {}; every entry must be a finite number", InWords(*value))]
     NotFinite {
         /// Which polynomial or matrix.
         what: &'static str,

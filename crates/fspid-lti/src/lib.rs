@@ -21,6 +21,7 @@ mod exponential;
 mod fine;
 mod frequency;
 mod hold;
+mod in_words;
 mod integral_regulator;
 mod matrix;
 mod mode;
@@ -41,6 +42,7 @@ pub use exponential::{exponential, exponential_change};
 pub use fine::FineMatrix;
 pub use frequency::{Crossover, FrequencyResponse, Margins, NeutralGain};
 pub use hold::{held_change, zero_order_hold};
+pub use in_words::InWords;
 pub use integral_regulator::{
     DampedIntegrator, IntegralRegulator, IntegralWeights, integral_regulator,
 };

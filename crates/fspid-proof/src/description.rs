@@ -62,6 +62,9 @@ pub enum NotProvable {
         /// What is in the way.
         what: &'static str,
     },
+    /// Somebody did not want the answer any more.
+    #[error("it was stopped before there was an answer, which says nothing of the loop")]
+    Stopped,
     /// Nothing bounds the gains of an accumulating law.
     #[error(transparent)]
     UnboundedGains(#[from] NoBound),

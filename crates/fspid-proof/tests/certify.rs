@@ -147,6 +147,38 @@ fn with_an_integral_gain_of_zero_at_rest_nothing_is_proved() {
     assert!(because.contains("gain of the integral may be zero at rest"), "{because}");
 }
 
+thread_local! {
+    /// How often it was asked whether to stop, and from which question on the answer is yes.
+    static ASKED: std::cell::Cell<(u32, u32)> = const { std::cell::Cell::new((0, u32::MAX)) };
+}
+
+fn counted() -> bool {
+    let (asked, most) = ASKED.get();
+    ASKED.set((asked + 1, most));
+    asked >= most
+}
+
+/// A proof went on for up to half a minute after nobody wanted it any more.
+#[test]
+fn a_search_that_is_stopped_is_an_error_soon_and_never_an_answer() {
+    let scale = Gains { kp: 0.09, ki: 0.02, kd: 0.045 };
+    let description = loop_of(tuned(scale, Law::Memoryless));
+    let effort = Effort { stops: counted, divisions: 12, cones: 0, frozen_points: 9, ..quick() };
+    let whole = certify(&description, &Asked::rest(), &effort).expect("provable");
+    let all = ASKED.get().0;
+    assert!(all > 100, "asked {all} times");
+    let patient = Effort { stops: Effort::default().stops, ..effort };
+    let unasked = certify(&description, &Asked::rest(), &patient).expect("provable");
+    assert_eq!(whole, unasked, "who asks changes nothing");
+    for most in [0, 1, 2, 7, all / 3, all / 2, all - 1] {
+        ASKED.set((0, most));
+        let stopped = certify(&description, &Asked::rest(), &effort);
+        assert_eq!(stopped, Err(NotProvable::Stopped), "after {most}");
+        let more = ASKED.get().0 - most;
+        assert!(more < 20, "asked {more} times more after {most}");
+    }
+}
+
 #[test]
 fn gains_without_bounds_and_actuators_with_play_are_refused_with_words() {
     let law = Law::Accumulating { leakage_per_s: 0.0 };

@@ -1,5 +1,6 @@
 //! What was found out, as it crosses over: sentences, JSON, a page, columns.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use fspid::scenario::file::Study;
@@ -9,6 +10,7 @@ use fspid::study::simulation::Simulation;
 use pyo3::prelude::*;
 
 use crate::array::Column;
+use crate::origin::Origin;
 
 /// Width of a drawing in a notebook, px.
 const WIDTH_PX: f64 = 760.0;
@@ -34,12 +36,14 @@ pub(crate) struct Answer {
     /// Curves that go with it, each with its name and columns.
     #[pyo3(get)]
     curves: Vec<(String, Vec<Column>)>,
+    origin: Origin,
 }
 
 impl Answer {
     pub(crate) fn new(text: String, json: &serde_json::Value, good: bool) -> Self {
         let json = fspid::study::json::answer_text(json);
-        Self { text, json, good, page: None, files: Vec::new(), curves: Vec::new() }
+        let (files, curves, origin) = (Vec::new(), Vec::new(), Origin::default());
+        Self { text, json, good, page: None, files, curves, origin }
     }
 
     pub(crate) fn with_page(self, page: String) -> Self {
@@ -57,6 +61,24 @@ impl Answer {
     pub(crate) fn with_files(self, files: Vec<(String, String)>) -> Self {
         Self { files, ..self }
     }
+
+    /// The same of these files, over which it is not written.
+    pub(crate) fn from(self, origin: Origin) -> Self {
+        Self { origin, ..self }
+    }
+}
+
+#[pymethods]
+impl Answer {
+    /// Writes the page, whole or not at all.
+    fn save_page(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        self.origin.write(py, &path, self.page.as_deref().unwrap_or_default())
+    }
+
+    /// Writes the files into a folder, all of them or none; their paths.
+    fn save_files(&self, py: Python<'_>, folder: PathBuf) -> PyResult<Vec<PathBuf>> {
+        self.origin.write_all(py, &folder, &self.files)
+    }
 }
 
 /// A scenario that was flown.
@@ -64,11 +86,12 @@ impl Answer {
 pub(crate) struct Flight {
     study: Arc<Study>,
     simulation: Simulation,
+    origin: Origin,
 }
 
 impl Flight {
-    pub(crate) fn new(study: Arc<Study>, simulation: Simulation) -> Self {
-        Self { study, simulation }
+    pub(crate) fn new(study: Arc<Study>, simulation: Simulation, origin: Origin) -> Self {
+        Self { study, simulation, origin }
     }
 }
 
@@ -112,6 +135,16 @@ impl Flight {
     /// The report, as `fspid simulate --report` writes it.
     fn page(&self) -> String {
         report::of_simulation(&self.study, &self.simulation)
+    }
+
+    /// Writes all traces as CSV, whole or not at all.
+    fn save_csv(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        self.origin.write(py, &path, &self.csv())
+    }
+
+    /// Writes the report, whole or not at all.
+    fn save_page(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        self.origin.write(py, &path, &self.page())
     }
 
     /// The time response as SVG.

@@ -12,6 +12,7 @@ use fspid::campaign::{self, CampaignError, Folder, Progress, Question, Shards, l
 use pyo3::prelude::*;
 
 use crate::answer::Answer;
+use crate::origin::Origin;
 use crate::scenario::Scenario;
 use crate::table::Table;
 use crate::{error, interrupt};
@@ -22,11 +23,17 @@ pub(crate) struct Campaign {
     folder: Folder,
     campaign: Arc<campaign::Campaign>,
     progress: Arc<Progress>,
+    /// What it is drawn from.
+    origin: Origin,
 }
 
 impl Campaign {
-    fn new(folder: Folder, campaign: campaign::Campaign) -> Self {
-        Self { folder, campaign: Arc::new(campaign), progress: Arc::default() }
+    fn new(folder: Folder, campaign: campaign::Campaign, origin: &Origin) -> Self {
+        let plan = campaign.plan();
+        let named = folder.path().join(&plan.scenario_folder);
+        let files = campaign.template().study().files.iter().map(|file| named.join(file));
+        let origin = origin.with(files);
+        Self { folder, campaign: Arc::new(campaign), progress: Arc::default(), origin }
     }
 }
 
@@ -62,13 +69,15 @@ impl Campaign {
         let cut = if for_workers { Shards::ForWorkers } else { Shards::ForThreads };
         let shards = shard_runs.map_or(cut, Shards::Of);
         let question = Question { scenario: &path, overrides, runs, seed, sampling, shards };
+        let origin = scenario.made_of();
         let planned = py.detach(|| {
+            let _protected = origin.protected();
             let planned = campaign::plan(&question, &folder)?;
             folder.put_plan(planned.plan())?;
             Ok(planned)
         });
         let planned = planned.map_err(|found: CampaignError| error::campaign(py, &found))?;
-        Ok(Self::new(folder, planned))
+        Ok(Self::new(folder, planned, &origin))
     }
 
     /// The campaign that is planned in a folder.
@@ -77,7 +86,7 @@ impl Campaign {
         let folder = Folder::new(&out);
         let planned = py.detach(|| campaign::Campaign::new(folder.plan()?, folder.path()));
         let planned = planned.map_err(|found| error::campaign(py, &found))?;
-        Ok(Self::new(folder, planned))
+        Ok(Self::new(folder, planned, &Origin::default()))
     }
 
     /// How many runs it has.
@@ -113,11 +122,14 @@ impl Campaign {
     /// Flies what is missing and merges it; the digest of all rows.
     fn run(&self, py: Python<'_>, threads: usize) -> PyResult<String> {
         let (folder, campaign) = (self.folder.clone(), Arc::clone(&self.campaign));
-        let progress = Arc::clone(&self.progress);
+        let (progress, origin) = (Arc::clone(&self.progress), self.origin.clone());
         let flown = interrupt::run_until(
             py,
             || self.progress.stop(),
-            move || local::run(&folder, &campaign, threads, &progress),
+            move || {
+                let _protected = origin.protected();
+                local::run(&folder, &campaign, threads, &progress)
+            },
         )?;
         let flown = flown.map_err(|found| error::campaign(py, &found))?;
         Ok(flown.digest.to_string())
@@ -126,11 +138,12 @@ impl Campaign {
     /// Flies one shard unless it is there; true where it was flown now.
     fn shard(&self, py: Python<'_>, number: u64, threads: usize) -> PyResult<bool> {
         let (folder, campaign) = (self.folder.clone(), Arc::clone(&self.campaign));
-        let progress = Arc::clone(&self.progress);
+        let (progress, origin) = (Arc::clone(&self.progress), self.origin.clone());
         let done = interrupt::run_until(
             py,
             || self.progress.stop(),
             move || {
+                let _protected = origin.protected();
                 let plan = campaign.plan();
                 let most = plan.shards().saturating_sub(1);
                 let range =
@@ -153,6 +166,7 @@ impl Campaign {
     /// Takes in the part of a shard that was flown elsewhere.
     fn put(&self, py: Python<'_>, number: u64, part: &[u8]) -> PyResult<()> {
         let put = py.detach(|| {
+            let _protected = self.origin.protected();
             let _lock = self.folder.lock(false)?;
             shard::put(&self.folder, &self.campaign, number, part)
         });
@@ -188,7 +202,9 @@ impl Campaign {
     /// Merges all shards; the digest of all rows.
     fn merge(&self, py: Python<'_>) -> PyResult<String> {
         let (folder, campaign) = (self.folder.clone(), Arc::clone(&self.campaign));
+        let origin = self.origin.clone();
         let digest = interrupt::run(py, move || {
+            let _protected = origin.protected();
             let _lock = folder.lock(true)?;
             merge(&folder, &campaign, &folder.merged_path())
         })?;
@@ -221,6 +237,9 @@ impl Campaign {
             let answer = Answer::new(summary::text(&summary), &summary::json(&summary), true);
             Ok::<_, SummaryError>(answer.with_page(page))
         })?;
-        answer.map_err(|found| error::input(py, found))
+        let answer = answer.map_err(|found| error::input(py, found))?;
+        let own = [self.folder.plan_path(), self.folder.merged_path()];
+        let parts = self.folder.parts().unwrap_or_default();
+        Ok(answer.from(self.origin.with(own.into_iter().chain(parts))))
     }
 }

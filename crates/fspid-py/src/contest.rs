@@ -37,9 +37,12 @@ impl Scenario {
         tell: Option<Py<PyAny>>,
     ) -> PyResult<Answer> {
         let source = self.source(py)?;
+        let origin = self.made_of_all(&source).map_err(|found| error::tune(py, &found))?;
+        let made_of = origin.clone();
         let Some(fly) = fly else {
             let answer = interrupt::run_flagged(py, move |stop| {
                 let is_asked = || stop.load(Ordering::Relaxed);
+                let _protected = made_of.protected();
                 local::in_threads(wanted.threads, || {
                     held(&source, &wanted, Crew::Here(&is_asked), &mut |_| match is_asked() {
                         true => Then::Stop,
@@ -47,7 +50,8 @@ impl Scenario {
                     })
                 })?
             })?;
-            return answer.map_err(|found| error::tune(py, &found));
+            let answer = answer.map_err(|found| error::tune(py, &found))?;
+            return Ok(answer.from(origin));
         };
         let caller = Caller::new(fly);
         let told = |now: &Progress| {
@@ -58,8 +62,11 @@ impl Scenario {
             if called.is_ok() { Then::GoOn } else { Then::Stop }
         };
         // On this thread, where Ctrl-C reaches what Python does.
-        let answer = py.detach(|| held(&source, &wanted, Crew::Others(&caller), &mut { told }));
-        answer.map_err(|found| caller.raise(py, &found))
+        let answer = py.detach(|| {
+            let _protected = origin.protected();
+            held(&source, &wanted, Crew::Others(&caller), &mut { told })
+        });
+        Ok(answer.map_err(|found| caller.raise(py, &found))?.from(origin))
     }
 }
 

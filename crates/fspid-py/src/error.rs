@@ -65,7 +65,7 @@ pub(crate) fn tune(py: Python<'_>, error: &TuneError) -> PyErr {
     match error {
         TuneError::Scenario(found) => problems(py, found),
         TuneError::Unreadable(error) => load(py, error),
-        TuneError::Output(_) | TuneError::History(_) => output(py, error),
+        error if error.is_of_output() => output(py, error),
         _ => input(py, error),
     }
 }

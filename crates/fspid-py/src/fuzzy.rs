@@ -1,5 +1,6 @@
 //! Fuzzy systems and supervisors: asked one by one and by the column, explained, audited, drawn.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use fspid::core::fuzzy::{Answers, BatchError, Supervisor as Asked};
@@ -14,6 +15,7 @@ use rayon::prelude::*;
 
 use crate::answer::Answer;
 use crate::array::{Column, same_length};
+use crate::origin::Origin;
 use crate::{error, interrupt};
 
 /// A fuzzy system of any size.
@@ -23,6 +25,7 @@ pub(crate) struct FuzzySystem {
     /// What was assumed while it was read.
     #[pyo3(get)]
     notes: Vec<String>,
+    origin: Origin,
 }
 
 fn refused(py: Python<'_>, error: &LoadError) -> PyErr {
@@ -56,7 +59,9 @@ impl FuzzySystem {
         let options = Options { range, sampling, out_of_range, dialect: None, block, controller };
         let loaded = py.detach(|| fuzzy_system::load(name, options));
         let loaded = loaded.map_err(|found| refused(py, &found))?;
-        Ok(Self { system: Arc::new(loaded.system), notes: loaded.notes })
+        // A name is that of a file, or of what the program carries; nothing is written over either.
+        let origin = Origin::of([PathBuf::from(name)]);
+        Ok(Self { system: Arc::new(loaded.system), notes: loaded.notes, origin })
     }
 
     /// Reads a text in a format, which is named by the ending of its files.
@@ -68,7 +73,8 @@ impl FuzzySystem {
         })?;
         let loaded = py.detach(|| fuzzy_system::read("text", text, format, Options::default()));
         let loaded = loaded.map_err(|found| refused(py, &found))?;
-        Ok(Self { system: Arc::new(loaded.system), notes: loaded.notes })
+        let (system, origin) = (Arc::new(loaded.system), Origin::default());
+        Ok(Self { system, notes: loaded.notes, origin })
     }
 
     /// Its name.
@@ -171,7 +177,8 @@ impl FuzzySystem {
             let page = report::of_audit(&found);
             Ok(Answer::new(found.text(), &found.json(), true).with_page(page))
         })?;
-        answer.map_err(|found: String| error::input(py, found))
+        let answer = answer.map_err(|found: String| error::input(py, found))?;
+        Ok(answer.from(self.origin.clone()))
     }
 
     /// As `fspid surface` answers: a drawing for each output, and the values as CSV.

@@ -15,6 +15,7 @@ mod error;
 mod fuzzy;
 mod interrupt;
 mod lti;
+mod origin;
 mod scenario;
 mod table;
 mod tune;

@@ -10,11 +10,12 @@ use fspid::study::certify::{self, Certification, Effort};
 use fspid::study::report;
 use fspid::study::simulation::Simulation;
 use fspid::study::verify;
-use fspid::tune::Source;
+use fspid::tune::{Source, TuneError};
 use pyo3::prelude::*;
 use tempfile::TempDir;
 
 use crate::answer::{Answer, Flight};
+use crate::origin::Origin;
 use crate::{error, interrupt};
 
 /// A scenario without a mistake.
@@ -27,6 +28,7 @@ pub(crate) struct Scenario {
     folder: Option<PathBuf>,
     overrides: Vec<String>,
     study: Arc<Study>,
+    origin: Origin,
     /// Where one that was made in memory is written for what reads files.
     written: OnceLock<TempDir>,
 }
@@ -42,7 +44,20 @@ impl Scenario {
         let name = name_of(path.as_deref());
         let study = py.detach(|| file::parse(&text, &name, folder.as_deref(), &overrides));
         let study = Arc::new(study.map_err(|found| error::problems(py, &found))?);
-        Ok(Self { text, path, folder, overrides, study, written: OnceLock::new() })
+        let named = study.files.iter().map(|file| folder.iter().map(move |it| it.join(file)));
+        let origin = Origin::of(path.iter().cloned().chain(named.flatten()));
+        Ok(Self { text, path, folder, overrides, study, origin, written: OnceLock::new() })
+    }
+
+    /// The files that its answers are made of.
+    pub(crate) fn made_of(&self) -> Origin {
+        self.origin.clone()
+    }
+
+    /// The same with those of all cases of its tuning and its contest.
+    pub(crate) fn made_of_all(&self, source: &Source) -> Result<Origin, TuneError> {
+        let Some(folder) = &self.folder else { return Ok(self.made_of()) };
+        Ok(self.origin.with(source.files()?.iter().map(|file| folder.join(file))))
     }
 
     pub(crate) fn study(&self) -> &Study {
@@ -179,7 +194,8 @@ impl Scenario {
     fn paths(&self, py: Python<'_>) -> PyResult<Answer> {
         let rows = file::paths(&self.file(py)?, &self.overrides);
         let rows = rows.map_err(|found| error::load(py, &found))?;
-        Ok(Answer::new(file::paths_text(&rows), &file::paths_json(&rows), true))
+        let answer = Answer::new(file::paths_text(&rows), &file::paths_json(&rows), true);
+        Ok(answer.from(self.made_of()))
     }
 
     /// Flies it.
@@ -187,7 +203,7 @@ impl Scenario {
         let study = Arc::clone(&self.study);
         let flown = interrupt::run(py, move || Simulation::of(&study))?;
         let simulation = flown.map_err(|found| error::input(py, found))?;
-        Ok(Flight::new(Arc::clone(&self.study), simulation))
+        Ok(Flight::new(Arc::clone(&self.study), simulation, self.made_of()))
     }
 
     /// Margins of its loops.
@@ -217,7 +233,8 @@ impl Scenario {
             let answer = Answer::new(analysis.text(), &analysis.json(), analysis.all_held());
             Ok::<_, fspid::sim::SimError>(answer.with_page(page).with_curves(analysis.open_loops()))
         })?;
-        answer.map_err(|found| error::input(py, found))
+        let answer = answer.map_err(|found| error::input(py, found))?;
+        Ok(answer.from(self.made_of()))
     }
 
     /// Proofs that its loops stay stable while gains move; the files are certificates.
@@ -238,7 +255,8 @@ impl Scenario {
             let answer = Answer::new(found.text(), &found.json(), found.all_proved());
             Ok::<_, fspid::sim::SimError>(answer.with_files(files))
         })?;
-        answer.map_err(|found| error::input(py, found))
+        let answer = answer.map_err(|found| error::input(py, found))?;
+        Ok(answer.from(self.made_of()))
     }
 
     /// Judges its requirements, those of ready sets and of files; the files replay what is not met.
@@ -251,6 +269,7 @@ impl Scenario {
     ) -> PyResult<Answer> {
         let path = self.file(py)?;
         let settings: Vec<String> = self.overrides.iter().cloned().chain(sets).collect();
+        let origin = self.origin.with(requirement_files.iter().cloned());
         let answer = interrupt::run(py, move || {
             let requirement_files: Vec<&Path> =
                 requirement_files.iter().map(AsRef::as_ref).collect();
@@ -265,7 +284,7 @@ impl Scenario {
             let answer = Answer::new(found.text(None), &found.json(None), good);
             Ok::<_, verify::VerifyError>(answer.with_files(files))
         })?;
-        answer.map_err(|found| error::verify(py, &found))
+        Ok(answer.map_err(|found| error::verify(py, &found))?.from(origin))
     }
 }
 

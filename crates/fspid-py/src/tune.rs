@@ -15,6 +15,7 @@ use pyo3::prelude::*;
 
 use crate::answer::Answer;
 use crate::crew::Caller;
+use crate::origin::{Origin, as_file};
 use crate::scenario::Scenario;
 use crate::{error, interrupt};
 
@@ -52,7 +53,11 @@ impl Scenario {
         tell: Option<Py<PyAny>>,
     ) -> PyResult<Answer> {
         let (source, kept_beside) = (self.source(py)?, self.kept_beside());
-        let tuning = Tuning { source, wanted, kept_beside };
+        let origin = self.made_of_all(&source).map_err(|found| error::tune(py, &found))?;
+        let wanted = wanted.placed();
+        let outputs = [("out", wanted.out.as_deref()), ("history", wanted.history.as_deref())];
+        origin.apart_from(&outputs).map_err(|clash| error::input(py, clash))?;
+        let tuning = Tuning { source, wanted, kept_beside, origin };
         let Some(fly) = fly else {
             let answer = interrupt::run_flagged(py, move |stop| {
                 let is_asked = || stop.load(Ordering::Relaxed);
@@ -109,7 +114,8 @@ impl Scenario {
             let answer = Answer::new(found.answer(), &found.json(), good);
             Ok::<_, TuneError>(answer.with_files(vec![(DESIGN.to_owned(), text)]))
         })?;
-        answer.map_err(|found| error::tune(py, &found))
+        let answer = answer.map_err(|found| error::tune(py, &found))?;
+        Ok(answer.from(self.made_of()))
     }
 }
 
@@ -123,6 +129,7 @@ struct Tuning {
     source: Source,
     wanted: Wanted,
     kept_beside: Option<PathBuf>,
+    origin: Origin,
 }
 
 impl Tuning {
@@ -132,7 +139,8 @@ impl Tuning {
         crew: Crew<'_>,
         then: &mut dyn FnMut(&Search<'_>) -> Then,
     ) -> Result<Answer, TuneError> {
-        let Self { source, wanted, kept_beside } = self;
+        let Self { source, wanted, kept_beside, origin } = self;
+        let _protected = origin.protected();
         let problem = TuningProblem::new(source, wanted.controller.as_deref())?;
         if let Some(out) = &wanted.out {
             design::check_place(source, out)?;
@@ -159,7 +167,7 @@ impl Tuning {
         // What cannot be removed is refused by the next search there, in words.
         let _ = place.remove();
         let answer = Answer::new(tuned.text(), &tuned.json(), tuned.is_allowed());
-        Ok(answer.with_files(vec![(DESIGN.to_owned(), text)]))
+        Ok(answer.with_files(vec![(DESIGN.to_owned(), text)]).from(origin.clone()))
     }
 }
 
@@ -178,6 +186,13 @@ impl Saving {
 }
 
 impl Wanted {
+    /// With files where the program has standard output.
+    fn placed(mut self) -> Self {
+        self.out = self.out.as_deref().map(as_file);
+        self.history = self.history.as_deref().map(as_file);
+        self
+    }
+
     fn effort(&self, problem: &TuningProblem) -> Effort {
         let tuning = problem.tuning();
         Effort {

@@ -1,10 +1,12 @@
 //! Files that are read and files that are written, kept apart: by which file each is, and not by what it is called.
 //!
 //! A program says once which files it was asked to write ([`declare`]). From then on a file that is read must be none of
-//! them, and a file that is written must be none that was read. A library that declares nothing is asked nothing.
+//! them, and a file that is written must be none that was read. Who answers one question after the other, as a library
+//! does, says of each which files it is made of ([`protect`]). Who says nothing is asked nothing.
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, OnceLock, PoisonError};
 
 /// Most links that are followed from one to the next, as Linux does (path_resolution(7)).
@@ -159,6 +161,30 @@ static OUTPUTS: OnceLock<Vec<Named>> = OnceLock::new();
 /// What it has read.
 static READ: Mutex<Vec<(PathBuf, Identity)>> = Mutex::new(Vec::new());
 
+/// What answers are made of that are asked for or written just now, each with the number of who says so.
+static PROTECTED: Mutex<Vec<(u64, PathBuf)>> = Mutex::new(Vec::new());
+
+/// Files that nothing is written over as long as this lives.
+#[derive(Debug)]
+pub struct Protected(u64);
+
+/// Lets nothing be written over these files, by whichever name, until the answer is dropped.
+#[must_use]
+pub fn protect(files: impl IntoIterator<Item = PathBuf>) -> Protected {
+    static NEXT: AtomicU64 = AtomicU64::new(0);
+    let number = NEXT.fetch_add(1, Ordering::Relaxed);
+    let mut protected = PROTECTED.lock().unwrap_or_else(PoisonError::into_inner);
+    protected.extend(files.into_iter().map(|path| (number, path)));
+    Protected(number)
+}
+
+impl Drop for Protected {
+    fn drop(&mut self) {
+        let mut protected = PROTECTED.lock().unwrap_or_else(PoisonError::into_inner);
+        protected.retain(|(number, _)| *number != self.0);
+    }
+}
+
 /// Says what this process was asked to write, once and before it reads anything.
 pub fn declare(outputs: Vec<Named>) {
     let _ = OUTPUTS.set(outputs);
@@ -204,17 +230,24 @@ fn clash_of(outputs: &[Named], identity: &Identity) -> Option<Clash> {
     )))
 }
 
-/// Refuses to write over what was read, and a file that no argument names over one that an argument does.
+/// True for a file that was read, also where it was refused then.
+#[must_use]
+pub fn was_read(identity: &Identity) -> bool {
+    let read = READ.lock().unwrap_or_else(PoisonError::into_inner);
+    read.iter().any(|(_, known)| known == identity)
+}
+
+/// Refuses to write over what was read or is protected, and a file that no argument names over one that an argument does.
 ///
 /// # Errors
 /// [`Clash`] with the other one.
 pub fn writing(path: &Path) -> Result<(), Clash> {
-    let Some(outputs) = OUTPUTS.get() else { return Ok(()) };
     let Some(identity) = Identity::of(path) else { return Ok(()) };
+    over_protected(&identity)?;
+    let Some(outputs) = OUTPUTS.get() else { return Ok(()) };
     let read = READ.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some((known, _)) = read.iter().find(|(_, known)| *known == identity) {
-        let known = known.display();
-        return Err(Clash(format!("it is {known}, which was read; write somewhere else")));
+    if let Some((path, _)) = read.iter().find(|(_, known)| *known == identity) {
+        return Err(over(path));
     }
     let is_now = |output: &&Named| {
         output.identity == identity || Identity::of(&output.path).as_ref() == Some(&identity)
@@ -225,6 +258,17 @@ pub fn writing(path: &Path) -> Result<(), Clash> {
         }),
         false => Ok(()),
     }
+}
+
+fn over_protected(identity: &Identity) -> Result<(), Clash> {
+    let protected = PROTECTED.lock().unwrap_or_else(PoisonError::into_inner);
+    // Which file that is by now: it may have been replaced since it was read.
+    let found = protected.iter().find(|(_, path)| Identity::of(path).as_ref() == Some(identity));
+    found.map_or(Ok(()), |(_, path)| Err(over(path)))
+}
+
+fn over(known: &Path) -> Clash {
+    Clash(format!("it is {}, which was read; write somewhere else", known.display()))
 }
 
 #[cfg(all(test, unix))]
@@ -259,6 +303,29 @@ mod tests {
         }
         assert_eq!(Identity::of(&at("none/a")), Identity::of(&at("none/./A")));
         assert_ne!(Identity::of(&at("other.csv")), Identity::of(&at("new.csv")));
+    }
+
+    /// In Python `flight.to_csv("a.toml")` wrote over the scenario.
+    #[test]
+    fn what_is_protected_is_not_written_over_by_any_name_and_may_be_afterwards() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let at = |name: &str| folder.path().join(name);
+        fs::write(at("a"), "x").expect("written");
+        std::os::unix::fs::symlink("a", at("soft")).expect("linked");
+        let [first, second] = [protect([at("a")]), protect([at("a"), at("b")])];
+        for name in ["a", "soft", "./a", "B"] {
+            let told = writing(&at(name)).expect_err("refused").to_string();
+            assert!(told.contains("which was read"), "{name}: {told}");
+        }
+        assert_eq!(writing(&at("c")), Ok(()));
+        drop(second);
+        assert!(writing(&at("a")).is_err() && writing(&at("b")).is_ok());
+        // Replaced by another file of its name, it is what it was.
+        fs::write(at("new"), "y").expect("written");
+        fs::rename(at("new"), at("a")).expect("moved");
+        assert!(writing(&at("soft")).is_err());
+        drop(first);
+        assert_eq!(writing(&at("a")), Ok(()));
     }
 
     #[test]

@@ -160,5 +160,7 @@ mod tests {
             );
             assert!(page.contains(&row), "the page lacks\n{row}");
         }
+        let rows = page.lines().filter(|line| line.starts_with("| the ")).count();
+        assert_eq!(rows, COUNTS.len(), "the page has rows that are no longer in the table");
     }
 }

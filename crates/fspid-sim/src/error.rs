@@ -5,7 +5,7 @@ use std::fmt;
 use fspid_aircraft::TrimFailure;
 use fspid_core::ConfigError;
 use fspid_core::fuzzy::FuzzyError;
-use fspid_lti::LtiError;
+use fspid_lti::{InWords, LtiError};
 
 /// Why a part of a scenario could not be built.
 #[derive(Clone, Debug, PartialEq)]
@@ -105,8 +105,11 @@ pub enum SimError {
 impl fmt::Display for SimError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Number { what, found, allowed } => {
+            Self::Number { what, found, allowed } if found.is_finite() => {
                 write!(f, "{what} is {found:?}; allowed is {allowed}")
+            }
+            Self::Number { what, found, allowed } => {
+                write!(f, "{what} is {}; allowed is {allowed}", InWords(*found))
             }
             Self::TooManySamples { found, most } => write!(
                 f,

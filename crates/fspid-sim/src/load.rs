@@ -143,6 +143,10 @@ fn with_plant(
         flight = flight.product(&flight)?;
     }
     let for_good = flight.get(0, model.size()).unwrap_or(f64::NAN).abs();
+    // A largest that is NaN was never larger than the one before.
+    if !(largest.is_finite() && at_end.is_finite() && for_good.is_finite()) {
+        return Err(LtiError::OutOfRange { what: "effect of a constant load" }.into());
+    }
     Ok(ConstantLoad { largest, at_end, for_good, has_integral: memory.integral })
 }
 

@@ -9,7 +9,7 @@ use fspid_lti::{Complex, Matrix, eigenvalues, spectral_radius};
 use crate::aircraft::AircraftPlant;
 use crate::controller::Controller;
 use crate::error::SimError;
-use crate::loop_model::{LoopModel, Memory, SampledPlant};
+use crate::loop_model::{BreakPoint, LoopModel, Memory, SampledPlant};
 use crate::plant::LinearPlant;
 use crate::rest::{Doubt, Rest, RestPoint, Stand};
 use crate::scenario::Scenario;
@@ -62,6 +62,45 @@ pub fn instability(
         }
     }
     Ok(None)
+}
+
+/// Norm of a loop's matrix below which no question about its poles leaves the range of 64-bit numbers:
+/// far below the tenth root of the largest.
+const TAME: f64 = 1e30;
+
+/// Whether the loop of a controller with a plant can be asked for its poles, with the gains it starts from and with those
+/// that it has at rest. Whether they are stable is another question.
+///
+/// # Errors
+/// [`SimError`] where the plant cannot be sampled, or the loop leaves the range of 64-bit numbers.
+pub fn can_be_judged(
+    scenario: &Scenario,
+    plant: &LinearPlant,
+    controller: &Controller,
+) -> Result<(), SimError> {
+    let gains = controller.nominal();
+    let memory = Memory::of_gains(gains, controller.config());
+    let model = LoopModel::of(scenario, plant, controller.config(), memory)?;
+    // What margins are asked of.
+    model.sharpened(scenario, plant)?.open(gains, BreakPoint::default())?;
+    is_in_range(&closed_loop(scenario, plant, gains, controller.config())?)?;
+    let Controller::SelfTuning(fspid) = controller else { return Ok(()) };
+    for rest in Rest::all(scenario, plant, controller, fspid.tuner().gains_at_rest()) {
+        for side in &rest.sides {
+            let model = side.model(scenario, plant, controller)?;
+            is_in_range(&model.closed_matrix(side.gains)?)?;
+        }
+    }
+    Ok(())
+}
+
+/// Poles take a while, where much is on its way, and those of tame numbers are always found.
+fn is_in_range(closed: &Matrix) -> Result<(), SimError> {
+    // Written so that NaN is asked.
+    if !(closed.norm_one() < TAME) {
+        spectral_radius(closed)?;
+    }
+    Ok(())
 }
 
 /// Whether a loop grows around rest, whoever's gains they are and whatever limits act elsewhere.

@@ -19,6 +19,32 @@ pub fn answer_text(answer: &Value) -> String {
     }
 }
 
+/// The answer with a table `null` of why these keys are null in it, of those that are somewhere.
+#[must_use]
+pub fn with_null_reasons(mut answer: Value, reasons: &[(&str, &str)]) -> Value {
+    let found = reasons.iter().filter(|(key, _)| holds_null(&answer, key));
+    let table = by_name(found.map(|(key, reason)| ((*key).to_owned(), json!(reason))));
+    if let (Some(table), Some(keys)) = (table, answer.as_object_mut()) {
+        keys.insert("null".to_owned(), Value::Object(table));
+    }
+    answer
+}
+
+/// True where a key is null, or a list of which an entry is.
+fn holds_null(value: &Value, key: &str) -> bool {
+    let is_null = |value: &Value| match value {
+        Value::Array(list) => list.iter().any(Value::is_null),
+        value => value.is_null(),
+    };
+    match value {
+        Value::Object(keys) => keys
+            .iter()
+            .any(|(name, value)| (name == key && is_null(value)) || holds_null(value, key)),
+        Value::Array(list) => list.iter().any(|value| holds_null(value, key)),
+        _ => false,
+    }
+}
+
 /// A number, or in words which of the numbers that JSON does not have.
 pub(crate) fn finite(value: f64) -> Value {
     match value {
@@ -60,4 +86,20 @@ pub(crate) fn merged<const N: usize>(objects: [Value; N]) -> Value {
 pub(crate) fn by_name(values: impl Iterator<Item = (String, Value)>) -> Option<Map<String, Value>> {
     let all: Map<_, _> = values.collect();
     (!all.is_empty()).then_some(all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_null_has_its_reason_in_the_table_and_what_is_never_null_has_none() {
+        let answer = json!({ "points": [{ "period_s": null, "gain": 2.0 }, { "period_s": 1.0 }], "ends": [null] });
+        let reasons =
+            [("period_s", "it does not swing"), ("gain", "none"), ("ends", "there is no end")];
+        let told = with_null_reasons(answer.clone(), &reasons);
+        let table = json!({ "period_s": "it does not swing", "ends": "there is no end" });
+        assert_eq!(told["null"], table);
+        assert_eq!(with_null_reasons(answer.clone(), &[("gain", "none")]), answer);
+    }
 }

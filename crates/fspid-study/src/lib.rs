@@ -20,6 +20,7 @@ pub mod inference;
 pub mod json;
 pub mod judgement;
 pub mod metrics;
+pub mod moment;
 pub mod output;
 pub mod report;
 pub mod rows;

@@ -14,10 +14,10 @@ use std::thread;
 
 use fspid_scenario::apart::{self, Clash, folder_of};
 
-pub use folder::{Contents, is_free, write_folders};
+pub use folder::{Contents, Taken, is_free, write_folders};
 pub use locked::{Locked, NotLocked};
 pub use names::{Names, Place};
-pub use unfinished::UNFINISHED;
+pub use unfinished::is_unfinished;
 
 use unfinished::new_file_in;
 
@@ -53,6 +53,7 @@ pub fn in_words(reason: &io::Error) -> String {
         io::ErrorKind::FileTooLarge => {
             "files may not be so large here (`ulimit -f` says how large)"
         }
+        io::ErrorKind::InvalidFilename => "its name is too long",
         io::ErrorKind::CrossesDevices => "a link there leads to another disk",
         io::ErrorKind::NotADirectory | io::ErrorKind::AlreadyExists => "what is there is no folder",
         _ => return reason.to_string(),
@@ -171,9 +172,11 @@ fn begun<T, E: From<OutputError>>(
 fn place(path: &Path) -> io::Result<PathBuf> {
     apart::writing(path).map_err(|clash| io::Error::new(io::ErrorKind::InvalidInput, clash))?;
     let place = apart::target(path);
-    match place.is_symlink() {
-        true => Err(io::Error::other("links there lead in a circle")),
-        false => Ok(place),
+    match place.symlink_metadata() {
+        Ok(found) if found.is_symlink() => Err(io::Error::other("links there lead in a circle")),
+        // A name that is too long would be found out when others already stand at their places.
+        Err(error) if error.kind() == io::ErrorKind::InvalidFilename => Err(error),
+        _ => Ok(place),
     }
 }
 
@@ -259,6 +262,18 @@ mod tests {
             assert_eq!(fs::read(path).expect("read"), b"old");
         }
         assert_eq!(fs::read_dir(folder.path()).expect("listed").count(), paths.len());
+    }
+
+    /// A proof of 35 had a name that was too long, and 13 of them were written.
+    #[cfg(unix)]
+    #[test]
+    fn a_name_that_is_too_long_is_known_before_others_are_placed() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let at = |name: &str| folder.path().join(name);
+        let files: [(PathBuf, &[u8]); 2] = [(at("a"), b"new"), (at(&"x".repeat(300)), b"new")];
+        let told = write_all(&files).expect_err("too long").to_string();
+        assert!(told.contains("its name is too long"), "{told}");
+        assert_eq!(fs::read_dir(folder.path()).expect("listed").count(), 0);
     }
 
     #[cfg(target_os = "linux")]

@@ -6,6 +6,7 @@ mod designs;
 mod fly;
 mod flying;
 mod fuzzy_system;
+mod moment;
 mod report;
 mod requirements;
 mod sound;

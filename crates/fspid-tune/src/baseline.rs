@@ -109,6 +109,9 @@ impl Baseline {
         answer["controller"] = json!(self.controller);
         answer["other_controllers"] = json!(self.others);
         answer["supervisor"] = json!(self.is_self_tuning.then_some(NOT_USED));
+        if !self.is_self_tuning {
+            answer["null"]["supervisor"] = json!("the controller has none");
+        }
         answer
     }
 

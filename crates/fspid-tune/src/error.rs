@@ -1,5 +1,8 @@
 //! What can be wrong with a tuning.
 
+use std::io;
+use std::path::Path;
+
 use fspid_campaign::CampaignError;
 use fspid_campaign::table::TableError;
 use fspid_scenario::count::CountError;
@@ -170,5 +173,14 @@ impl TuneError {
             Self::Campaign(error) => error.is_of_output(),
             _ => false,
         }
+    }
+
+    /// The same, with the file where the system did not let its table be written.
+    pub(crate) fn of_writing(self, path: &Path) -> Self {
+        let Self::History(error) = &self else { return self };
+        let Some(found) = error.of_system() else { return self };
+        let again = || io::Error::from(found.kind());
+        let reason = found.raw_os_error().map_or_else(again, io::Error::from_raw_os_error);
+        Self::Output(OutputError { path: path.to_owned(), reason })
     }
 }

@@ -28,12 +28,13 @@ pub fn write(path: &Path, problem: &TuningProblem, search: &Search<'_>) -> Resul
         effort.seed
     );
     let metadata = vec![(SEARCH_KEY.to_owned(), name)];
-    output::write_by(path, |file| {
+    let written = output::write_by(path, |file| {
         let mut writer = Writer::new(file, table.schema(), &metadata)?;
         writer.write(&table)?;
         writer.finish(&[])?;
         Ok::<_, TuneError>(())
-    })
+    });
+    written.map_err(|error| error.of_writing(path))
 }
 
 /// The candidates of a search as rows.

@@ -35,6 +35,8 @@ fn verdict(source: &Source<'_>, place: usize, controller: &ControllerSummary) ->
     let standing = match (failed.count, failed.at_most) {
         // Nothing was judged that could be called good.
         (0, _) if !controller.is_judged() => Standing::Fair,
+        // Nobody can tell whether these are stable.
+        (0, _) if controller.undecided > 0 => Standing::Fair,
         // None failed of so few flights that half of all may: nothing to call good yet.
         (0, Some(bound)) if bound >= 0.5 => Standing::Fair,
         (0, _) => Standing::Good,
@@ -45,9 +47,13 @@ fn verdict(source: &Source<'_>, place: usize, controller: &ControllerSummary) ->
         .iter()
         .map(|it| format!("{} {}", cut(&it.verdict, 40), count(it.flights)))
         .collect();
+    let undecided = match controller.undecided {
+        0 => String::new(),
+        flights => format!(" Stability at rest is undecided of {}.", count(flights)),
+    };
     let sure = probability(failed, source.summary.head.confidence);
     let detail = format!(
-        "{judged}Probability that a flight fails: {sure}. Verdicts on the flights: {}.",
+        "{judged}Probability that a flight fails: {sure}. Verdicts on the flights: {}.{undecided}",
         verdicts.join(", ")
     );
     Verdict { standing, word, name: source.name(place), detail }

@@ -109,6 +109,9 @@ pub struct ControllerSummary {
     pub failed: Probability,
     /// Runs whose numbers make no scenario, so that nothing flew; they are among the failed.
     pub refused: Probability,
+    /// Flights of a loop of which nobody can tell whether it is stable at rest; they count as failed only for what else
+    /// they do.
+    pub undecided: u64,
     /// Requirements, in the order of the scenario.
     pub requirements: Vec<RequirementSummary>,
     /// Measures in the order of the columns, then values that requirements judge.

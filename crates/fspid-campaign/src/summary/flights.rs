@@ -8,7 +8,8 @@ use super::data::{FailedRun, Severity, VerdictCount};
 use super::source::Source;
 use super::{FAILED_RUNS, NotMerged, SummaryError};
 use crate::rows::{
-    CONTROLLER, CONTROLLER_LOST, DIVERGED_AT, FAILED, HIT_GROUND, REASONS, REFUSED, RUN, VERDICT,
+    CONTROLLER, CONTROLLER_LOST, DIVERGED_AT, FAILED, HIT_GROUND, REASONS, REFUSED, RUN, STABILITY,
+    UNDECIDED, VERDICT,
 };
 use crate::table::{ColumnTable, Kind, TableError, Values};
 
@@ -30,6 +31,7 @@ pub(super) struct Flights {
     verdicts: BTreeMap<String, u64>,
     pub(super) failed: u64,
     pub(super) refused: u64,
+    pub(super) undecided: u64,
     pub(super) worst: Vec<FailedRun>,
     /// Of the first runs: 1 for a failed one, else 0.
     pub(super) first_failed: Vec<f64>,
@@ -40,6 +42,7 @@ struct Ending<'a> {
     run: u64,
     failed: bool,
     verdict: &'a str,
+    is_undecided: bool,
     reasons: Option<&'a str>,
     diverged_at_s: Option<f64>,
 }
@@ -48,7 +51,12 @@ struct Ending<'a> {
 pub(super) fn read(source: &Source) -> Result<Vec<Flights>, SummaryError> {
     let mut flights: Vec<Flights> =
         source.head.controllers.iter().map(|_| Flights::default()).collect();
-    let names = [RUN, CONTROLLER, FAILED, VERDICT, REASONS, DIVERGED_AT];
+    let mut names = vec![RUN, CONTROLLER, FAILED, VERDICT, REASONS, DIVERGED_AT];
+    // Rows of an earlier format do not say.
+    let schema = source.files.first().schema();
+    names.extend(
+        [STABILITY].iter().filter(|name| schema.columns().iter().any(|it| it.name == **name)),
+    );
     let mut row = 0;
     for table in source.files.columns(&names)? {
         let table = table?;
@@ -71,6 +79,7 @@ struct Columns<'a> {
     controllers: &'a [Option<String>],
     failed: &'a [Option<bool>],
     verdicts: &'a [Option<String>],
+    stabilities: &'a [Option<String>],
     reasons: &'a [Option<String>],
     diverged_at_s: &'a [Option<f64>],
 }
@@ -82,6 +91,7 @@ impl<'a> Columns<'a> {
             controllers: texts(table, CONTROLLER)?,
             failed: booleans(table, FAILED)?,
             verdicts: texts(table, VERDICT)?,
+            stabilities: texts(table, STABILITY).unwrap_or_default(),
             reasons: texts(table, REASONS)?,
             diverged_at_s: table.floats(DIVERGED_AT)?,
         })
@@ -107,10 +117,12 @@ impl<'a> Columns<'a> {
         let empty = |column| source.refusal(NotMerged::Empty { row: row as u64, column });
         let failed = self.failed.get(index).copied().flatten();
         let verdict = self.verdicts.get(index).and_then(Option::as_deref);
+        let stability = self.stabilities.get(index).and_then(Option::as_deref);
         Ok(Ending {
             run,
             failed: failed.ok_or_else(|| empty(FAILED))?,
             verdict: verdict.ok_or_else(|| empty(VERDICT))?,
+            is_undecided: stability == Some(UNDECIDED),
             reasons: self.reasons.get(index).and_then(Option::as_deref),
             diverged_at_s: self.diverged_at_s.get(index).copied().flatten(),
         })
@@ -136,6 +148,7 @@ impl Flights {
         }
         self.failed += later.failed;
         self.refused += later.refused;
+        self.undecided += later.undecided;
         self.first_failed.extend(later.first_failed);
         later.worst.into_iter().for_each(|failed| self.keep(failed));
     }
@@ -149,6 +162,7 @@ impl Flights {
         }
         self.failed += u64::from(ending.failed);
         self.refused += u64::from(ending.verdict == REFUSED);
+        self.undecided += u64::from(ending.is_undecided);
         if self.first_failed.len() < first_runs {
             self.first_failed.push(f64::from(u8::from(ending.failed)));
         }

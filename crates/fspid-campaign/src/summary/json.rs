@@ -1,5 +1,6 @@
 //! A summary for other programs.
 
+use fspid_study::json::with_null_reasons;
 use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 
@@ -29,6 +30,7 @@ const SCHEMA: u64 = 1;
 ///   name
 ///   verdicts            [{ verdict, flights }]
 ///   failed, refused     probability
+///   undecided           flights of a loop of which nobody can tell whether it is stable at rest
 ///   requirements        [{ id, measure, unit, required, least, most, not_met: probability, without_value,
 ///                          not_judged, worst: { run, value } }]
 ///   measures            [{ name, unit, meaning, count, missing, not_finite, bad: high | low, is_event,
@@ -77,8 +79,46 @@ pub fn json(summary: &Summary) -> Value {
         json.insert("planned_runs".to_owned(), json!(head.planned_runs));
         json.insert("shards".to_owned(), json!(shards));
     }
-    json
+    with_null_reasons(json, &NULLS)
 }
+
+/// Why keys of the answer are null.
+const NULLS: [(&str, &str); 27] = [
+    ("digest", "parts were read one by one, or what was read holds none"),
+    (
+        "at_least",
+        "not every flight counts, so that `lower` and `upper` say it, or none was counted",
+    ),
+    ("at_most", "some flight counts, so that `lower` and `upper` say it, or none was counted"),
+    ("estimate", "nothing was counted"),
+    ("lower", "no such interval is known of so few flights or values"),
+    ("upper", "no such interval is known of so few flights or values"),
+    ("least", "the requirement has no such end"),
+    ("most", "the requirement has no such end"),
+    ("worst", "no flight has a value of it"),
+    ("bad", "neither high nor low values of it are bad"),
+    ("histogram", "there are no different values of it"),
+    ("mean", NO_VALUES),
+    ("standard_deviation", NO_VALUES),
+    ("standard_error", NO_VALUES),
+    ("minimum", NO_VALUES),
+    ("maximum", NO_VALUES),
+    ("value", NO_VALUES),
+    ("measure", "it is about failing, and about no measure"),
+    ("diverged_at_s", "the flight did not diverge"),
+    ("rank_correlation", NO_SHARE),
+    ("variance_share", NO_SHARE),
+    ("coefficient", NO_SHARE),
+    ("fraction", NO_SHARE),
+    ("uncorrected", NO_SHARE),
+    ("interval_95", NO_SHARE),
+    ("id", "the requirement has no name"),
+    ("unit", "it has none"),
+];
+
+const NO_VALUES: &str = "there are too few values for it, or none";
+const NO_SHARE: &str =
+    "too few flights have a value, or all have the same one, or the parameter does not vary";
 
 /// A note as a word, in words, and what it is about.
 #[derive(Serialize)]

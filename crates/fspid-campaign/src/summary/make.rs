@@ -84,6 +84,7 @@ fn controllers(
             verdicts: flights.verdicts(),
             failed: probability(flights.failed)?,
             refused: probability(flights.refused)?,
+            undecided: flights.undecided,
             requirements,
             measures: columns.measures,
             failed_runs: flights.worst,

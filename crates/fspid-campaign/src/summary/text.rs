@@ -77,6 +77,9 @@ fn of_controller(controller: &ControllerSummary, confidence: f64) -> Vec<String>
         .map(|count| format!("{} {}", count.verdict, whole(count.flights)))
         .collect();
     lines.extend(wrapped(&verdicts.join(", "), "  "));
+    if controller.undecided > 0 {
+        lines.push(format!("  stability at rest undecided: {}", whole(controller.undecided)));
+    }
     if controller.refused.count > 0 {
         lines.push(format!("  refused {}", controller.refused.in_words(confidence)));
     }

@@ -295,3 +295,15 @@ pub enum Damage {
     #[error("the Parquet library could not cope with it")]
     Panic,
 }
+
+impl TableError {
+    /// What the system said, where it is what is wrong: a full disk, say.
+    #[must_use]
+    pub fn of_system(&self) -> Option<&io::Error> {
+        let mut innermost: &dyn std::error::Error = self;
+        while let Some(source) = innermost.source() {
+            innermost = source;
+        }
+        innermost.downcast_ref()
+    }
+}

@@ -19,7 +19,7 @@ use crate::limits::Limits;
 mod pid;
 mod tuner;
 
-pub use pid::{AntiWindupKind, Free, PidEquations, PidNumbers, PidStructure, Regulated};
+pub use pid::{AntiWindupKind, Free, Parts, PidEquations, PidNumbers, PidStructure, Regulated};
 pub use tuner::{
     GainNumbers, LawKind, SecondInputKind, TunerEquations, TunerNumbers, TunerStructure,
 };

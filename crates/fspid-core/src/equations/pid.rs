@@ -107,6 +107,19 @@ pub struct Free<S> {
     pub command_rad: S,
 }
 
+/// What a command is made of before any limit: the first three less the last, in this order, are it to the bit.
+#[derive(Clone, Copy, Debug)]
+pub struct Parts<S> {
+    /// $k_p (b r - y)$, rad.
+    pub proportional_rad: S,
+    /// $I$, rad.
+    pub integral_rad: S,
+    /// $k_d d$, rad.
+    pub derivative_rad: S,
+    /// $k_r q$, rad, which is taken off.
+    pub rate_rad: S,
+}
+
 /// A sample behind the limits.
 #[derive(Clone, Copy, Debug)]
 pub struct Regulated<S> {
@@ -212,6 +225,17 @@ impl<S: Scalar> PidEquations<S> {
         let command_rad =
             proportional_rad + term_rad + kd * derivative_rad_s - rate_gain_s * rate_rad_s;
         Free { error_rad, derivative_input_rad, derivative_rad_s, wound, term_rad, command_rad }
+    }
+
+    /// The terms of a free command; `free` does not ask here, so that what is exported of it stays as it is.
+    pub fn parts(&self, free: &Free<S>, sample: &Sample<S>, gains: &Gains<S>) -> Parts<S> {
+        let (weight, rate_gain_s) = self.coupled(gains);
+        Parts {
+            proportional_rad: gains.kp * (weight * sample.setpoint_rad - sample.measurement_rad),
+            integral_rad: free.term_rad,
+            derivative_rad: gains.kd * free.derivative_rad_s,
+            rate_rad: rate_gain_s * sample.rate_rad_s,
+        }
     }
 
     /// The sample behind slew limit, limits and anti-windup, in this order.

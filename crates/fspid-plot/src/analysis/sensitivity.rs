@@ -172,6 +172,14 @@ enum Kind {
     Difference,
 }
 
+impl LoopCurve {
+    /// Magnitude of the sensitivity or of the complementary sensitivity along the curve (dB).
+    #[must_use]
+    pub fn transfer_db(&self, transfer: Transfer) -> Vec<f64> {
+        values(self, Kind::Of(transfer)).map(|(_, magnitude_db)| magnitude_db).collect()
+    }
+}
+
 fn values(curve: &LoopCurve, kind: Kind) -> impl Iterator<Item = Point> + Clone {
     curve.points.iter().map(move |point| (point.frequency_rad_s, magnitude_db(*point, kind)))
 }

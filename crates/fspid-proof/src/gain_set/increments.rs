@@ -7,6 +7,7 @@ use fspid_fuzzy::system::{Parts, System};
 use fspid_numeric::scalar::Interval;
 
 use super::{EVERYWHERE, GainSet, NoBound, law};
+use crate::solve::never;
 
 /// How far the supervisor's own arithmetic may be off its centre of gravity, as a share of its
 /// range: $2^{-40}$, which is $8192 \epsilon$ with $\epsilon = 2^{-53}$.
@@ -59,6 +60,16 @@ impl IncrementMap {
     /// # Errors
     /// [`NoBound`] for an accumulating law that nothing holds back.
     pub fn of(tuner: &SelfTuner<f64>, divisions: usize) -> Result<Self, NoBound> {
+        Self::until(tuner, divisions, never)
+            .map(|map| map.unwrap_or_else(|| unreachable!("nobody stops it")))
+    }
+
+    /// As [`of`](Self::of), and nothing where `stops`, which is asked for each row of cells, says so.
+    pub(crate) fn until(
+        tuner: &SelfTuner<f64>,
+        divisions: usize,
+        stops: fn() -> bool,
+    ) -> Result<Option<Self>, NoBound> {
         let system = System::new(Parts::from(tuner.supervisor())).ok();
         let mut enclosure = Enclosure::new(tuner, system.as_ref());
         // The origin is in every dead zone, also in one without width.
@@ -71,6 +82,9 @@ impl IncrementMap {
             .map(|scale| sides(tuner.supervisor(), divisions.max(1), scale));
         let mut cells = Vec::with_capacity(errors.len() * changes.len() + 4);
         for &error in &errors {
+            if stops() {
+                return Ok(None);
+            }
             for &change in &changes {
                 cells.push(enclosure.cell([error, change]));
             }
@@ -81,7 +95,7 @@ impl IncrementMap {
         }
         let map = Self { cells, rest, tuner: *tuner };
         law::check(&map)?;
-        Ok(map)
+        Ok(Some(map))
     }
 
     /// The gains for `output_factor` times the tuner's output factors.

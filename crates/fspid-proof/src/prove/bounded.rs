@@ -147,7 +147,7 @@ impl Prover<'_> {
             points: &points,
             part: &|cell| part_in(&cells, cell),
         };
-        let verdict = solve::moving_form_over(&problem, &solve::Effort::default());
+        let verdict = solve::moving_form_over(&problem, &self.search());
         let MovingVerdict::Found(found) = verdict else { return None };
         let size = self.model.size();
         let mut forms = [0; 4].map(|_| Matrix::zeros(size, size));

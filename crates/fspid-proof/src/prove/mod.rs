@@ -21,9 +21,10 @@ use crate::limits;
 use crate::recheck::{Kept, Recheck, RecheckError, Rechecked};
 use crate::rest::{NoRest, Rest};
 use crate::scope::{Asked, Range};
+use crate::solve::{self, never};
 
 /// How hard to try. Nothing depends on a clock.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Effort {
     /// Cells along each of the supervisor's inputs.
     pub divisions: usize,
@@ -38,6 +39,9 @@ pub struct Effort {
     /// Changes of gains in a sample, in half widths of their box, largest first: those that a proof for
     /// gains of bounded rate is tried with.
     pub changes: &'static [f64],
+    /// Asked between the steps of the work; once it says yes, [`certify`] gives up with [`NotProvable::Stopped`]. It may not
+    /// say no again.
+    pub stops: fn() -> bool,
 }
 
 impl Default for Effort {
@@ -49,6 +53,7 @@ impl Default for Effort {
             largest_factor: 64.0,
             frozen_points: 33,
             changes: &[0.1, 0.03, 0.01, 0.003, 0.001, 0.0003],
+            stops: never,
         }
     }
 }
@@ -96,12 +101,17 @@ pub struct Largest {
 /// Proves or refutes a loop.
 ///
 /// # Errors
-/// [`NotProvable`] for a loop that a proof cannot speak of.
+/// [`NotProvable`] for a loop that a proof cannot speak of, and where the effort was stopped.
 pub fn certify(
     description: &LoopDescription,
     asked: &Asked,
     effort: &Effort,
 ) -> Result<Outcome, NotProvable> {
+    let unless_stopped = || match (effort.stops)() {
+        true => Err(NotProvable::Stopped),
+        false => Ok(()),
+    };
+    unless_stopped()?;
     let prover = Prover::new(description, asked, effort)?;
     let set = prover.set(1.0);
     let (verdict, instead) = prover.verdict(&set);
@@ -110,6 +120,8 @@ pub fn certify(
         Verdict::Proved(..) | Verdict::Refuted(..) => None,
     };
     let largest = prover.largest(&verdict);
+    // What was found of a search that was stopped says nothing.
+    unless_stopped()?;
     Ok(Outcome {
         verdict,
         asked: asked.range,
@@ -157,7 +169,8 @@ impl<'a> Prover<'a> {
         let increments = match &description.controller {
             Controller::Fixed(_) => None,
             Controller::SelfTuning(fspid) => {
-                Some(IncrementMap::of(fspid.tuner(), effort.divisions)?)
+                let map = IncrementMap::until(fspid.tuner(), effort.divisions, effort.stops)?;
+                Some(map.ok_or(NotProvable::Stopped)?)
             }
         };
         Ok(Self {
@@ -324,6 +337,11 @@ impl<'a> Prover<'a> {
         matrices.iter().all(holds).then_some(matrices)
     }
 
+    /// How hard a single search tries.
+    fn search(&self) -> solve::Effort {
+        solve::Effort { stops: self.effort.stops, ..solve::Effort::default() }
+    }
+
     fn covers_limits(&self) -> bool {
         limits::not_covered(self.description).is_none()
     }
@@ -334,6 +352,9 @@ impl<'a> Prover<'a> {
         factor: f64,
         level: Option<f64>,
     ) -> Option<(Certificate, Rechecked)> {
+        if (self.effort.stops)() {
+            return None;
+        }
         let certificate = Certificate {
             description: self.description.clone(),
             output_factor: factor,
@@ -345,7 +366,11 @@ impl<'a> Prover<'a> {
         };
         let set = self.set(factor);
         let recheck = Recheck::with(&certificate, self.enclosed.clone(), set, &self.slopes).ok()?;
-        let rechecked = recheck.run().map_err(|doubt| self.note(factor, &doubt)).ok()?;
+        let rechecked = recheck
+            .until(self.effort.stops)
+            .run()
+            .map_err(|doubt| self.note(factor, &doubt))
+            .ok()?;
         Some((certificate, rechecked))
     }
 }

@@ -82,7 +82,7 @@ impl Prover<'_> {
         best_rate: bool,
         claim: impl Fn(solve::Solution, f64) -> (Claim, Option<f64>),
     ) -> Option<(Certificate, Rechecked)> {
-        let effort = solve::Effort::default();
+        let effort = self.search();
         let plain = || match solve::common_lyapunov(problem, &effort) {
             solve::Verdict::Found(solution) => Some((solution, 1.0)),
             solve::Verdict::NotFound { .. } => None,

@@ -35,7 +35,8 @@ impl Prover<'_> {
 
     /// Inputs of the supervisor, the loop with the gains that it produces there, and its spectral radius.
     pub(super) fn frozen(&self) -> Vec<Frozen> {
-        self.inputs().into_iter().filter_map(|input| self.frozen_at(input)).collect()
+        let inputs = self.inputs().into_iter().take_while(|_| !(self.effort.stops)());
+        inputs.filter_map(|input| self.frozen_at(input)).collect()
     }
 
     fn frozen_at(&self, input: [f64; 2]) -> Option<Frozen> {
@@ -70,7 +71,7 @@ impl Prover<'_> {
         let chosen = self.extreme(&frozen);
         let matrices: Vec<Matrix> =
             chosen.iter().filter_map(|&index| Some(frozen.get(index)?.2.clone())).collect();
-        let growth = solve::growing_sequence(&matrices, &solve::Effort::default())?;
+        let growth = solve::growing_sequence(&matrices, &self.search())?;
         let mut product = Matrix::identity(self.model.size());
         let mut inputs = Vec::with_capacity(growth.sequence.len());
         for &place in &growth.sequence {

@@ -16,6 +16,7 @@ use crate::gain_set::{Cone, GainSet, HeldGains, IncrementMap, KnownSlopes, NoSlo
 use crate::limits;
 use crate::rest::{NoRest, Rest};
 use crate::sizes::{self, WrongSizes};
+use crate::solve::never;
 
 pub(crate) use moving::{Corner, moved_inputs, part_in};
 pub use remains::Remains;
@@ -144,6 +145,8 @@ pub(crate) struct Recheck<'a> {
     held: GainSet,
     /// What of that command is left out, rad.
     off_rad: f64,
+    /// Asked before each inequality.
+    stops: fn() -> bool,
 }
 
 fn malformed(what: &'static str) -> RecheckError {
@@ -196,7 +199,12 @@ impl<'a> Recheck<'a> {
                 set.holding(fspid, certificate.output_factor, rest.held, known)?
             }
         };
-        Ok(Self { certificate, model, set, rest, held, off_rad })
+        Ok(Self { certificate, model, set, rest, held, off_rad, stops: never })
+    }
+
+    /// The same for somebody who may not want the answer any more; where `stops` says so, nothing is proved.
+    pub(crate) fn until(self, stops: fn() -> bool) -> Self {
+        Self { stops, ..self }
     }
 
     pub(crate) fn run(&self) -> Result<Rechecked, RecheckError> {
@@ -279,6 +287,9 @@ impl<'a> Recheck<'a> {
         rate: f64,
         relaxation: Option<Relaxation<'_>>,
     ) -> Result<usize, RecheckError> {
+        if (self.stops)() {
+            return Err(malformed("nobody wants the answer any more"));
+        }
         let doubt = |reason| RecheckError::Inequality { gains: Some(gains), reason };
         let at = points(gains);
         let model = self.model.with_change_gain(Interval::point(change_gain));

@@ -9,6 +9,7 @@
 //! S. Boyd and L. El Ghaoui, Method of centers for minimizing generalized eigenvalues, Linear Algebra
 //! and its Applications 188 (1993) 63.
 
+use super::Effort;
 use super::barrier::centre;
 use super::inequality::{Inequality, System};
 use super::symmetric::Spectrum;
@@ -61,11 +62,14 @@ pub(super) struct Descent {
 }
 
 /// Goes down from the chart's point. `None` when it satisfies the inequalities at no level.
-pub(super) fn descend(chart: &mut impl Chart, goal: Goal, steps_max: usize) -> Option<Descent> {
+pub(super) fn descend(chart: &mut impl Chart, goal: Goal, effort: &Effort) -> Option<Descent> {
     let mut bound = starting_bound(&chart.system(), &chart.point())?;
     let mut level = bound + 0.5 * bound.abs();
     let mut steps = 0;
-    while steps < steps_max && !is_done(goal, level, bound) {
+    while steps < effort.newton_steps && !is_done(goal, level, bound) {
+        if (effort.stops)() {
+            return None;
+        }
         let (reached, taken) = centred(chart, level, STEPS_PER_CENTRE)?;
         steps += taken;
         bound = reached;
@@ -77,6 +81,9 @@ pub(super) fn descend(chart: &mut impl Chart, goal: Goal, steps_max: usize) -> O
     };
     if bound < target {
         for _ in 0..DEEPENINGS {
+            if (effort.stops)() {
+                return None;
+            }
             let (reached, taken) = centred(chart, 0.5 * (target + bound), STEPS_PER_CENTRE)?;
             steps += taken;
             bound = reached;

@@ -146,6 +146,9 @@ impl Set {
             let ahead: Vec<Dense> =
                 self.matrices.iter().map(|matrix| power(matrix, outlook)).collect();
             for start in 0..self.size() {
+                if (effort.stops)() {
+                    return Vec::new();
+                }
                 let flight = self.fly(&ahead, start, effort.flight_samples);
                 found.extend(self.periods(&flight));
             }

@@ -86,7 +86,7 @@ pub fn common_lyapunov(problem: &LyapunovProblem, effort: &Effort) -> Verdict {
     let level = problem.rate * problem.rate;
     let Some(mut search) = Search::start(problem) else { return missing };
     let goal = Goal::Below(level);
-    let Some(descent) = descend(&mut search, goal, effort.newton_steps) else { return missing };
+    let Some(descent) = descend(&mut search, goal, effort) else { return missing };
     match search.solution(problem, level, descent.steps) {
         Some(solution) if solution.margin > MARGIN_MIN => Verdict::Found(solution),
         _ => Verdict::NotFound { best_margin: level - descent.bound },
@@ -100,7 +100,7 @@ pub fn common_lyapunov(problem: &LyapunovProblem, effort: &Effort) -> Verdict {
 #[must_use]
 pub fn best_rate(problem: &LyapunovProblem, effort: &Effort) -> Option<BestRate> {
     let mut search = Search::start(problem)?;
-    let descent = descend(&mut search, Goal::Lowest, effort.newton_steps)?;
+    let descent = descend(&mut search, Goal::Lowest, effort)?;
     let level = settled_level(descent);
     let solution = search.solution(problem, level, descent.steps)?;
     (solution.margin > 0.0).then(|| BestRate { rate: level.sqrt(), solution })
@@ -118,7 +118,7 @@ pub(super) fn closest_form(matrices: &[Matrix], effort: &Effort) -> Option<Dense
         matrices.iter().map(|matrix| Condition { matrix, cone: None }).collect();
     let problem = LyapunovProblem { conditions: &conditions, cones: &[], rate: 1.0 };
     let mut search = Search::start(&problem)?;
-    descend(&mut search, Goal::Below(1.0), effort.newton_steps)?;
+    descend(&mut search, Goal::Below(1.0), effort)?;
     Some(search.form())
 }
 

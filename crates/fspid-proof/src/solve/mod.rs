@@ -32,18 +32,27 @@ pub use parameter_dependent::{
 };
 
 /// How much work a search may do.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy)]
 pub struct Effort {
     /// Newton steps of a search for a form.
     pub newton_steps: usize,
     /// Samples of each flight of a search for growth.
     pub flight_samples: usize,
+    /// Asked between the steps of a search: one that is told to stop finds nothing. A plain function, since nothing else
+    /// here knows of the world outside; once it says yes, it may not say no again.
+    pub stops: fn() -> bool,
+}
+
+/// For whom nobody stops.
+#[must_use]
+pub const fn never() -> bool {
+    false
 }
 
 impl Default for Effort {
     /// The loops of the tests need up to 160 steps for a form at rest and 500 for one that moves, and flights
     /// of some three of their slowest periods.
     fn default() -> Self {
-        Self { newton_steps: 1000, flight_samples: 4000 }
+        Self { newton_steps: 1000, flight_samples: 4000, stops: never }
     }
 }

@@ -110,8 +110,8 @@ pub fn moving_form_over(problem: &MovingProblem<'_>, effort: &Effort) -> MovingV
     let mut steps = 0;
     let mut best_margin = f64::NEG_INFINITY;
     for _ in 0..ROUNDS_MAX {
-        let steps_left = effort.newton_steps.saturating_sub(steps);
-        let Some(descent) = descend(&mut search, Goal::Below(level), steps_left) else { break };
+        let left = Effort { newton_steps: effort.newton_steps.saturating_sub(steps), ..*effort };
+        let Some(descent) = descend(&mut search, Goal::Below(level), &left) else { break };
         steps += descent.steps;
         best_margin = level - descent.bound;
         if !(best_margin > MARGIN_MIN) {

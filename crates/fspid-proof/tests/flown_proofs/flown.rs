@@ -46,6 +46,7 @@ pub(crate) fn quick() -> Effort {
         largest_factor: 1.0,
         frozen_points: 13,
         changes: &[],
+        ..Effort::default()
     }
 }
 

@@ -121,9 +121,16 @@ class _Paged(Answer):
         -------
         pathlib.Path
             The file.
+
+        Raises
+        ------
+        FileError
+            It cannot be written; what was there is as it was.
+        InputError
+            It is a file that the answer is made of, such as the scenario.
         """
         target = Path(path)
-        target.write_text(self._native.page or "", encoding="utf-8")
+        self._native.save_page(target)
         return target
 
 
@@ -241,11 +248,11 @@ class Flight(Answer, Mapping[str, Trace]):
         Parameters
         ----------
         path : path-like, optional
-            A file to write as well.
+            A file to write as well, as :meth:`save` does.
         """
         text = self._native.csv()
         if path is not None:
-            Path(path).write_text(text, encoding="utf-8")
+            self._native.save_csv(Path(path))
         return text
 
     def svg(self) -> str:
@@ -264,9 +271,16 @@ class Flight(Answer, Mapping[str, Trace]):
         -------
         pathlib.Path
             The file.
+
+        Raises
+        ------
+        FileError
+            It cannot be written; what was there is as it was.
+        InputError
+            It is a file that the answer is made of, such as the scenario.
         """
         target = Path(path)
-        target.write_text(self._native.page(), encoding="utf-8")
+        self._native.save_page(target)
         return target
 
     def plot(self, ax: Axes | None = None, column: str = "theta_deg") -> Axes:
@@ -329,7 +343,7 @@ class Analysis(_Paged):
     def open_loops(self) -> dict[str, Columns]:
         """Each controller's open loop over ``frequency_rad_s``: ``real``, ``imaginary``, ``gain_db``, ``phase_deg``.
 
-        Of several plants it is the worst. The phase is continuous and begins between -270 and 90 deg.
+        Beside them are ``sensitivity_db`` and ``complementary_db``. Of several plants it is the worst. The phase is continuous and begins between -270 and 90 deg.
         """
         return {name: Columns(name, columns) for name, columns in self._native.curves}
 
@@ -384,14 +398,16 @@ class Certification(Answer):
         return boxes(ax, self.to_dict()["controllers"])
 
     def save(self, folder: str | PathLike[str]) -> list[Path]:
-        """Write the certificates into a folder, which is made if it is not there."""
-        target = Path(folder)
-        target.mkdir(parents=True, exist_ok=True)
-        paths = []
-        for name, text in self._native.files:
-            (target / name).write_text(text, encoding="utf-8")
-            paths.append(target / name)
-        return paths
+        """Write the certificates into a folder, which is made if it is not there: all of them, or none.
+
+        Raises
+        ------
+        FileError
+            One cannot be written; what was there is as it was.
+        InputError
+            One would be written over a file that it is made of.
+        """
+        return [Path(path) for path in self._native.save_files(Path(folder))]
 
 
 class Design(Answer):

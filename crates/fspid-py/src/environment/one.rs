@@ -11,6 +11,7 @@ use pyo3::prelude::*;
 use super::setting::{Episode, OBSERVED, Setting, Wanted, in_words};
 use crate::answer::Flight;
 use crate::error;
+use crate::origin::Origin;
 use crate::scenario::Scenario;
 
 /// What the trace of an environment is called.
@@ -24,6 +25,7 @@ type Stepped = ([f64; OBSERVED], f64, bool, bool, Option<String>);
 pub(crate) struct Environment {
     setting: Setting,
     now: Mutex<Option<Now>>,
+    origin: Origin,
 }
 
 struct Now {
@@ -44,7 +46,7 @@ impl Environment {
     #[new]
     fn new(py: Python<'_>, scenario: &Scenario, wanted: Wanted) -> PyResult<Self> {
         let setting = Setting::new(py, scenario, &wanted)?;
-        Ok(Self { setting, now: Mutex::new(None) })
+        Ok(Self { setting, now: Mutex::new(None), origin: scenario.made_of() })
     }
 
     /// Ends of the numbers of an action.
@@ -80,7 +82,7 @@ impl Environment {
 
     /// The flight so far, as if a scenario had been flown; none before the first reset.
     fn flight(&self) -> Option<Flight> {
-        self.with(|now| now.as_ref().map(Now::flight))
+        self.with(|now| now.as_ref().map(|now| now.flight(self.origin.clone())))
     }
 }
 
@@ -105,7 +107,7 @@ impl Now {
         Ok((rewarded.observation, rewarded.reward, terminated, truncated, outcome))
     }
 
-    fn flight(&self) -> Flight {
+    fn flight(&self, origin: Origin) -> Flight {
         let Episode { study, prepared, .. } = &self.episode;
         let (scenario, trace, range_rule) = (&study.scenario, self.trace.clone(), study.range_rule);
         let (timing, pushes_s) = (scenario.timing, scenario.pushes_s());
@@ -125,6 +127,6 @@ impl Now {
             range_rule,
             failed_own_flights: Vec::new(),
         };
-        Flight::new(Arc::clone(study), simulation)
+        Flight::new(Arc::clone(study), simulation, origin)
     }
 }

@@ -368,7 +368,7 @@ impl Template {
             let shown: Vec<String> =
                 values.iter().map(|(path, value)| format!("{}={value}", path.text())).collect();
             let shown = shown.join(", ");
-            match self.with(&values) {
+            match self.with_loops(&values) {
                 Err(problems) => {
                     let message = format!("{shown} is not allowed: {}", problems.first_in_a_line());
                     let allowed = "limits (`lower`, `upper`) within what the scenario allows";

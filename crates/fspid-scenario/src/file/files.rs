@@ -191,7 +191,13 @@ impl<'a> Files<'a> {
     }
 
     /// The text of a file that is referred to.
+    // A page has no files: what only they can say is not even compiled for it.
+    #[inline(always)]
     pub(crate) fn read(&mut self, path: &str) -> Result<String, String> {
+        if cfg!(target_family = "wasm") { Err(NO_FOLDER.to_owned()) } else { self.read_there(path) }
+    }
+
+    fn read_there(&mut self, path: &str) -> Result<String, String> {
         let folder = self.folder.ok_or(NO_FOLDER)?;
         self.name(path);
         let (_, bytes) = self.kept.read(folder.join(path), read_regular)?;

@@ -17,6 +17,7 @@
 
 mod aircraft;
 mod build;
+mod changed_text;
 mod dispersion;
 mod extra;
 pub(crate) mod files;
@@ -57,9 +58,10 @@ pub use crate::setting_path::{NewValue, SettingPath};
 pub use aircraft::parse_aircraft_at;
 pub use aircraft::{aircraft, parse_aircraft};
 pub use build::{Airframe, DerivedGains, GainSource, RangeRule};
+pub use changed_text::changed_text;
 pub use extra::Extra;
 pub use fspid_diagnostics::{Problem, Problems, known_words};
-pub use paths::{PathRow, paths, paths_json, paths_text};
+pub use paths::{PathRow, paths, paths_json, paths_of, paths_text};
 pub use preset::{Condition, PlantFile, load_rule_table, parse_plant, preset, rule_table};
 pub use rewrite::{Replay, replay};
 pub use schema::schema;
@@ -290,6 +292,9 @@ fn read(
     let built = build::scenario(report, files, &section);
     files.report_unused_changes(report);
     let built = built?;
+    if report.count() == 0 {
+        build::loops::check(report, &section, &built.scenario);
+    }
     Some((built, setting::settings(files, &section), marks))
 }
 

@@ -8,7 +8,7 @@ use super::files::Files;
 use super::setting::{number, quoted, step, written};
 use super::spec::SCENARIO;
 use super::tunable::FIXED;
-use super::{LoadError, build, changed_document, extra::Extra, read_text};
+use super::{LoadError, Problems, build, changed_document, extra::Extra, read_text};
 use crate::keyed::check::{self, allowed};
 use crate::keyed::schema::{self, kind as schema_of};
 use crate::keyed::{Checked, Entry, KeyName, KeyRow, Kind, Section, Table, Way, join};
@@ -45,10 +45,23 @@ pub struct PathRow {
 pub fn paths(path: &Path, overrides: &[String]) -> Result<Vec<PathRow>, LoadError> {
     let text = read_text(path)?;
     let name = path.display().to_string();
-    let (mut report, mut files) = (Report::default(), Files::new(path.parent()));
+    paths_of(&text, &name, path.parent(), overrides).map_err(LoadError::Problems)
+}
+
+/// As [`paths`], of a text called `name` in messages; without a `folder` it cannot refer to files.
+///
+/// # Errors
+/// Everything that is wrong with it.
+pub fn paths_of(
+    text: &str,
+    name: &str,
+    folder: Option<&Path>,
+    overrides: &[String],
+) -> Result<Vec<PathRow>, Problems> {
+    let (mut report, mut files) = (Report::default(), Files::new(folder));
     let extra = Extra { overrides, ..Extra::default() };
     let mut rows = Vec::new();
-    if let Some((document, _)) = changed_document(&mut report, &mut files, &text, &extra)
+    if let Some((document, _)) = changed_document(&mut report, &mut files, text, &extra)
         && let Some(section) = check::table(&mut report, &SCENARIO, &document, "")
     {
         // What a file says that the scenario names is read while it is built.
@@ -59,7 +72,7 @@ pub fn paths(path: &Path, overrides: &[String]) -> Result<Vec<PathRow>, LoadErro
         walk.keys(&SCENARIO, &section, "");
         rows = walk.rows;
     }
-    report.finish(&name).map_err(LoadError::Problems)?;
+    report.finish(name)?;
     Ok(rows)
 }
 
@@ -107,7 +120,8 @@ pub fn paths_json(rows: &[PathRow]) -> Value {
             "given": row.given, "dispersion": row.drawn, "mark": row.free,
         })
     };
-    json!({ "schema": 1, "paths": rows.iter().map(row).collect::<Vec<_>>() })
+    let left_out = json!({ "value": "the key is left out and has no default" });
+    json!({ "schema": 1, "null": left_out, "paths": rows.iter().map(row).collect::<Vec<_>>() })
 }
 
 /// A value as TOML has it, nothing of it cut.

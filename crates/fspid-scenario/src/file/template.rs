@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::build::{Built, scenario};
+use super::build::{Built, loops, scenario};
 use super::document::{Item, Value};
 use super::extra::Extra;
 use super::files::{Files, Kept};
@@ -97,20 +97,30 @@ impl Template {
     /// Everything that is wrong with it then.
     pub fn with(&self, values: &[(&SettingPath, NewValue)]) -> Result<Study, Problems> {
         let mut files = self.files();
-        self.with_files(&mut files, values)
+        self.with_files(&mut files, values, Asked::Numbers)
+    }
+
+    /// As [`with`](Self::with), and every loop can be judged, as a scenario that is read is asked.
+    pub(super) fn with_loops(
+        &self,
+        values: &[(&SettingPath, NewValue)],
+    ) -> Result<Study, Problems> {
+        let mut files = self.files();
+        self.with_files(&mut files, values, Asked::Loops)
     }
 
     fn with_files(
         &self,
         files: &mut Files<'_>,
         values: &[(&SettingPath, NewValue)],
+        asked: Asked,
     ) -> Result<Study, Problems> {
         let (mut report, mut document) = (self.report.clone(), self.document.clone());
         for (path, value) in values {
             let set = setting(&mut report, path, value);
             overrides::put(&mut report, files, &mut document, (path.steps(), &set));
         }
-        let built = build(&mut report, files, &document);
+        let built = build(&mut report, files, &document, asked);
         files.report_unused_changes(&mut report);
         report.finish(&self.name)?;
         let built = built.ok_or_else(|| Problems::new(&self.name, Vec::new(), 0))?;
@@ -145,7 +155,7 @@ impl Template {
         let tunable_parameters =
             self.study.tunable_parameters.iter().filter(is_mine).cloned().collect();
         let mut files = one.files();
-        let study = one.with_files(&mut files, &[])?;
+        let study = one.with_files(&mut files, &[], Asked::Numbers)?;
         files.digest(&one.document.meaning());
         one.changes.iter().for_each(|change| files.digest(&change.meaning()));
         let digest = files.finish();
@@ -163,7 +173,7 @@ impl Template {
         };
         let (mut report, mut files) = (self.report.clone(), self.files());
         files.keep_documents();
-        build(&mut report, &mut files, &self.document)?;
+        build(&mut report, &mut files, &self.document, Asked::Numbers)?;
         match overrides::find(files.document(&key)?, rest, "") {
             Found::Here(item) => number(item),
             _ => None,
@@ -177,9 +187,27 @@ impl Template {
     }
 }
 
-fn build(report: &mut Report, files: &mut Files<'_>, document: &Item) -> Option<Built> {
+/// What a scenario is asked.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Asked {
+    /// Whether its numbers are allowed.
+    Numbers,
+    /// And whether its loops can be judged, which takes longer.
+    Loops,
+}
+
+fn build(
+    report: &mut Report,
+    files: &mut Files<'_>,
+    document: &Item,
+    asked: Asked,
+) -> Option<Built> {
     let section = check::table(report, &spec::SCENARIO, document, "")?;
-    scenario(report, files, &section)
+    let built = scenario(report, files, &section)?;
+    if asked == Asked::Loops && report.count() == 0 {
+        loops::check(report, &section, &built.scenario);
+    }
+    Some(built)
 }
 
 /// A new value with the words that a problem quotes.

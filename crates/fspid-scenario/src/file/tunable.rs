@@ -13,12 +13,14 @@ use fspid_diagnostics::{Problems, Report, Span, nearest};
 use fspid_optimise::Scale;
 
 /// The key that makes a table a mark.
-const KEY: &str = "tune";
+pub(super) const KEY: &str = "tune";
+/// The key of the value that a mark flies as.
+pub(super) const START: &str = "start";
 /// Words for the scale.
 const SCALES: [(Scale, &str); 2] = [(Scale::Linear, "linear"), (Scale::Logarithmic, "log")];
-const NUMBER_KEYS: [&str; 3] = [KEY, "scale", "start"];
-const GRID_KEYS: [&str; 6] = [KEY, "start", "reach", "symmetric", "at_rest", "monotone"];
-const NUMBERS_KEYS: [&str; 4] = [KEY, "start", "reach", "symmetric"];
+const NUMBER_KEYS: [&str; 3] = [KEY, "scale", START];
+const GRID_KEYS: [&str; 6] = [KEY, START, "reach", "symmetric", "at_rest", "monotone"];
+const NUMBERS_KEYS: [&str; 4] = [KEY, START, "reach", "symmetric"];
 /// How many labels a cell may move, unless the mark says.
 const USUAL_REACH: u8 = 2;
 /// Top-level tables in which nothing can be free.

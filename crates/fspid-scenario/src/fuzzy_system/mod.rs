@@ -13,3 +13,4 @@ pub use crate::system_text::{
 };
 pub use convert::{ConvertError, Converted, Target, convert, write_as};
 pub use load::{digest, is_rule_table_file, is_scenario, is_system, load, needs_range};
+pub use scenario::of_study;

@@ -5,7 +5,7 @@ use std::path::Path;
 use fspid_fuzzy::system::Parts;
 use fspid_sim::Controller;
 
-use crate::file;
+use crate::file::{self, Study};
 use crate::supervisor::Refused;
 use crate::system_text::{LoadError, Loaded, built};
 
@@ -15,6 +15,14 @@ use crate::system_text::{LoadError, Loaded, built};
 pub(super) fn read(path: &Path, text: &str, name: Option<&str>) -> Result<Loaded, LoadError> {
     let shown = path.display().to_string();
     let study = file::parse(text, &shown, path.parent(), &[]).map_err(LoadError::Problems)?;
+    of_study(&study, &shown, name)
+}
+
+/// The same of a scenario that was read, called `shown` in messages.
+///
+/// # Errors
+/// [`LoadError::Refused`] where no controller, or none of that name, has a supervisor.
+pub fn of_study(study: &Study, shown: &str, name: Option<&str>) -> Result<Loaded, LoadError> {
     let tuned = study.scenario.controllers.iter().filter_map(|named| match &named.controller {
         Controller::SelfTuning(fspid) => Some((named.name.as_str(), fspid.tuner())),
         Controller::Fixed(_) => None,

@@ -5,10 +5,12 @@ use fspid_aircraft::{AircraftError, VelocityForm};
 use fspid_lti::{Complex, TransferFunction};
 use serde_json::{Value, json};
 
+use super::NO_TRIM;
 use super::condition::Question;
 use super::polynomial;
 use super::state_model::StateModel;
 use super::trim::{Trimmed, trim};
+use crate::json::with_null_reasons;
 use fspid_scenario::aircraft::AircraftFailure;
 use fspid_scenario::aircraft::number::significant;
 use fspid_scenario::aircraft::units::Units;
@@ -110,14 +112,16 @@ impl Linear {
         for (name, roots) in roots {
             plant[name] = roots;
         }
-        json!({
+        let answer = json!({
             "aircraft": self.data.name,
             "units": self.units.name(),
             "trim": self.trimmed.as_ref().map(Trimmed::json),
             "longitudinal": self.longitudinal.json(self.units),
             "lateral": self.lateral.as_ref().map(|lateral| lateral.json(self.units)),
             "theta_over_elevator": plant,
-        })
+        });
+        let lateral = ("lateral", "the source has nothing on it");
+        with_null_reasons(answer, &[("trim", NO_TRIM), lateral])
     }
 }
 

@@ -41,3 +41,6 @@ pub use modes::{Modes, modes};
 pub use qualities::{Judged, QualitiesQuestion, qualities};
 pub use show::{Show, show};
 pub use trim::{Trimmed, trim};
+
+/// Why an answer about an aircraft has no trim.
+const NO_TRIM: &str = "the aircraft is known by a linear model alone, which has no trim";

@@ -5,9 +5,11 @@ use fspid_aircraft::{AircraftMode, Growth, VelocityForm, lateral_modes, longitud
 use fspid_lti::{Complex, Mode, StateSpace, modulus};
 use serde_json::{Value, json};
 
+use super::NO_TRIM;
 use super::condition::Question;
 use super::table::table;
 use super::trim::{Trimmed, trim};
+use crate::json::with_null_reasons;
 use fspid_scenario::aircraft::AircraftFailure;
 use fspid_scenario::aircraft::number::significant;
 use fspid_scenario::aircraft::units::Units;
@@ -163,6 +165,17 @@ impl Motion {
     }
 }
 
+/// Why keys of this answer are null.
+const NULLS: [(&str, &str); 7] = [
+    ("trim", NO_TRIM),
+    ("natural_frequency_rad_s", "the pole is at the origin"),
+    ("damping_ratio", "the pole is at the origin"),
+    ("period_s", "the motion does not swing"),
+    ("time_to_half_s", "the motion does not decay"),
+    ("time_to_double_s", "the motion does not grow"),
+    ("time_constant_s", "the motion neither decays nor grows"),
+];
+
 const HEADINGS: [&str; 8] = [
     "motion",
     "pole, rad/s",
@@ -200,12 +213,13 @@ impl Modes {
     #[must_use]
     pub fn json(&self) -> Value {
         let list = |motions: &[Motion]| motions.iter().map(Motion::json).collect::<Vec<_>>();
-        json!({
+        let answer = json!({
             "aircraft": self.data.name,
             "units": self.units.name(),
             "trim": self.trimmed.as_ref().map(Trimmed::json),
             "longitudinal": list(&self.longitudinal),
             "lateral": list(&self.lateral),
-        })
+        });
+        with_null_reasons(answer, &NULLS)
     }
 }

@@ -93,6 +93,18 @@ pub struct AtRest {
 }
 
 impl AtRest {
+    /// Whether the loop is stable at rest, in a word: stable, unstable or undecided; none where it could not be asked.
+    #[must_use]
+    pub fn stability_word(&self) -> Option<&'static str> {
+        match (self.unstable, self.undecided) {
+            (Some(_), _) => Some("unstable"),
+            (None, Some(_)) => Some("undecided"),
+            (None, None) => {
+                self.gains.gains().filter(|_| self.not_asked.is_none()).map(|_| "stable")
+            }
+        }
+    }
+
     /// Of a controller without equations, of which nothing can be asked.
     #[must_use]
     pub fn unknown() -> Self {

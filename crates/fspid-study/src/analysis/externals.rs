@@ -32,7 +32,7 @@ impl FlownExternal {
         question: &Question,
         loops: &[AnalysedLoop],
     ) -> Result<Self, SimError> {
-        let margins = question.fly.then(|| {
+        let margins = question.flies().then(|| {
             let crossovers_rad_s = Some(crossovers_rad_s(loops));
             let options = EmpiricalOptions { crossovers_rad_s, ..EmpiricalOptions::default() };
             flown_margins(scenario, Respondent::External(&named.external), &options)

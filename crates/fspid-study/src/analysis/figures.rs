@@ -10,7 +10,7 @@ use super::{AnalysedLoop, Analysis, Columns, PlantLoop};
 use fspid_plot::{
     BodeFigure, CLOSED_LOOP_DB, Crossing, Exclusion, GainMap, GainSurface, LocusSample, LoopCurve,
     LoopPoint, MapCell, MapPoint, Margin, MarginDisk, MarginMark, NicholsFigure, NyquistFigure,
-    PeakMark, PoleZeroMap, RadiusFigure, RootLocus, SensitivityFigure, Series, SeriesStyle,
+    PeakMark, PoleZeroMap, RadiusFigure, RootLocus, SensitivityFigure, Series, SeriesStyle, Svg,
     Transfer,
 };
 
@@ -115,6 +115,28 @@ impl<'a> LoopFigures<'a> {
         }
     }
 
+    /// What the responses of `analyse --report` show, each by its name.
+    pub(super) fn named(&self) -> Vec<(&'static str, Svg)> {
+        if !self.any() {
+            return Vec::new();
+        }
+        vec![
+            ("bode", self.bode().render()),
+            ("nyquist", self.nyquist().render()),
+            ("nichols", self.nichols().render()),
+            ("sensitivity", self.sensitivity().render()),
+        ]
+    }
+
+    /// Poles and zeros of each worst plant as columns.
+    pub(super) fn pole_columns(&self) -> Result<Vec<(String, Columns)>, SimError> {
+        let one = |shown: &Shown<'_>| {
+            let map = pole_zero(&shown.name, shown.plant)?;
+            Ok((shown.name.clone(), poles(&map)))
+        };
+        self.shown.iter().map(one).collect()
+    }
+
     pub(crate) fn sensitivity(&self) -> SensitivityFigure {
         let peaks = self.margins().map(|(curve, margins)| PeakMark {
             curve,
@@ -133,6 +155,19 @@ impl<'a> LoopFigures<'a> {
     }
 }
 
+fn poles(map: &PoleZeroMap) -> Columns {
+    let real = |values: &[(f64, f64)]| values.iter().map(|value| value.0).collect();
+    let imaginary = |values: &[(f64, f64)]| values.iter().map(|value| value.1).collect();
+    vec![
+        ("closed_real", real(&map.closed_poles)),
+        ("closed_imaginary", imaginary(&map.closed_poles)),
+        ("open_real", real(&map.open_poles)),
+        ("open_imaginary", imaginary(&map.open_poles)),
+        ("zero_real", real(&map.open_zeros)),
+        ("zero_imaginary", imaginary(&map.open_zeros)),
+    ]
+}
+
 fn columns(curve: &LoopCurve) -> Columns {
     let (values, polar) = (&curve.points, curve.polar());
     vec![
@@ -141,6 +176,8 @@ fn columns(curve: &LoopCurve) -> Columns {
         ("imaginary", values.iter().map(|it| it.imaginary).collect()),
         ("gain_db", polar.iter().map(|it| it.gain_db).collect()),
         ("phase_deg", polar.iter().map(|it| it.phase_deg).collect()),
+        ("sensitivity_db", curve.transfer_db(Transfer::Sensitivity)),
+        ("complementary_db", curve.transfer_db(Transfer::Complementary)),
     ]
 }
 

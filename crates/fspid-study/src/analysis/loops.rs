@@ -73,7 +73,7 @@ impl AnalysedLoop {
         let controller = &named.controller;
         let equilibrium = equilibrium(controller);
         let name = named.name.clone();
-        let flights = question.fly.then(|| Flights::of(scenario, controller)).transpose()?;
+        let flights = question.flies().then(|| Flights::of(scenario, controller)).transpose()?;
         let none = |reason| Self {
             name: named.name.clone(),
             equilibrium,

@@ -24,6 +24,7 @@ mod stability;
 mod step;
 mod text;
 
+use fspid_plot::Svg;
 use fspid_sim::{Scenario, SimError};
 
 use crate::simulation::too_large;
@@ -57,6 +58,14 @@ pub struct Question {
     pub every_point_in_full: bool,
     /// Fly as well: margins by flying, limit cycles, small signals along the way.
     pub fly: bool,
+}
+
+impl Question {
+    /// True if flights are asked for. A page asks for none, and what they need is not even compiled for it.
+    #[inline(always)]
+    const fn flies(&self) -> bool {
+        self.fly && !cfg!(target_family = "wasm")
+    }
 }
 
 impl Default for Question {
@@ -111,11 +120,27 @@ impl Analysis {
     }
 
     /// The open loop of each controller in the worst plant over frequency (rad/s), 600 points in five decades up to the
-    /// Nyquist frequency: value, gain (dB), phase (deg). The phase is continuous and begins between -270 and 90 deg.
+    /// Nyquist frequency: value, gain (dB), phase (deg), sensitivity and complementary sensitivity (dB). The phase is continuous and begins between -270 and 90 deg.
     /// Loops without margins to be read off have their curve as well; those of external controllers have none.
     #[must_use]
     pub fn open_loops(&self) -> Vec<(String, Columns)> {
         figures::LoopFigures::of(self).columns()
+    }
+
+    /// Poles and zeros of the sampled loop of each controller in the worst plant, in the z-plane: those of the closed
+    /// loop, of the open one, and its zeros, real and imaginary parts.
+    ///
+    /// # Errors
+    /// Eigenvalues that are not found.
+    pub fn poles(&self) -> Result<Vec<(String, Columns)>, SimError> {
+        figures::LoopFigures::of(self).pole_columns()
+    }
+
+    /// Bode, Nyquist and Nichols diagram and the sensitivities of all loops, drawn as a report draws them; none where no
+    /// controller has a loop.
+    #[must_use]
+    pub fn response_figures(&self) -> Vec<(&'static str, Svg)> {
+        figures::LoopFigures::of(self).named()
     }
 
     /// Whether every loop is stable at rest and at every gain of its map, with margins or without; undecided where a

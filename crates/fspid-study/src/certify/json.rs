@@ -7,20 +7,35 @@ use serde_json::{Value, json};
 use super::scope::{Told, told_deg};
 use super::text::found;
 use super::{Certification, Certified, CheckedFile, Comparison, NotProvable, Seal};
-use crate::json::{merged, present};
+use crate::json::{merged, present, with_null_reasons};
 
 /// Version of the answer's shape.
 const SCHEMA: u32 = 2;
+
+/// Why keys of these answers are null.
+const NULLS: [(&str, &str); 7] = [
+    (
+        "law_keeps_to_the_rate",
+        "the claim is about no rate, or it is not shown that the law keeps to it",
+    ),
+    ("limits_left_out", "no limit is left out"),
+    ("pitch_within_deg", "the claim holds for every pitch angle"),
+    ("open_because", "there is an answer, or nothing more is known of why there is none"),
+    ("not_proved", "no factor was tried and not proved"),
+    ("bearing", "the certificate does not hold"),
+    ("bearing_in_words", "the certificate does not hold"),
+];
 
 impl Certification {
     /// The answer of `certify --format json`.
     #[must_use]
     pub fn json(&self) -> Value {
-        json!({
+        let answer = json!({
             "schema": SCHEMA,
             "scenario": self.scenario,
             "controllers": self.results.iter().map(result).collect::<Vec<_>>(),
-        })
+        });
+        with_null_reasons(answer, &NULLS)
     }
 }
 
@@ -83,7 +98,7 @@ impl CheckedFile {
     #[must_use]
     pub fn json(&self) -> Value {
         let claim = &self.certificate.claim;
-        merged([
+        let answer = merged([
             json!({
                 "schema": SCHEMA,
                 "holds": self.holds(),
@@ -107,7 +122,8 @@ impl CheckedFile {
                 Err(doubt) => json!({ "reason": doubt.to_string() }),
             },
             present(json!({ "against": self.against.as_ref().map(comparison) })),
-        ])
+        ]);
+        with_null_reasons(answer, &NULLS)
     }
 }
 

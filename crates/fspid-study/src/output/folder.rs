@@ -1,8 +1,9 @@
 //! Folders of files that belong together: all of them are the new ones, or none is.
 //!
 //! New files are written into a folder of their own inside of the one that they are for, so on the same disk. When all
-//! are whole, the old ones of their names are moved away, the new ones take their places, and then the old ones are
-//! removed; whatever fails before that is undone. Files of other names are never touched.
+//! are whole, the old ones of their names get a second name or are copied, the new ones take their places, and then the old
+//! ones are removed; whatever fails before that is undone. So no place is ever empty, and what a process that was killed has
+//! left holds nothing that is missing. Files of other names are never touched.
 
 use std::fs;
 use std::io;
@@ -10,13 +11,11 @@ use std::path::{Path, PathBuf};
 
 use fspid_scenario::apart;
 
+use super::locked::{Locked, NotLocked};
+use super::unfinished::{
+    alone_in, is_unfinished, new_folder_in, remove_left_files, remove_left_folders,
+};
 use super::{OutputError, failed, flush, make_folder, place, write_all};
-
-/// What the names of folders begin with in which new files are written; one that is left was cut off.
-const NEW: &str = ".fspid-new-";
-/// What those begin with in which old files wait until the new ones stand.
-const OLD: &str = ".fspid-old-";
-// Both begin with `super::UNFINISHED`.
 
 /// Files with their names in the folder, `/` in them where they lie in a folder of it.
 pub type Contents<'a> = Vec<(&'a str, &'a [u8])>;
@@ -34,28 +33,44 @@ pub fn is_free(folder: &Path) -> io::Result<bool> {
         entries => entries?,
     };
     for entry in entries {
-        if !entry?.file_name().to_string_lossy().starts_with(NEW) {
+        if !is_unfinished(&entry?.file_name()) {
             return Ok(false);
         }
     }
     Ok(true)
 }
 
+/// What becomes of a folder with files in it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Taken {
+    /// It is refused, also where they came while new ones were made.
+    Refused,
+    /// Those of the same names are written over.
+    WrittenOver,
+}
+
 /// Writes all files of all folders, or none.
 ///
 /// # Errors
 /// [`OutputError`] with the file that could not be written; every folder is then as it was.
-pub fn write_folders(folders: &[(&Path, Contents<'_>)]) -> Result<(), OutputError> {
+pub fn write_folders(folders: &[(&Path, Contents<'_>)], taken: Taken) -> Result<(), OutputError> {
     // What is undone stands in the order in which it is not: moves first, folders that were made last.
     let mut made = Made::default();
+    // Of two processes the files of one would stand beside those of the other.
+    let mut alone = Vec::new();
     let mut new = Vec::new();
     for (folder, contents) in folders {
-        new.push(staged(folder, contents, &mut made)?);
+        made.folder(folder)?;
+        alone.push(held(folder)?);
+        if taken == Taken::Refused && !is_free(folder).map_err(|reason| failed(folder, reason))? {
+            return Err(failed(folder, io::Error::other("another process wrote there meanwhile")));
+        }
+        new.push(staged(folder, contents)?);
     }
     let mut moved = Moved::default();
     let mut old = Vec::new();
     for ((folder, contents), new) in folders.iter().zip(&new) {
-        let away = beside(folder, OLD)?.keep();
+        let away = beside(folder)?.keep();
         made.0.push(away.clone());
         for (name, _) in contents {
             // A link stays one, and what it leads to is written.
@@ -99,16 +114,21 @@ struct Moved(Vec<[PathBuf; 2]>);
 impl Moved {
     /// Moves what stands at a place away, and the new file there.
     fn place(&mut self, new: &Path, place: &Path, away: &Path) -> Result<(), OutputError> {
-        if place.is_dir() {
-            return Err(failed(place, io::ErrorKind::IsADirectory.into()));
+        let failed = |reason: io::Error| failed(place, reason);
+        match fs::metadata(place) {
+            Ok(found) if found.is_dir() => return Err(failed(io::ErrorKind::IsADirectory.into())),
+            // A pipe or a device would be gone.
+            Ok(found) if !found.is_file() => {
+                return Err(failed(io::Error::other("it is no regular file")));
+            }
+            _ => {}
         }
-        let failed = |reason| failed(place, reason);
         if place.symlink_metadata().is_ok() {
             let name = place.file_name().unwrap_or_default().to_string_lossy();
             let away = away.join(format!("{}-{name}", self.0.len()));
-            // With a second name for the old file its place is never empty; not every file system has one.
-            let named = fs::hard_link(place, &away).or_else(|_| fs::rename(place, &away));
-            named.map_err(failed)?;
+            // Not every file system has second names.
+            let kept = || fs::hard_link(place, &away).or_else(|_| fs::copy(place, &away).map(drop));
+            kept().map_err(failed)?;
             self.0.push([place.to_owned(), away]);
         }
         fs::rename(new, place).map_err(failed)?;
@@ -128,15 +148,20 @@ impl Drop for Moved {
     }
 }
 
+/// Nobody else puts files there as long as it lives.
+fn held(folder: &Path) -> Result<Locked, OutputError> {
+    let alone = alone_in(folder).map_err(|reason| match reason {
+        NotLocked::Busy => failed(folder, io::Error::other("another process is writing there")),
+        NotLocked::Failed(reason) => failed(folder, reason),
+    })?;
+    remove_left_files(folder);
+    remove_left_folders(folder);
+    Ok(alone)
+}
+
 /// The files in a folder of their own, on the disk.
-fn staged(
-    folder: &Path,
-    contents: &Contents<'_>,
-    made: &mut Made,
-) -> Result<tempfile::TempDir, OutputError> {
-    made.folder(folder)?;
-    remove_cut_off(folder);
-    let new = beside(folder, NEW)?;
+fn staged(folder: &Path, contents: &Contents<'_>) -> Result<tempfile::TempDir, OutputError> {
+    let new = beside(folder)?;
     let mut files = Vec::new();
     for (name, bytes) in contents {
         let at = folder.join(name);
@@ -153,22 +178,13 @@ fn staged(
     Ok(new)
 }
 
-/// Removes what a writing that was cut off has left, which takes up the disk and is nobody's.
-fn remove_cut_off(folder: &Path) {
-    let entries = folder.read_dir().into_iter().flatten().flatten();
-    let is_left = |name: &std::ffi::OsString| name.to_string_lossy().starts_with(NEW);
-    for entry in entries.filter(|entry| is_left(&entry.file_name())) {
-        let _ = fs::remove_dir_all(entry.path());
-    }
-}
-
-fn beside(folder: &Path, kind: &str) -> Result<tempfile::TempDir, OutputError> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(kind).tempdir_in(folder).map_err(|reason| failed(folder, reason))
+fn beside(folder: &Path) -> Result<tempfile::TempDir, OutputError> {
+    new_folder_in(folder).map_err(|reason| failed(folder, reason))
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::unfinished::{ALONE, new_file_in};
     use super::*;
 
     fn contents(files: &[(&'static str, &'static str)]) -> Contents<'static> {
@@ -185,7 +201,7 @@ mod tests {
         let root = tempfile::tempdir().expect("a folder");
         let [one, two] = ["one", "made/two"].map(|name| root.path().join(name));
         let old = contents(&[("a.c", "old"), ("deep/b.c", "old")]);
-        write_folders(&[(&one, old)]).expect("written");
+        write_folders(&[(&one, old)], Taken::WrittenOver).expect("written");
         fs::write(one.join("own.c"), "mine").expect("written");
         // A folder stands where the last file belongs.
         fs::create_dir_all(one.join("deep/c.c/d")).expect("a folder");
@@ -197,7 +213,9 @@ mod tests {
                 ("deep/c.c", "new"),
             ])
         };
-        let told = write_folders(&[(&two, new()), (&one, new())]).expect_err("refused").to_string();
+        let told = write_folders(&[(&two, new()), (&one, new())], Taken::WrittenOver)
+            .expect_err("refused")
+            .to_string();
         assert!(told.contains("c.c: it is a folder; nothing there was changed"), "{told}");
         assert_eq!(
             ["a.c", "deep/b.c", "own.c"].map(|it| read(one.join(it))),
@@ -206,7 +224,7 @@ mod tests {
         assert_eq!(fs::read_dir(&one).expect("listed").count(), 3, "nothing is left beside");
         assert!(one.join("deep/c.c/d").is_dir() && !root.path().join("made").exists());
         fs::remove_dir_all(one.join("deep/c.c")).expect("removed");
-        write_folders(&[(&two, new()), (&one, new())]).expect("written");
+        write_folders(&[(&two, new()), (&one, new())], Taken::WrittenOver).expect("written");
         assert_eq!(
             ["a.c", "deep/c.c", "own.c"].map(|it| read(one.join(it))),
             ["new", "new", "mine"]
@@ -219,9 +237,15 @@ mod tests {
         let root = tempfile::tempdir().expect("a folder");
         let folder = root.path().join("it");
         assert!(is_free(&folder).is_ok_and(|it| it));
-        fs::create_dir_all(folder.join(".fspid-new-1")).expect("a folder");
-        assert!(is_free(&folder).is_ok_and(|it| it));
-        write_folders(&[(&folder, contents(&[("a.c", "new")]))]).expect("written");
+        fs::create_dir_all(&folder).expect("a folder");
+        // As they are made, and as they stay where their process is killed.
+        let left = [beside(&folder), beside(&folder)].map(|it| it.expect("a folder").keep());
+        fs::write(left[0].join("a.c"), "half").expect("written");
+        let half = new_file_in(&folder).expect("a file").into_temp_path().keep().expect("kept");
+        fs::write(folder.join(ALONE), "").expect("written");
+        assert!(half.exists() && is_free(&folder).is_ok_and(|it| it));
+        write_folders(&[(&folder, contents(&[("a.c", "new")]))], Taken::WrittenOver)
+            .expect("written");
         assert_eq!(fs::read_dir(&folder).expect("listed").count(), 1);
         assert!(is_free(&folder).is_ok_and(|it| !it));
         let is_none =
@@ -233,5 +257,19 @@ mod tests {
             std::os::unix::fs::symlink("nothing", &link).expect("a link");
             assert!(is_none(&link));
         }
+    }
+
+    #[test]
+    fn one_process_at_a_time_writes_into_a_folder_and_not_over_what_came_meanwhile() {
+        let root = tempfile::tempdir().expect("a folder");
+        let new = || contents(&[("a.c", "new")]);
+        let other = alone_in(root.path()).expect("nobody is there");
+        let told = |taken| write_folders(&[(root.path(), new())], taken).expect_err("").to_string();
+        assert!(told(Taken::WrittenOver).contains("another process is writing there"));
+        fs::write(root.path().join("a.c"), "theirs").expect("written");
+        drop(other);
+        assert!(told(Taken::Refused).contains("another process wrote there meanwhile"));
+        assert_eq!(read(root.path().join("a.c")), "theirs");
+        assert_eq!(fs::read_dir(root.path()).expect("listed").count(), 1);
     }
 }

@@ -4,6 +4,8 @@ use std::fs::{self, File, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
 
+use fspid_scenario::apart;
+
 /// Held while a process works on a file: `NAME.lock` beside it, which is removed in the end. One that is left by a process
 /// that was killed keeps nobody out.
 #[derive(Debug)]
@@ -32,12 +34,13 @@ impl Locked {
     pub fn beside(path: &Path) -> Result<Self, NotLocked> {
         let mut name = path.as_os_str().to_owned();
         name.push(".lock");
-        let path = PathBuf::from(name);
+        Self::at(PathBuf::from(name))
+    }
+
+    /// The same with the lock's own path.
+    pub(super) fn at(path: PathBuf) -> Result<Self, NotLocked> {
         loop {
-            if fs::metadata(&path).is_ok_and(|found| !found.is_file()) {
-                return Err(io::Error::other("what has the name of the lock is no file").into());
-            }
-            let file = File::options().create(true).append(true).open(&path)?;
+            let file = lock_file(&path)?;
             match file.try_lock() {
                 // Who held it before may have removed it meanwhile.
                 Ok(()) if !is_at(&file, &path) => {}
@@ -51,6 +54,18 @@ impl Locked {
             }
         }
     }
+}
+
+/// The file that a lock is held on. It is removed in the end, so that one of somebody else is refused: a lock is empty, and
+/// no link.
+fn lock_file(path: &Path) -> io::Result<File> {
+    let is_lock = |found: fs::Metadata| found.is_file() && found.len() == 0;
+    if path.symlink_metadata().is_ok_and(|found| !is_lock(found)) {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        return Err(io::Error::other(format!("{name} has the name of the lock and is none")));
+    }
+    apart::writing(path).map_err(|clash| io::Error::new(io::ErrorKind::InvalidInput, clash))?;
+    File::options().create(true).append(true).open(path)
 }
 
 impl Drop for Locked {
@@ -88,5 +103,22 @@ mod tests {
             .expect("of a process that was killed");
         drop(Locked::beside(&path).expect("nobody works there"));
         assert_eq!(fs::read_dir(folder.path()).expect("listed").count(), 0);
+    }
+
+    /// `tune d.toml.state.json.lock --out d.toml` removed the scenario.
+    #[test]
+    fn what_only_has_the_name_of_a_lock_is_refused_and_stays() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let at = |name: &str| folder.path().join(name);
+        fs::write(at("a.lock"), "schema = 1").expect("written");
+        fs::create_dir(at("b.lock")).expect("made");
+        for name in ["a", "b"] {
+            let told = Locked::beside(&at(name)).expect_err("refused").to_string();
+            assert!(told.contains("has the name of the lock and is none"), "{told}");
+        }
+        assert_eq!(fs::read_to_string(at("a.lock")).expect("a file"), "schema = 1");
+        fs::write(at("c.lock"), "").expect("written");
+        let _protected = apart::protect([at("c.lock")]);
+        assert!(Locked::beside(&at("c")).is_err() && at("c.lock").exists());
     }
 }

@@ -16,19 +16,27 @@ pub enum Place {
 impl Place {
     /// The name of a thing that has no others beside it.
     fn alone(self, name: &str) -> String {
-        match self {
+        let name = match self {
             Self::File => replaced(name, "_", |c| c.is_alphanumeric() || c == '-' || c == '_'),
             Self::PlainFile => {
                 replaced(name, "-", |c| c.is_ascii_alphanumeric() || c == '-').to_lowercase()
             }
-            Self::Column => replaced(name, "_", |c| !matches!(c, ',' | '"' | '\n' | '\r')),
+            Self::Column => {
+                return replaced(name, "_", |c| !matches!(c, ',' | '"' | '\n' | '\r'));
+            }
+        };
+        let name = cut(&name);
+        match is_device(name) {
+            true => format!("{name}{}", self.joint()),
+            false => name.to_owned(),
         }
     }
 
     /// What two names must not share.
     fn key(self, name: &str) -> String {
         match self {
-            Self::File | Self::PlainFile => name.to_lowercase(),
+            // Some systems compare small letters, some large ones.
+            Self::File | Self::PlainFile => name.to_uppercase().to_lowercase(),
             Self::Column => name.to_owned(),
         }
     }
@@ -40,6 +48,23 @@ impl Place {
             Self::File | Self::Column => "_",
         }
     }
+}
+
+/// Bytes of a name of a file: 255 are possible (`NAME_MAX`), with a number, an ending and what is written beside it.
+const LONGEST: usize = 120;
+
+/// As much of a name as a file may have.
+fn cut(name: &str) -> &str {
+    let end = (0..=LONGEST).rev().find(|end| name.is_char_boundary(*end)).unwrap_or_default();
+    name.get(..end).filter(|_| name.len() > LONGEST).unwrap_or(name)
+}
+
+/// True for what names a device on Windows, whatever ending stands behind it.
+fn is_device(name: &str) -> bool {
+    let name = name.to_lowercase();
+    let numbered = name.strip_prefix("com").or_else(|| name.strip_prefix("lpt"));
+    let is_digit = |rest: &str| rest.len() == 1 && rest.bytes().all(|it| it.is_ascii_digit());
+    matches!(name.as_str(), "con" | "prn" | "aux" | "nul") || numbered.is_some_and(is_digit)
 }
 
 fn replaced(name: &str, by: &str, fits: impl Fn(char) -> bool) -> String {
@@ -152,5 +177,26 @@ mod tests {
         assert_eq!(of(Place::PlainFile, &["FSPID", "CPID"]), [""; 0]);
         assert_eq!(of(Place::Column, &["a,b"]), ["\"a,b\" is `a_b` in the name of its column"]);
         assert_eq!(of(Place::File, &["a", "A"]), ["\"A\" is `A_2` in the name of its file"]);
+    }
+
+    #[test]
+    fn no_name_of_a_file_is_too_long_or_a_device_and_none_is_that_of_another() {
+        let long =
+            ["x".repeat(255), "X".repeat(255), "ü".repeat(127), format!("{}y", "x".repeat(255))];
+        let short = [
+            "PID", "pid", "a b", "a_b", "ä", "ö", "CON", "nul", "com1", "com10", "..", ".", "ı",
+            "I",
+        ];
+        let own: Vec<&str> = short.into_iter().chain(long.iter().map(String::as_str)).collect();
+        for place in [Place::File, Place::PlainFile] {
+            let written = names(place, &own);
+            let mut keys: Vec<String> = written.iter().map(|name| place.key(name)).collect();
+            keys.sort_unstable();
+            keys.dedup();
+            assert_eq!(keys.len(), own.len(), "{written:?}");
+            assert!(written.iter().all(|it| it.len() < 130 && !is_device(it)), "{written:?}");
+        }
+        assert_eq!(names(Place::File, &["CON", "com1", "com10"]), ["CON_", "com1_", "com10"]);
+        assert_eq!(names(Place::PlainFile, &["NUL", "console"]), ["nul-", "console"]);
     }
 }

@@ -7,10 +7,24 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-/// What the names of files begin with until they are whole.
-pub const UNFINISHED: &str = ".fspid-";
+use super::locked::{Locked, NotLocked};
+
+/// What the names of files and folders begin with until they are whole.
+const UNFINISHED: &str = ".fspid-";
 /// What they end in, so that nothing of a user's is taken for one.
 const ENDING: &str = ".unfinished";
+/// Held by who puts many files into a folder, which is where its name is.
+pub(super) const ALONE: &str = ".fspid-alone.unfinished";
+
+/// Keeps other processes away that put many files into a folder.
+pub(super) fn alone_in(folder: &Path) -> Result<Locked, NotLocked> {
+    Locked::at(folder.join(ALONE))
+}
+
+/// A new folder inside of another, for who is alone in that one.
+pub(super) fn new_folder_in(folder: &Path) -> io::Result<tempfile::TempDir> {
+    tempfile::Builder::new().prefix(UNFINISHED).suffix(ENDING).tempdir_in(folder)
+}
 
 /// A new file that nobody takes for one that was left: its lock ends with the process, however that ends.
 pub(super) fn new_file_in(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
@@ -38,18 +52,49 @@ pub(super) fn new_file_in(folder: &Path) -> io::Result<tempfile::NamedTempFile> 
 /// Removes what processes have left in a folder that were killed; each folder is looked at once.
 fn remove_left(folder: &Path) {
     static SEEN: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
-    if !SEEN.lock().unwrap_or_else(PoisonError::into_inner).insert(folder.to_owned()) {
-        return;
-    }
-    for entry in folder.read_dir().into_iter().flatten().flatten() {
-        if is_unfinished(&entry.file_name()) && is_left(&entry.path()) {
-            let _ = fs::remove_file(entry.path());
-        }
+    if SEEN.lock().unwrap_or_else(PoisonError::into_inner).insert(folder.to_owned()) {
+        sweep(folder);
     }
 }
 
-fn is_unfinished(name: &OsStr) -> bool {
+/// Removes what is left in a folder now.
+fn sweep(folder: &Path) {
+    remove_left_files(folder);
+    // Folders are nobody's while nobody is alone there.
+    if unfinished(folder).any(|path| is_folder(&path))
+        && let Ok(_alone) = alone_in(folder)
+    {
+        remove_left_folders(folder);
+    }
+}
+
+/// Removes files of processes that were killed.
+pub(super) fn remove_left_files(folder: &Path) {
+    for path in unfinished(folder).filter(|path| is_left(path)) {
+        let _ = fs::remove_file(path);
+    }
+}
+
+/// Removes folders of processes that were killed. Only for who is alone there.
+pub(super) fn remove_left_folders(folder: &Path) {
+    for path in unfinished(folder).filter(|path| is_folder(path)) {
+        let _ = fs::remove_dir_all(path);
+    }
+}
+
+fn unfinished(folder: &Path) -> impl Iterator<Item = PathBuf> {
+    let entries = folder.read_dir().into_iter().flatten().flatten();
+    entries.filter(|entry| is_unfinished(&entry.file_name())).map(|entry| entry.path())
+}
+
+/// True for the name of what is not whole yet.
+#[must_use]
+pub fn is_unfinished(name: &OsStr) -> bool {
     name.to_str().is_some_and(|name| name.starts_with(UNFINISHED) && name.ends_with(ENDING))
+}
+
+fn is_folder(path: &Path) -> bool {
+    path.symlink_metadata().is_ok_and(|found| found.is_dir())
 }
 
 /// True for a file whose process is gone.
@@ -76,5 +121,19 @@ mod tests {
         let new = new_file_in(folder.path()).expect("a file");
         assert!(!at(".fspid-1.unfinished").exists() && at(".fspid-2.unfinished").exists());
         assert!(others.iter().all(|name| at(name).exists()) && new.path().exists());
+    }
+
+    #[test]
+    fn folders_that_were_left_are_removed_unless_somebody_is_alone_there() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let left = new_folder_in(folder.path()).expect("a folder").keep();
+        fs::write(left.join("a.c"), "x").expect("written");
+        let alone = alone_in(folder.path()).expect("nobody is there");
+        assert!(matches!(alone_in(folder.path()), Err(NotLocked::Busy)));
+        sweep(folder.path());
+        assert!(left.join("a.c").exists(), "its process goes on");
+        drop(alone);
+        sweep(folder.path());
+        assert_eq!(fs::read_dir(folder.path()).expect("listed").count(), 0);
     }
 }

@@ -25,6 +25,12 @@ pub fn of_simulation(study: &Study, simulation: &Simulation) -> String {
     user::report(study, simulation)
 }
 
+/// The figure of the time responses in that report.
+#[must_use]
+pub fn responses_of(study: &Study, simulation: &Simulation) -> fspid_plot::Svg {
+    user::drawing(study, simulation).render()
+}
+
 /// The report of an audit of a fuzzy system.
 #[must_use]
 pub fn of_audit(audit: &Audit<'_>) -> String {

@@ -49,6 +49,18 @@ struct Outcome {
     detail: String,
 }
 
+/// How the time responses are drawn.
+pub(super) fn drawing<'a>(study: &'a Study, simulation: &'a Simulation) -> Drawing<'a> {
+    Drawing {
+        title: &simulation.scenario,
+        scenario: &study.scenario,
+        simulation,
+        only: &[],
+        detailed: true,
+        width_px: 720.0,
+    }
+}
+
 fn outcome(result: &ControllerResult) -> Outcome {
     let verdict = result.verdict();
     let (class, word) = match verdict {
@@ -167,14 +179,7 @@ impl User<'_> {
     }
 
     fn responses(self) -> PageSection {
-        let drawing = Drawing {
-            title: &self.simulation.scenario,
-            scenario: &self.study.scenario,
-            simulation: self.simulation,
-            only: &[],
-            detailed: true,
-            width_px: 720.0,
-        };
+        let drawing = drawing(self.study, self.simulation);
         let ended = self.simulation.results.iter().filter(|result| is_cut_short(result));
         let ended: Vec<&str> = ended.map(|result| result.name.as_str()).collect();
         let leaving = drawing.leaving();

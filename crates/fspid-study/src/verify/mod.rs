@@ -84,15 +84,28 @@ fn way_out(in_cases: usize) -> String {
 /// [`VerifyError`]: input that cannot be used; a requirement that is not met is an answer and no error.
 pub fn verify(question: &Question<'_>) -> Result<Verification, VerifyError> {
     let scenario_text = file::read_text(question.path).map_err(VerifyError::Load)?;
-    let path = question.path.display().to_string();
     let mut requirement_files = Vec::new();
     for file in question.requirement_files {
         let text = file::read_text(file).map_err(VerifyError::Load)?;
         requirement_files.push((file.display().to_string(), text));
     }
+    verify_text(scenario_text, question, &requirement_files)
+}
+
+/// The same of a text, which is called as the question's `path` and names files from beside it, and of the texts of its
+/// files of requirements, each behind its name.
+///
+/// # Errors
+/// As [`verify`].
+pub fn verify_text(
+    scenario_text: String,
+    question: &Question<'_>,
+    requirement_files: &[(String, String)],
+) -> Result<Verification, VerifyError> {
+    let path = question.path.display().to_string();
     let (sets, overrides): (Vec<String>, Vec<String>) =
         question.settings.iter().cloned().partition(|text| names_a_set(text));
-    let extra = Extra { overrides: &overrides, sets: &sets, requirement_files: &requirement_files };
+    let extra = Extra { overrides: &overrides, sets: &sets, requirement_files };
     let folder = question.path.parent().unwrap_or(Path::new(""));
     let study = file::parse_with(&scenario_text, &path, Some(folder), &extra)
         .map_err(|problems: Problems| VerifyError::Load(LoadError::Problems(problems)))?;

@@ -1,5 +1,6 @@
 //! The outcome for programs.
 
+use fspid_study::json::with_null_reasons;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
@@ -11,6 +12,16 @@ use super::words::{Headline, headline};
 
 /// Version of the format.
 const SCHEMA: u32 = 1;
+
+/// Why keys of the answer are null.
+const NULLS: [(&str, &str); 6] = [
+    ("winner", "none is known to be better than all others; `why` says more"),
+    ("compared", "it is the one that all others are compared with"),
+    ("mirror", "no case is another's mirror image"),
+    ("mirror_of", "the case is no other's mirror image"),
+    ("tuning", "nothing was tuned"),
+    ("against", "there is none to compare with"),
+];
 
 pub(super) fn json(outcome: &Outcome) -> Value {
     let judged = &outcome.judged;
@@ -34,7 +45,7 @@ pub(super) fn json(outcome: &Outcome) -> Value {
             let first = outcome.first_of_group(place);
             json!({ "name": name, "cases": cases.len(), "ranking": ranking(outcome, &first) })
         });
-    json!({
+    let answer = json!({
         "schema": SCHEMA,
         "scenario": setting.scenario,
         "digest": setting.digest,
@@ -46,7 +57,8 @@ pub(super) fn json(outcome: &Outcome) -> Value {
         "groups": groups.collect::<Vec<_>>(),
         "cases": cases(outcome),
         "controllers": controllers.map(|(place, (it, summary))| controller(outcome, place, it, summary)).collect::<Vec<_>>(),
-    })
+    });
+    with_null_reasons(answer, &NULLS)
 }
 
 /// What stands at the head of the text and of the page.

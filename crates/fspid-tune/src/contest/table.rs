@@ -20,12 +20,13 @@ const SCENARIO_KEY: &str = "fspid.scenario";
 pub(super) fn write(path: &Path, judged: &Judged, digest: &str) -> Result<(), TuneError> {
     let table = table(judged)?;
     let metadata = vec![(SCENARIO_KEY.to_owned(), digest.to_owned())];
-    output::write_by(path, |file| {
+    let written = output::write_by(path, |file| {
         let mut writer = Writer::new(file, table.schema(), &metadata)?;
         writer.write(&table)?;
         writer.finish(&[])?;
         Ok::<_, TuneError>(())
-    })
+    });
+    written.map_err(|error| error.of_writing(path))
 }
 
 fn table(judged: &Judged) -> Result<ColumnTable, TuneError> {

@@ -2,6 +2,7 @@
 
 use fspid_scenario::units::degrees;
 use fspid_study::analysis::{Margins, PlantLoop};
+use fspid_study::json::with_null_reasons;
 use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 
@@ -10,13 +11,22 @@ use super::{Design, FittedModel, RelayExperiment, UltimatePoint};
 /// Version of the answer's shape.
 const SCHEMA: u32 = 1;
 
+/// Why keys of the answer are null.
+const NULLS: [(&str, &str); 2] = [
+    ("lowest_gain", "no smaller gain is known to make the loop unstable"),
+    (
+        "relative_dead_time",
+        "the fitted model is no lag, beside which a dead time would be a share of something",
+    ),
+];
+
 impl Design {
     /// The answer for programs; a number that is infinite is `null`, a loop that is not held has no margins.
     #[must_use]
     pub fn json(&self) -> Value {
         let config = &self.config;
         let weights = config.setpoint_weights;
-        json!({
+        let answer = json!({
             "schema": SCHEMA,
             "scenario": self.scenario,
             "rule": self.rule.name(),
@@ -40,16 +50,27 @@ impl Design {
             "warnings": self.warnings,
             "not_in_the_linear_loop": self.left_out,
             "toml": self.toml(),
-        })
+        });
+        with_null_reasons(answer, &NULLS)
     }
 }
 
 fn plant(plant: &PlantLoop) -> Value {
     match &plant.margins {
         Ok(margins) => {
-            json!({ "from_s": plant.from_s, "stable": true, "margins": margins_of(margins) })
+            json!({
+                "from_s": plant.from_s,
+                "stable": true,
+                "stability": plant.stability().word(),
+                "margins": margins_of(margins),
+            })
         }
-        Err(_) => json!({ "from_s": plant.from_s, "stable": false }),
+        Err(reason) => json!({
+            "from_s": plant.from_s,
+            "stable": plant.stability().known(),
+            "stability": plant.stability().word(),
+            "absent": reason.to_string(),
+        }),
     }
 }
 

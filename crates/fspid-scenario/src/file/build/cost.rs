@@ -4,18 +4,20 @@
 //! (`fspid simulate` with `--set`).
 
 use fspid_sim::actuator::Actuator;
+use fspid_sim::loop_model::Sensing;
 use fspid_sim::sensor::Sensor;
 use fspid_sim::{Scenario, Timing};
 
 use super::judged;
 use crate::file::spec::scenario as keys;
 use crate::file::spec::{actuator, sensor};
-use crate::keyed::{Key, Section};
+use crate::keyed::{Key, KeyName, Section};
 use fspid_diagnostics::Report;
 
-/// Most samples that a command and its answer are on their way. The loop at rest has a state for each, and its cost
-/// grows with their cube: 200 take 0.5 s, 500 take 5 s, 1000 take 37 s.
-const MOST_ON_THEIR_WAY: f64 = 400.0;
+/// Most samples that a command and its answer are on their way, behind an aircraft that is not linear too: it is judged by
+/// its linear model at the trim. The loop at rest has a state for each, and its cost grows with their cube: 200 take
+/// 0.5 s, 500 take 5 s, 1000 take 37 s.
+const MOST_ON_THEIR_WAY: usize = 400;
 /// Most looks of a sensor within a sample of the loop; each costs some 20 ns: 1000 take 0.05 s, 10^10 years.
 const MOST_LOOKS: f64 = 10_000.0;
 /// Most pieces in which a sample of an actuator of second order is searched for an event: 1600 take 0.7 s, 16 000 take
@@ -24,26 +26,24 @@ const MOST_PIECES: u32 = 1600;
 
 /// Says what costs too much.
 pub(super) fn check(report: &mut Report, section: &Section, scenario: &Scenario) {
-    let Scenario { timing, actuator, surroundings, .. } = scenario;
+    let Scenario { timing, actuator, .. } = scenario;
     if let Some(part) = section.get(keys::ACTUATOR) {
         check_pieces(report, part, *actuator, *timing);
     }
-    let channels = [
-        (sensor::PITCH, surroundings.pitch_sensor.as_ref()),
-        (sensor::RATE, surroundings.rate_sensor.as_ref()),
-    ];
-    let mut longest_s = 0.0_f64;
-    for (key, channel) in channels {
+    for (key, channel) in channels(scenario) {
         if let (Some(part), Some(channel)) = (section.get(keys::SENSOR), channel) {
             check_sensor(report, (part, key), channel, *timing);
-            longest_s = longest_s.max(channel.model().delay_s);
         }
     }
-    // A nonlinear aircraft has no loop at rest, and waits without cost.
-    let samples = actuator.delay_samples() as f64 + (longest_s / timing.dt_s()).ceil();
-    if scenario.plant.linear().is_some() && samples > MOST_ON_THEIR_WAY && report.count() == 0 {
-        too_late(report, section, samples, *timing);
+    if report.count() == 0 {
+        check_way(report, section, scenario);
     }
+}
+
+/// What measures pitch and pitch rate, by the keys of their channels.
+fn channels(scenario: &Scenario) -> [(Key<Section>, Option<&Sensor>); 2] {
+    let around = &scenario.surroundings;
+    [(sensor::PITCH, around.pitch_sensor.as_ref()), (sensor::RATE, around.rate_sensor.as_ref())]
 }
 
 fn check_pieces(report: &mut Report, part: &Section, actuator: Actuator, timing: Timing) {
@@ -90,23 +90,45 @@ fn check_sensor(
     }
 }
 
-/// Told at the key that is asked for the longest wait.
-fn too_late(report: &mut Report, section: &Section, samples: f64, timing: Timing) {
-    let message = format!(
-        "{samples} samples of {:?} s on their way around the loop: the loop at rest has a state for each, and its cost grows with their cube (1000 take half a minute)",
-        timing.dt_s()
-    );
-    let allowed =
-        format!("up to {MOST_ON_THEIR_WAY} samples: a longer sample period or a shorter delay");
-    let delay =
-        section.get(keys::ACTUATOR).filter(|part| part.get(actuator::DELAY_SAMPLES) > Some(0));
-    let sensor = section.get(keys::SENSOR);
-    let channels = [sensor::PITCH, sensor::RATE].into_iter();
-    let late = channels.filter_map(|key| sensor?.get(key)).find(|it| it.given(sensor::DELAY_S));
-    match (delay, late, sensor) {
-        (Some(part), None, _) => part.wrong(report, actuator::DELAY_SAMPLES, message, allowed),
-        (_, Some(part), _) => part.wrong(report, sensor::DELAY_S, message, allowed),
-        (None, None, Some(part)) => part.wrong(report, sensor::PRESET, message, allowed),
-        (None, None, None) => {}
+/// Refuses what waits too long on its way around the loop, at the key that has most of it wait.
+fn check_way(report: &mut Report, section: &Section, scenario: &Scenario) {
+    let delay = section.get(keys::ACTUATOR).map(|part| {
+        let key = KeyName::from(actuator::DELAY_SAMPLES);
+        (scenario.actuator.delay_samples(), part, key)
+    });
+    let remembered = channels(scenario).into_iter().filter_map(|(key, channel)| {
+        let samples = Sensing::through(channel, scenario.timing.dt_s()).samples;
+        let (part, key) = place_of(section.get(keys::SENSOR)?, key, channel?);
+        Some((samples, part, key))
+    });
+    let ways: Vec<(usize, &Section, KeyName)> = delay.into_iter().chain(remembered).collect();
+    let samples = ways.iter().fold(0_usize, |sum, way| sum.saturating_add(way.0));
+    let Some((_, part, key)) = ways.into_iter().max_by_key(|way| way.0) else { return };
+    if samples > MOST_ON_THEIR_WAY {
+        let message = format!(
+            "{samples} samples of {:?} s on their way around the loop: the loop at rest has a state for each, and its cost grows with their cube (1000 take half a minute)",
+            scenario.timing.dt_s()
+        );
+        let allowed = format!(
+            "up to {MOST_ON_THEIR_WAY} samples: a longer sample period, or a shorter delay or sampling time"
+        );
+        part.wrong(report, key, message, allowed);
+    }
+}
+
+/// The key that says how old a channel's values are: its delay or its sampling time, whichever is longer, or the preset.
+fn place_of<'a>(
+    sensors: &'a Section,
+    channel: Key<Section>,
+    sensor: &Sensor,
+) -> (&'a Section, KeyName) {
+    let model = sensor.model();
+    let key = match model.delay_s >= model.period_s {
+        true => KeyName::from(sensor::DELAY_S),
+        false => KeyName::from(sensor::PERIOD_S),
+    };
+    match sensors.get(channel).filter(|own| own.given(key)) {
+        Some(own) => (own, key),
+        None => (sensors, sensor::PRESET.into()),
     }
 }

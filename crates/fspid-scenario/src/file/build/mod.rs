@@ -13,6 +13,7 @@ mod flight;
 mod flown;
 mod linear_aircraft;
 mod loading;
+pub(super) mod loops;
 mod lqi;
 mod range_rule;
 mod schedule;

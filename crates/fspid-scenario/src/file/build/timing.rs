@@ -20,7 +20,11 @@ pub(super) fn timing(report: &mut Report, section: &Section) -> Option<Timing> {
     let duration_s = section.get(keys::DURATION_S)?;
     match Timing::new(dt_s, duration_s) {
         Err(SimError::TooManySamples { found, most }) => {
-            let message = format!("{found:.1e} samples of {dt_s:?} s are too many");
+            let many = match found.is_finite() {
+                true => format!("{found:.1e}"),
+                false => "endlessly many".to_owned(),
+            };
+            let message = format!("{many} samples of {dt_s:?} s are too many");
             let allowed =
                 format!("up to {most} samples: a shorter flight or a longer sample period");
             section.wrong(report, keys::DURATION_S, message, allowed);
@@ -74,12 +78,19 @@ pub(super) fn check_plant(
     plant: &LinearPlant,
     sampling: Sampling,
 ) {
-    if let Some(part) = section.get(keys::PLANT) {
-        judged(report, (part, key_of(part)), can_be_sampled(plant, sampling));
-    } else if let Some(part) = section.get(keys::AIRCRAFT) {
-        let key = if part.given(flight::FILE) { flight::FILE } else { flight::NAME };
-        judged(report, (part, key), can_be_sampled(plant, sampling));
+    if let Some(place) = place_of_plant(section) {
+        judged(report, place, can_be_sampled(plant, sampling));
     }
+}
+
+/// Where the scenario says what flies.
+pub(super) fn place_of_plant(section: &Section) -> Option<(&Section, KeyName)> {
+    if let Some(part) = section.get(keys::PLANT) {
+        return Some((part, key_of(part)));
+    }
+    let part = section.get(keys::AIRCRAFT)?;
+    let key = if part.given(flight::FILE) { flight::FILE } else { flight::NAME };
+    Some((part, key.into()))
 }
 
 /// The key that gave a plant.

@@ -16,6 +16,7 @@ use serde_json::{Map, Value, json};
 use super::condition::{AirChoice, Question};
 use super::facts::key;
 use super::parse::span;
+use crate::json::with_null_reasons;
 use autopilot::Autopilot;
 use column::{Column, columns};
 use fspid_scenario::aircraft::AircraftFailure;
@@ -130,7 +131,11 @@ impl Envelope {
         put(&key("altitudes", Kind::Length, units), json!(altitudes));
         let points: Vec<Value> = self.points.iter().map(|point| self.point_json(point)).collect();
         put("points", Value::Array(points));
-        Value::Object(whole)
+        let reasons = [
+            ("controller", "no controller was asked for"),
+            ("reason", "nothing is amiss: the aircraft flies there"),
+        ];
+        with_null_reasons(Value::Object(whole), &reasons)
     }
 
     fn point_json(&self, point: &Point) -> Value {

@@ -223,7 +223,7 @@ fn allowed(shape: &Shape) -> String {
         Shape::Positive(most) => format!("numbers above 0, up to {most:?}"),
         Shape::Whole(least, most) => format!("whole numbers from {least} to {most}"),
         Shape::Word(words) => quoted(words),
-        Shape::Text(most) => format!("texts of 1 to {most} characters"),
+        Shape::Text(most) => format!("texts of 1 to {most} characters without line breaks"),
         Shape::Digest => "64 hexadecimal digits in lower case, not all of them 0".to_owned(),
         Shape::OrNull(shape) => allowed(shape),
         Shape::List(..) => "lists".to_owned(),

@@ -9,6 +9,7 @@ mod why_not;
 use fspid_fuzzy::system::{Firing, System};
 
 use super::answer::{Asked, ask};
+use super::words;
 use fspid_scenario::supervisor::Refused;
 
 pub use share::{Basis, Share, Shares};
@@ -50,5 +51,20 @@ pub fn explain<'a>(
 impl Explanation<'_> {
     fn system(&self) -> &System {
         self.asked.system()
+    }
+
+    /// A rule as a sentence; empty for one that is not there.
+    pub(crate) fn rule_in_words(&self, block: usize, rule: usize) -> String {
+        let parts = self.system().parts();
+        let found = parts.blocks.get(block).and_then(|block| block.rules.get(rule));
+        found.map_or(String::new(), |rule| words::rule(rule, parts))
+    }
+
+    /// What a rule of the first block concludes of an output, and what that adds to the answer.
+    pub(crate) fn conclusion(&self, output: usize, rule: usize) -> Option<(&str, Option<f64>)> {
+        let is_meant = |share: &&Share| matches!(share.of.origin, [0, found, _] if found == rule);
+        let share = self.shares.get(output)?.list.iter().find(is_meant)?;
+        let output = self.system().parts().outputs.get(output)?;
+        Some((&output.terms.get(share.of.term)?.name, share.contribution))
     }
 }
