@@ -10,8 +10,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use fspid_diagnostics::digits::counted;
 use fspid_scenario::file::LoadError;
+use fspid_study::json::with_null_reasons;
 use fspid_study::output::OutputError;
 use serde_json::{Value, json};
+
+use crate::stream::Stream;
 
 /// Version of the shape of an error as JSON.
 const SCHEMA: u32 = 1;
@@ -50,6 +53,14 @@ pub(crate) struct Failure {
     /// Every problem of a file with its place.
     problems: Option<Value>,
 }
+
+/// Why keys of a problem are null.
+const NULLS: [(&str, &str); 4] = [
+    ("origin", "it stands in the file itself"),
+    ("line", "the file is meant as a whole"),
+    ("column", "the file is meant as a whole"),
+    ("found", "no single value is wrong"),
+];
 
 impl Failure {
     /// A requirement or claim check was not met.
@@ -135,7 +146,7 @@ impl Failure {
             let _ = print(&format!("{:#}\n", self.json()));
         }
         if !message.is_empty() {
-            let _ = writeln!(io::stderr(), "{}{}", self.name, visible(message));
+            note(format_args!("{}{message}", self.name));
         }
     }
 
@@ -152,7 +163,7 @@ impl Failure {
         if let Some(problems) = &self.problems {
             error["problems"] = problems.clone();
         }
-        json!({ "schema": SCHEMA, "error": error })
+        with_null_reasons(json!({ "schema": SCHEMA, "error": error }), &NULLS)
     }
 }
 
@@ -170,7 +181,11 @@ impl From<OutputError> for Failure {
 /// Writes data to standard output. A reader that has gone away (`| head`) is no failure.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     ANSWERED.store(true, Ordering::Relaxed);
-    if IS_FILE.load(Ordering::Relaxed) {
+    let stream = if IS_FILE.load(Ordering::Relaxed) { Stream::Error } else { Stream::Output };
+    if stream.is_input() {
+        return Ok(());
+    }
+    if stream == Stream::Error {
         let _ = io::stderr().write_all(text.as_bytes());
         return Ok(());
     }
@@ -190,7 +205,9 @@ pub(crate) fn stream() {
 
 /// Tells people something that is no result.
 pub(crate) fn note(text: impl Display) {
-    let _ = writeln!(io::stderr(), "{}", visible(&text.to_string()));
+    if !Stream::Error.is_input() {
+        let _ = writeln!(io::stderr(), "{}", visible(&text.to_string()));
+    }
 }
 
 /// The text with what moves a terminal's cursor, or turns the text around, written out: names come from files of others.

@@ -2,6 +2,7 @@
 
 use std::any::TypeId;
 use std::error::Error as _;
+use std::ffi::OsString;
 use std::num::{IntErrorKind, ParseFloatError, ParseIntError};
 
 use clap::builder::StyledStr;
@@ -11,11 +12,17 @@ use fspid_scenario::apart::{self, Clash, Named};
 
 use crate::argument::{Drawings, InFile, NamedFile, OutFile, STANDARD, Source};
 use crate::exit::{Failure, Output};
+use crate::stream::{self, Stream};
 use fspid_scenario::count::{Count, of_option};
 
 /// The arguments of the program; `None` in place of a failure where only help was asked for.
 pub(crate) fn parsed<P: Parser>() -> Result<P, Option<Failure>> {
-    let mut words: Vec<std::ffi::OsString> = std::env::args_os().collect();
+    let words: Vec<OsString> = std::env::args_os().collect();
+    // Of a line that is not understood no word is known to be no input.
+    arguments(words.clone()).inspect_err(|_| stream::keep_out_of(&words))
+}
+
+fn arguments<P: Parser>(mut words: Vec<OsString>) -> Result<P, Option<Failure>> {
     // `fspid help --help` asks for help, and that is what `help` gives.
     if words.iter().skip(1).take(2).any(|word| word == "help") {
         words.retain(|word| word != "--help" && word != "-h");
@@ -54,7 +61,11 @@ pub(crate) fn parsed<P: Parser>() -> Result<P, Option<Failure>> {
     }
     output.set();
     let outputs = outputs_apart(&command, &matches);
-    apart::declare(outputs.map_err(|clash| Some(Failure::input(clash)))?);
+    let outputs = outputs.map_err(|clash| Some(Failure::input(clash)))?;
+    // A server saves what it has read: that is what it is for.
+    if matches.subcommand_name() != Some("serve") {
+        apart::declare(outputs);
+    }
     P::from_arg_matches(&matches).map_err(failure)
 }
 
@@ -64,25 +75,14 @@ fn outputs_apart(command: &Command, matches: &ArgMatches) -> Result<Vec<Named>, 
     let is_read = |it: &Arg| is::<InFile>(it) || is::<NamedFile>(it) || is::<Source>(it);
     let is_written = |it: &Arg| is::<OutFile>(it) || is::<Drawings>(it);
     let mut outputs = named_files(command, matches, &is_written);
-    outputs.extend(standard_output());
-    match apart::clash(&named_files(command, matches, &is_read), &outputs) {
+    outputs.extend(Stream::Output.named());
+    let inputs = named_files(command, matches, &is_read);
+    // Standard error and output may be one file: a log.
+    let errors: Vec<Named> = Stream::Error.named().into_iter().collect();
+    match apart::clash(&inputs, &outputs).or_else(|| apart::clash(&inputs, &errors)) {
         Some(clash) => Err(clash),
         None => Ok(outputs),
     }
-}
-
-/// The file that standard output goes to, if it is one: what is printed would stand in it or be lost.
-fn standard_output() -> Option<Named> {
-    #[cfg(unix)]
-    {
-        use std::os::fd::AsFd as _;
-        let open = std::fs::File::from(std::io::stdout().as_fd().try_clone_to_owned().ok()?);
-        let identity = apart::Identity::of_open(&open)?;
-        let argument = "standard output".to_owned();
-        Some(Named { argument, path: std::path::PathBuf::new(), identity })
-    }
-    #[cfg(not(unix))]
-    None
 }
 
 /// The files that arguments of a kind name; a drawing's folder is none.
@@ -312,7 +312,7 @@ mod tests {
     }
 
     /// Whole numbers that name one of many, and are no counts.
-    const NAMES: [&str; 3] = ["seed", "run", "number"];
+    const NAMES: [&str; 4] = ["seed", "run", "number", "port"];
 
     /// `--seeds 18446744073709551615` panicked, `--population 100000000` and `--threads 1000000` asked for more than there is.
     #[test]

@@ -7,6 +7,7 @@ mod argument;
 mod commands;
 mod exit;
 mod line;
+mod stream;
 
 use std::process::ExitCode;
 
@@ -50,6 +51,7 @@ enum Command {
     Aircraft(commands::aircraft::Arguments),
     Bench(commands::bench::Arguments),
     Schema(commands::schema::Arguments),
+    Serve(commands::serve::Arguments),
     #[command(hide = true)]
     ExternalController(commands::external_controller::Arguments),
 }
@@ -70,7 +72,10 @@ fn main() -> ExitCode {
 }
 
 fn run(command: Command) -> Result<(), Failure> {
-    commands::external_controller::host(matches!(command, Command::Fly(_)));
+    // Who has a server's token may save a scenario: no program that one names is started there.
+    if !matches!(command, Command::Serve(_)) {
+        commands::external_controller::host(matches!(command, Command::Fly(_)));
+    }
     match command {
         Command::Reproduce(arguments) => commands::reproduce::run(&arguments),
         Command::Init(arguments) => commands::init::run(&arguments),
@@ -93,6 +98,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Aircraft(arguments) => commands::aircraft::run(&arguments),
         Command::Bench(arguments) => commands::bench::run(&arguments),
         Command::Schema(arguments) => commands::schema::run(&arguments),
+        Command::Serve(arguments) => commands::serve::run(&arguments),
         Command::ExternalController(arguments) => commands::external_controller::run(&arguments),
     }
 }

@@ -1,5 +1,6 @@
 //! All integration tests in one binary: linking one takes less than linking many.
 
+mod accepted;
 mod aircraft;
 mod bench;
 mod campaign;
@@ -25,6 +26,8 @@ mod one_verdict;
 mod own_files;
 mod packages;
 mod repository;
+#[cfg(all(unix, feature = "web"))]
+mod serve;
 mod small_things;
 mod tables;
 mod tune;

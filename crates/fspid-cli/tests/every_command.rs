@@ -83,7 +83,7 @@ const ANSWERS: [(&str, &[i32], &str); 45] = [
 ];
 
 /// The others, whose answers the tests of their own commands look at.
-const ELSEWHERE: [&str; 3] = ["fly", "aircraft envelope", "aircraft import"];
+const ELSEWHERE: [&str; 4] = ["fly", "serve", "aircraft envelope", "aircraft import"];
 
 #[test]
 fn every_command_answers_with_one_json_object() {

@@ -10,7 +10,8 @@ const PROGRAM: &str = "cargo run --release -- ";
 /// What else is run: building what the next command flies.
 const COMPILER: &str = "cc -shared ";
 /// Commands that are not run here, each with the reason.
-const NOT_RUN: [(&str, &str); 6] = [
+const NOT_RUN: [(&str, &str); 7] = [
+    ("serve", "goes on until Ctrl-C; tests of its own run it"),
     ("reproduce", "the end-to-end check runs it"),
     ("contest", "takes most of an hour"),
     ("bench", "measures"),

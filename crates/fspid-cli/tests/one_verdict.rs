@@ -95,6 +95,8 @@ fn what_nobody_can_tell_is_undecided_for_every_command_with_the_same_reason() {
         assert!(!told.to_lowercase().contains("unstable at rest"), "{told}");
         assert!(*code == 1 || told.starts_with("my first flight"), "{code}: {told}");
     }
+    // A campaign had no word for it.
+    assert!(said[5].1.contains("stability at rest undecided: 20"), "{}", said[5].1);
     let answer = fspid(&["analyse", "asked.toml", "--format", "json"], folder.path());
     let loop_ = &json(&answer)["controllers"][0];
     assert!(loop_["stable"].is_null() && loop_["stability"] == "undecided", "{loop_}");

@@ -126,6 +126,131 @@ fn what_is_printed_into_a_file_is_not_written_over_and_writes_over_nothing() {
     assert_eq!(fs::read(folder.join("a.toml")).expect("a file"), before);
 }
 
+/// What a shell makes of a line in a folder.
+fn in_shell(line: &str, folder: &Path) -> (i32, String) {
+    let program = env!("CARGO_BIN_EXE_fspid");
+    let line = line.replace("fspid ", &format!("{program} "));
+    let output = Command::new("sh").args(["-c", &line]).current_dir(folder).output().expect("run");
+    (code(&output), text(&output.stderr))
+}
+
+/// The error as JSON was appended to the scenario.
+#[test]
+fn what_is_read_gets_no_error_either() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    done("init a.toml", folder);
+    done("init --template rule-table rules.toml", folder);
+    done("init --template campaign c.toml", folder);
+    done("campaign run c.toml --runs 4 --shard-runs 4 --quiet --out run", folder);
+    let a = fs::read_to_string(folder.join("a.toml")).expect("a file");
+    let named = a.replace("table = \"mirrored\"", "table = \"rules.toml\"");
+    fs::write(folder.join("named.toml"), named).expect("written");
+    let appended = [
+        ("a.toml", "fspid simulate a.toml --format json"),
+        ("a.toml", "fspid simulate a.toml --no-such-option --format json"),
+        ("a.toml", "fspid simulate --format=json --requirements=a.toml"),
+        ("a.toml", "fspid check ./a.toml --format json"),
+        ("rules.toml", "fspid simulate named.toml --format json"),
+        ("rules.toml", "fspid simulate named.toml --trace -"),
+        ("run/campaign.json", "fspid campaign report run --format json"),
+        (PART, "fspid campaign report run --format json"),
+        ("run/campaign.parquet", "fspid campaign report run --format json"),
+    ];
+    for (file, line) in appended {
+        let before = fs::read(folder.join(file)).expect("a file");
+        for stream in ["", "2"] {
+            let (code, told) = in_shell(&format!("{line} {stream}>> {file}"), folder);
+            let after = fs::read(folder.join(file)).expect("a file");
+            assert!(after == before, "{line} {stream}>> {file}: {code}: {told}");
+            assert!(code == 2 || stream == "2", "{line} >> {file}: {code}: {told}");
+        }
+    }
+    let (code, told) = in_shell("fspid simulate a.toml --format json > a.toml", folder);
+    assert!(code == 2 && told.contains("standard output would be written over"), "{told}");
+    assert_eq!(fs::read(folder.join("a.toml")).expect("a file"), b"", "the shell emptied it");
+    // What is no input has the error, as ever.
+    let line = "fspid simulate none.toml --format json > told.json";
+    assert_eq!(in_shell(line, folder).0, 2);
+    assert!(fs::read_to_string(folder.join("told.json")).is_ok_and(|it| it.contains("\"error\"")));
+}
+
+/// Writes a large file until the process is killed, so that what it leaves has the name that the program gave it.
+fn leftover(folder: &Path) -> std::path::PathBuf {
+    let line = "fspid simulate a.toml --set loop.duration_s=400 --set loop.sample_period_s=0.001 --trace large.csv";
+    let words: Vec<&str> = line.split(' ').skip(1).collect();
+    let mut process = started(&words, folder);
+    let is_left = |name: &String| name.starts_with(".fspid-");
+    let found = loop {
+        if let Some(name) = listed(folder).into_iter().find(is_left) {
+            break name;
+        }
+        assert_eq!(process.try_wait().expect("a process"), None, "it ended before it was killed");
+        std::thread::yield_now();
+    };
+    process.kill().expect("killed");
+    process.wait().expect("it ends");
+    assert!(!folder.join("large.csv").exists());
+    folder.join(found)
+}
+
+/// `export` refused the folder as one with files of others; and what was left stayed for good.
+#[test]
+fn what_a_killed_process_left_keeps_nobody_out_and_is_cleared_by_every_command_that_writes() {
+    let home = tempfile::tempdir().expect("a folder");
+    let home = home.path();
+    done("init a.toml", home);
+    done("init --template tuning t.toml", home);
+    done("init --template campaign c.toml", home);
+    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/contest/light.toml");
+    fs::copy(root, home.join("l.toml")).expect("copied");
+    let left = leftover(home);
+    let name = left.file_name().expect("a name").to_owned();
+    let lines = [
+        ("out", "export a.toml --controller PID --to c --samples 20 --out out"),
+        ("out", "simulate a.toml --trace out/a.csv"),
+        ("out", "certify a.toml --controller PID --out out"),
+        ("out", "tune t.toml --budget 4 --quiet --out out/d.toml"),
+        ("out", "contest l.toml --budget 4 --seeds 1 --quiet --out out"),
+        ("out/shards", "campaign run c.toml --runs 4 --quiet --out out"),
+        ("out", "campaign run c.toml --runs 4 --quiet --out out"),
+    ];
+    for (place, words) in lines {
+        let place = home.join(place);
+        fs::create_dir_all(&place).expect("made");
+        fs::copy(&left, place.join(&name)).expect("copied");
+        let (code, told) = run(words, home);
+        assert!(code < 2, "{words}: {code}: {told}");
+        let names = listed(&place);
+        assert!(!names.iter().any(|it| it.starts_with(".fspid-")), "{words}: {names:?}");
+        assert!(!names.is_empty(), "{words}");
+        fs::remove_dir_all(home.join("out")).expect("removed");
+    }
+}
+
+/// The lock of a search was taken from the scenario, which was removed in the end.
+#[test]
+fn a_file_that_is_called_like_one_of_the_programs_own_stays() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    for name in ["d.toml.state.json.lock", "d.toml.state.json"] {
+        let before = fspid(&["init", "--template", "tuning"], folder).stdout;
+        fs::write(folder.join(name), &before).expect("written");
+        let (code, told) = run(&format!("tune {name} --budget 4 --quiet --out d.toml"), folder);
+        assert!(code == 2 || code == 4, "{name}: {code}: {told}");
+        assert!(fs::read(folder.join(name)).is_ok_and(|it| it == before), "{name}: {told}");
+        fs::remove_file(folder.join(name)).expect("removed");
+    }
+    done("init --template campaign c.toml", folder);
+    done("campaign plan c.toml --runs 4 --out run", folder);
+    let own = ["run/shards/Cargo.lock", "run/shards/.fspid-notes", "run/shards/a.csv"];
+    own.iter().for_each(|name| fs::write(folder.join(name), "mine").expect("written"));
+    done("campaign run c.toml --runs 4 --quiet --out run", folder);
+    for name in own {
+        assert!(fs::read_to_string(folder.join(name)).is_ok_and(|it| it == "mine"), "{name}");
+    }
+}
+
 /// Files that a scenario names, and files that an option makes of a folder, are seen when they are read and written.
 #[test]
 fn what_a_scenario_names_is_not_written_over_either_nor_one_file_of_a_folder() {
@@ -155,7 +280,9 @@ fn what_a_scenario_names_is_not_written_over_either_nor_one_file_of_a_folder() {
 fn controllers_of_colliding_names_have_a_file_and_a_column_each() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
-    let names = ["PID", "pid", "ä", "ö", "a/b", "a.b", "a,b", "a_b"];
+    let long = ["x".repeat(255), "X".repeat(255)];
+    let names =
+        ["PID", "pid", "ä", "ö", "a/b", "a.b", "a,b", "a_b", "..", "CON", &long[0], &long[1]];
     scenario(folder, "a.toml", &names);
     let (_, told) = run("certify a.toml --out proofs", folder);
     assert_eq!(listed(&folder.join("proofs")).len(), names.len(), "{told}");
@@ -216,6 +343,27 @@ fn a_file_that_grows_too_large_is_exit_4_with_the_old_one_left() {
     assert!(told.contains("cannot write a.csv: files may not be so large here"), "{told}");
     assert!(fs::read_to_string(folder.join("a.csv")).is_ok_and(|found| found == "old"));
     assert_eq!(listed(folder), ["a.csv", "a.toml"]);
+}
+
+/// "cannot write the table: External: No space left on device (os error 28)".
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_told_with_the_file_and_a_device_or_pipe_among_an_exports_files_stays() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    done("init --template tuning t.toml", folder);
+    symlink("/dev/full", folder.join("h.parquet")).expect("linked");
+    let (code, told) = run("tune t.toml --budget 4 --quiet --history h.parquet", folder);
+    assert!(code == 4 && told.contains("cannot write h.parquet: the disk is full"), "{told}");
+
+    done("init a.toml", folder);
+    fs::create_dir(folder.join("code")).expect("made");
+    let made = Command::new("mkfifo").arg(folder.join("code/vectors.csv")).status();
+    assert!(made.expect("mkfifo").success());
+    let words = "export a.toml --controller PID --to c --samples 20 --force --out code";
+    let (code, told) = run(words, folder);
+    assert!(code == 4 && told.contains("vectors.csv: it is no regular file"), "{code}: {told}");
+    assert_eq!(listed(&folder.join("code")), ["vectors.csv"]);
 }
 
 /// Two of them wrote over each other's states, and the later one over the design.

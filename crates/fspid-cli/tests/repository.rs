@@ -37,13 +37,16 @@ pub(crate) fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// Files with an ending in a folder and in all folders in it, but for what is built, hidden or a symbolic link.
+/// Folders whose content is built or fetched.
+const NOT_OURS: [&str; 4] = ["target", "out", "node_modules", "dist"];
+
+/// Files with an ending in a folder and in all folders in it, but for what is not ours, hidden or a symbolic link.
 pub(crate) fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in read_dir(folder).expect("a folder") {
         let path = entry.expect("an entry").path();
         let name = path.file_name().and_then(|it| it.to_str()).unwrap_or_default();
-        if path.is_symlink() || name == "target" || name == "out" || name.starts_with('.') {
+        if path.is_symlink() || NOT_OURS.contains(&name) || name.starts_with('.') {
             continue;
         }
         if path.is_dir() {

@@ -3,6 +3,7 @@
 use clap::{Args, ValueEnum};
 
 use super::external_controller::{Beside, leave_out};
+use super::progress::at_work;
 use super::{Format, json_text};
 use crate::argument::{InFile, OutFile, count, written};
 use crate::exit::{Failure, note, print, wrote};
@@ -79,7 +80,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         fly: arguments.fly,
         ..Question::default()
     };
-    let analysis = Analysis::of(&study, question).map_err(Failure::input)?;
+    let analysis = at_work("analysing", || Analysis::of(&study, question));
+    let analysis = analysis.map_err(Failure::input)?;
     if let Some(path) = &arguments.report {
         output::write(path, report::of_analysis(&study, &analysis).map_err(Failure::input)?)?;
         wrote(path);

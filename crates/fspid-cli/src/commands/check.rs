@@ -12,6 +12,7 @@ use fspid_diagnostics::digits::counted;
 use fspid_scenario::file::{self, Study, Template};
 use fspid_scenario::fuzzy_system;
 use fspid_study::certify::CheckedFile;
+use fspid_study::json::with_null_reasons;
 
 /// Check a scenario or a fuzzy system and tell every problem in it.
 ///
@@ -75,12 +76,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let names = scenario.flyers().map(|flyer| flyer.name());
     let json = || {
-        json!({
+        let answer = json!({
             "schema": 1, "file": file.to_string(), "kind": "scenario", "good": true,
             "name": scenario.name, "controllers": names.collect::<Vec<_>>(), "samples": timing.rows(),
             "sample_period_s": timing.dt_s(), "digest": study.digest, "warnings": study.warnings,
             "certificate": certificate.as_ref().map(|(_, checked)| checked.json()),
-        })
+        });
+        with_null_reasons(answer, &[("certificate", "no certificate lies beside the scenario")])
     };
     arguments.format.print(text, json)?;
     certificate.map_or(Ok(()), |(path, checked)| judge(&path, &checked, arguments))

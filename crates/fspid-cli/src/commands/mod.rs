@@ -22,6 +22,7 @@ pub(crate) mod learn;
 mod progress;
 pub(crate) mod reproduce;
 pub(crate) mod schema;
+pub(crate) mod serve;
 pub(crate) mod simulate;
 pub(crate) mod surface;
 pub(crate) mod tune;

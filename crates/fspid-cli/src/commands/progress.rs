@@ -5,6 +5,8 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use crate::stream::Stream;
+
 /// How often the line on a terminal is drawn anew.
 const REDRAW: Duration = Duration::from_millis(200);
 /// How often a plain line is written.
@@ -35,6 +37,9 @@ impl Telling {
 
 /// Tells a line; on a terminal it takes the place of the one before.
 pub(crate) fn tell(telling: Telling, line: &str) {
+    if Stream::Error.is_input() {
+        return;
+    }
     let mut out = io::stderr().lock();
     // A closed standard error is no reason to stop flying.
     let _ = match telling {
@@ -72,6 +77,17 @@ pub(crate) fn alive<T>(
         drop(working);
         answer
     })
+}
+
+/// Works, and tells on standard error that it still does once that takes a while.
+pub(crate) fn at_work<T>(what: &str, work: impl FnOnce() -> T) -> T {
+    let telling = Telling::for_standard_error();
+    let answer = alive(telling, &|| what.to_owned(), work);
+    // The answer begins on an empty line.
+    if telling == Telling::Line {
+        tell(telling, "");
+    }
+    answer
 }
 
 /// A time in words.

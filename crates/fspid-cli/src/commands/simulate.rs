@@ -3,6 +3,7 @@
 use clap::Args;
 
 use super::external_controller::Beside;
+use super::progress::at_work;
 use super::{Format, json_text};
 use crate::argument::{InFile, OutFile, written};
 use crate::exit::{Failure, note, print};
@@ -37,7 +38,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     for warning in &study.warnings {
         note(format_args!("warning: {warning}"));
     }
-    let simulation = Simulation::of(&study).map_err(Failure::input)?;
+    let simulation = at_work("flying", || Simulation::of(&study)).map_err(Failure::input)?;
     if let Some(path) = &arguments.trace {
         simulation.column_names().changed().for_each(note);
         output::write(path, simulation.csv())?;

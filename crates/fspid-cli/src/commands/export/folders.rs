@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::Arguments;
 use crate::exit::Failure;
 use fspid_export::{Export, File};
-use fspid_study::output::{self, Contents, is_free, write_folders};
+use fspid_study::output::{self, Contents, Taken, is_free, write_folders};
 
 /// Refuses folders that may not be written into, before anything is computed.
 pub(super) fn check(arguments: &Arguments) -> Result<(), Failure> {
@@ -68,5 +68,6 @@ pub(super) fn write(arguments: &Arguments, exported: &Export) -> Result<(), Fail
     }
     let mut folders = vec![(&*arguments.out, contents(&exported.files))];
     folders.extend(arguments.evidence.as_deref().map(|it| (it, contents(&exported.evidence))));
-    Ok(write_folders(&folders)?)
+    let taken = if arguments.force { Taken::WrittenOver } else { Taken::Refused };
+    Ok(write_folders(&folders, taken)?)
 }

@@ -1,0 +1,153 @@
+//! A campaign: rows of measures as they are flown, then what all of them say.
+
+use fspid_campaign::sample::Sampling;
+use fspid_campaign::summary::{self, Summary, SummarySettings};
+use fspid_campaign::table::{Cell, ColumnTable, Reader};
+use fspid_campaign::{CampaignError, Folder, Question, Range, Shards, local, rows};
+use fspid_diagnostics::digits::grouped;
+use fspid_scenario::count::RUNS;
+use serde_json::{Value, json};
+
+use super::asked::counted;
+use super::task::{Ended, Pace, Task};
+use crate::answer::Refusal;
+use crate::request::Fields;
+
+/// Runs and seed where nobody asks for others, as those of `fspid campaign run`.
+const DEFAULTS: (u64, u64) = (1000, 1);
+/// Measures of rows where nobody asks for others.
+const MEASURES: [&str; 4] =
+    ["overshoot_pct", "settling_time_s", "iae_deg_s", "largest_command_deg"];
+/// Shards of a campaign, of which each is told when it is there.
+const SHARDS: u64 = 64;
+/// Most runs of a shard.
+const MOST_OF_SHARD: u64 = 2048;
+/// Most rows that are told; of more, the summary tells.
+const MOST_ROWS: usize = 50_000;
+
+/// The options of `fspid campaign run`, and which measures are told.
+#[derive(Clone, Debug)]
+pub(super) struct Campaign {
+    pub(super) overrides: Vec<String>,
+    runs: u64,
+    seed: u64,
+    sampling: Sampling,
+    measures: Vec<String>,
+}
+
+impl Campaign {
+    pub(super) fn read(options: &mut Fields) -> Result<Self, Refusal> {
+        let sampling =
+            options.text("sampling")?.unwrap_or_else(|| Sampling::Random.name().to_owned());
+        let known: Vec<&str> = rows::measure_names().map(|(name, _)| name).collect();
+        let unknown = |what: &str, word: &str, known: &[&str]| {
+            let known = fspid_diagnostics::known_words(word, known);
+            Refusal::wrong(format_args!("there is no {what} `{word}`{known}"))
+        };
+        let mut measures = options.texts("measures")?;
+        if let Some(word) = measures.iter().find(|it| !known.contains(&it.as_str())) {
+            return Err(unknown("measure", word, &known));
+        }
+        if measures.is_empty() {
+            measures = MEASURES.map(str::to_owned).to_vec();
+        }
+        Ok(Self {
+            overrides: options.texts("set")?,
+            runs: counted(options, "runs", RUNS)?.unwrap_or(DEFAULTS.0),
+            seed: options.whole("seed")?.unwrap_or(DEFAULTS.1),
+            sampling: Sampling::from_name(&sampling)
+                .ok_or_else(|| unknown("sampling", &sampling, &Sampling::NAMES))?,
+            measures,
+        })
+    }
+
+    pub(super) fn work(&self, task: &Task<'_>) -> Result<Value, Ended> {
+        let folder = Folder::new(&task.folder);
+        let question = Question {
+            scenario: &task.source.path,
+            overrides: &task.source.overrides,
+            runs: self.runs,
+            seed: self.seed,
+            sampling: self.sampling,
+            shards: Shards::Of(self.runs.div_ceil(SHARDS).clamp(1, MOST_OF_SHARD)),
+        };
+        let campaign = fspid_campaign::plan(&question, &folder)?;
+        folder.put_plan(campaign.plan())?;
+        task.tell(
+            "begun",
+            &json!({ "runs": self.runs, "seed": self.seed, "measures": self.measures }),
+        );
+        let mut teller = Teller {
+            task,
+            folder: &folder,
+            measures: &self.measures,
+            rows: 0,
+            pace: Pace::new(),
+            runs: self.runs,
+        };
+        let progress = &task.job.campaign;
+        local::run_here(&folder, &campaign, progress, &mut |range| teller.tell(range))?;
+        teller.progress();
+        let summary = Summary::of(&folder.merged_path(), SummarySettings::default());
+        let summary = summary.map_err(Ended::failed)?;
+        Ok(json!({ "text": summary::text(&summary), "json": summary::json(&summary) }))
+    }
+}
+
+/// Tells what a shard holds.
+struct Teller<'a> {
+    task: &'a Task<'a>,
+    folder: &'a Folder,
+    measures: &'a [String],
+    /// Rows told so far.
+    rows: usize,
+    pace: Pace,
+    runs: u64,
+}
+
+impl Teller<'_> {
+    fn tell(&mut self, range: Range) -> Result<(), CampaignError> {
+        if self.task.is_stopped() {
+            return Err(CampaignError::Stopped);
+        }
+        if self.rows < MOST_ROWS {
+            let path = self.folder.shard_path(range);
+            let names = [rows::RUN, rows::CONTROLLER, rows::VERDICT].into_iter();
+            let names: Vec<&str> = names.chain(self.measures.iter().map(String::as_str)).collect();
+            let reader = Reader::open(path)?;
+            for table in reader.columns(&names)? {
+                let table = table?;
+                self.rows += table.rows();
+                self.task.tell(
+                    "rows",
+                    &json!({ "columns": names, "rows": listed(&table, names.len()) }),
+                );
+            }
+        }
+        if self.pace.is_time_to_tell() {
+            self.progress();
+        }
+        Ok(())
+    }
+
+    fn progress(&self) {
+        let progress = &self.task.job.campaign;
+        let done = progress.flown() + progress.found();
+        let failed = grouped(progress.failed());
+        self.task.progress(done, self.runs, &format!("runs, {failed} flights failed"));
+    }
+}
+
+/// The cells of a table, row by row; null where a flight has no such measure.
+fn listed(table: &ColumnTable, columns: usize) -> Vec<Vec<Value>> {
+    let cell = |row, column| match table.cell(row, column) {
+        // JSON has no other numbers, and null says something else.
+        Some(Cell::Float(value)) if !value.is_finite() => value.to_string().into(),
+        Some(Cell::Float(value)) => value.into(),
+        Some(Cell::Integer(value)) => value.into(),
+        Some(Cell::Text(value)) => value.into(),
+        Some(Cell::Boolean(value)) => value.into(),
+        Some(Cell::Absent) | None => Value::Null,
+    };
+    (0..table.rows()).map(|row| (0..columns).map(|column| cell(row, column)).collect()).collect()
+}

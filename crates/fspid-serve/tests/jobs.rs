@@ -1,0 +1,263 @@
+//! Long work: followed, taken up again, cancelled, limited.
+
+use serde_json::{Value, json};
+
+use crate::common::Served;
+
+/// A tuning that nobody waits for to end.
+fn endless() -> Value {
+    json!({ "budget": 10_000_000 })
+}
+
+fn names(events: &[(u64, String, Value)]) -> Vec<&str> {
+    events.iter().map(|(_, name, _)| name.as_str()).collect()
+}
+
+/// The data of the only event of a name.
+fn one<'e>(events: &'e [(u64, String, Value)], name: &str) -> &'e Value {
+    let mut found = events.iter().filter(|(_, it, _)| it == name);
+    let first = found.next().unwrap_or_else(|| panic!("no {name}: {events:?}"));
+    assert!(found.next().is_none(), "{name} twice");
+    &first.2
+}
+
+/// How a job ended, and what it found.
+fn ended(events: &[(u64, String, Value)]) -> (&str, &Value) {
+    let (_, name, data) = events.last().expect("an event");
+    assert!(["done", "failed", "cancelled"].contains(&name.as_str()), "{events:?}");
+    (name, data)
+}
+
+#[test]
+fn a_tuning_tells_every_candidate_the_best_design_and_its_summary() {
+    let served = Served::new();
+    let job = served.begin("tune", json!({ "budget": 30, "seed": 3 }));
+    let events = served.followed(&job);
+    assert_eq!(ended(&events).0, "done", "{events:?}");
+    assert_eq!(one(&events, "begun")["numbers"].as_array().map(Vec::len), Some(2));
+    let candidates = events.iter().filter(|(_, name, _)| name == "candidates");
+    let told: usize =
+        candidates.map(|(_, _, it)| it["trials"].as_array().map_or(0, Vec::len)).sum();
+    assert_eq!(told, 31, "the start and thirty");
+    let best =
+        events.iter().rfind(|(_, name, _)| name == "best").map(|(_, _, it)| it).expect("one");
+    let summary = ended(&events).1;
+    assert_eq!(best["cost"], summary["json"]["best"]["cost"]);
+    let design = summary["design"].as_str().expect("a text");
+    assert!(design.contains("# A comment that stays.") && !design.contains("tune = ["), "{design}");
+    let ids: Vec<u64> = events.iter().map(|(id, ..)| *id).collect();
+    assert_eq!(ids, (0..ids.len() as u64).collect::<Vec<_>>());
+}
+
+#[test]
+fn a_tuning_here_finds_the_bits_that_the_library_finds() {
+    let served = Served::new();
+    let events = served.followed(&served.begin("tune", json!({ "budget": 24, "seed": 5 })));
+    let source = fspid_tune::Source { path: served.path("mine.toml"), overrides: Vec::new() };
+    let problem = fspid_tune::TuningProblem::new(&source, None).expect("a problem");
+    let effort = fspid_tune::Effort {
+        optimiser: problem.tuning().optimiser.clone(),
+        budget: 24,
+        seed: 5,
+        population: None,
+        anywhere: false,
+    };
+    let crew = fspid_tune::Crew::UNSTOPPED;
+    let mut search = fspid_tune::Search::begin(&problem, effort, crew).expect("it begins");
+    let stop = loop {
+        if let Some(stop) = search.advance().expect("it flies") {
+            break stop;
+        }
+    };
+    let tuned = fspid_tune::Tuned::of(&problem, &search, stop).expect("flown");
+    assert_eq!(ended(&events).1["json"], tuned.json());
+}
+
+#[test]
+fn a_campaign_tells_its_rows_and_what_they_say() {
+    let served = Served::new();
+    let job = served.begin("campaign", json!({ "runs": 40, "measures": ["overshoot_pct"] }));
+    let events = served.followed(&job);
+    assert_eq!(ended(&events).0, "done", "{events:?}");
+    let rows: Vec<&Value> = events
+        .iter()
+        .filter(|(_, name, _)| name == "rows")
+        .flat_map(|(_, _, it)| it["rows"].as_array().expect("a list"))
+        .collect();
+    assert_eq!(rows.len(), 80, "a row for each run and controller");
+    assert!(rows.iter().all(|row| row[3].is_f64()), "{rows:?}");
+    assert!(ended(&events).1["text"].as_str().is_some_and(|it| it.contains("PID")));
+}
+
+#[test]
+fn a_contest_and_a_proof_tell_their_answers() {
+    let served = Served::new();
+    let contest = served.begin("contest", json!({ "budget": 8, "seeds": 1 }));
+    let proof = served.begin("certify", json!({ "controller": "slow" }));
+    let events = served.followed(&contest);
+    assert_eq!(ended(&events).0, "done", "{events:?}");
+    assert!(names(&events).contains(&"progress"), "{events:?}");
+    assert!(ended(&events).1["text"].as_str().is_some_and(|it| it.contains("slow")));
+    let events = served.followed(&proof);
+    assert_eq!(ended(&events).0, "done", "{events:?}");
+    let summary = ended(&events).1;
+    assert!(summary["certificates"].is_array() && summary["text"].is_string(), "{summary}");
+}
+
+#[test]
+fn a_stream_that_is_taken_up_again_goes_on_behind_the_last_event() {
+    let served = Served::new();
+    let job = served.begin("tune", endless());
+    let mut first = served.events(&job, None);
+    let seen: Vec<_> = first.by_ref().take(3).collect();
+    drop(first);
+    let last = seen.last().expect("three").0;
+    let next = served.events(&job, Some(last)).next().expect("more");
+    assert_eq!(next.0, last + 1);
+    served.ask("DELETE", &format!("/api/jobs/{job}"), None).json(200);
+    let again: Vec<_> = served.events(&job, None).collect();
+    assert_eq!(again[..3], seen[..]);
+    assert_eq!(ended(&again).0, "cancelled");
+    let refused = served.raw(
+        served
+            .head(
+                "GET",
+                &format!("/api/jobs/{job}/events"),
+                "Last-Event-ID: x\r\nConnection: close\r\n\r\n",
+            )
+            .as_bytes(),
+    );
+    assert_eq!(refused.status, 400);
+}
+
+#[test]
+fn a_job_that_is_cancelled_ends_and_begun_again_it_goes_on() {
+    let served = Served::new();
+    let job = served.begin("tune", endless());
+    let mut events = served.events(&job, None);
+    while events.next().expect("more").1 != "best" {}
+    served.ask("DELETE", &format!("/api/jobs/{job}"), None).json(200);
+    assert_eq!(events.last().expect("the end").1, "cancelled");
+    let again = served.begin("tune", endless());
+    let begun = served.events(&again, None).next().expect("the first");
+    assert!(begun.2["goes_on_after"].is_u64(), "{begun:?}");
+}
+
+/// A self-tuner takes many searches, some of which take as long as all that a test may take.
+#[test]
+fn a_proof_that_is_cancelled_ends_without_an_answer() {
+    let served = Served::new();
+    let tuner = "\n[[controller]]\nname = \"tuner\"\nkind = \"fspid\"\nnominal = { kp = 2.0, ki = 0.5, kd = 1.0 }\nsupervisor = { table = \"mirrored\", range = 5.0, error_scale = 1.0, change_scale = 0.2, output_scale = { kp = 0.1, ki = 0.02, kd = 0.05 } }\n";
+    let text =
+        crate::common::SCENARIO.replace("\n[[dispersion]]", &format!("{tuner}\n[[dispersion]]"));
+    std::fs::write(served.path("mine.toml"), text).expect("written");
+    let job = served.begin("certify", json!({ "controller": "tuner" }));
+    let mut events = served.events(&job, None);
+    while events.next().expect("more").1 != "progress" {}
+    served.ask("DELETE", &format!("/api/jobs/{job}"), None).json(200);
+    assert_eq!(events.last().expect("the end").1, "cancelled");
+    served.until(|health| health["jobs"]["running"] == json!(0));
+}
+
+#[test]
+fn so_many_jobs_run_so_many_wait_and_one_more_is_refused_until_one_is_cancelled() {
+    let served = Served::with(|settings| settings.limits.queue = 3);
+    let running = served.begin("tune", endless());
+    let waiting: Vec<String> =
+        (0..3).map(|seed| served.begin("tune", json!({ "budget": 4, "seed": seed }))).collect();
+    let id = served.id("mine.toml");
+    let asked = || Some(json!({ "kind": "tune", "id": id, "options": {} }));
+    let told = served.ask("POST", "/api/jobs", asked()).error(429);
+    assert!(told.contains("1 running and 3 waiting"), "{told}");
+    let health = served.json("/api/health");
+    assert_eq!(health["jobs"], json!({ "running": 1, "most": 1, "waiting": 3, "most_waiting": 3 }));
+    let last = served.ask("DELETE", &format!("/api/jobs/{}", waiting[2]), None).json(200);
+    assert_eq!(last["state"], "cancelled");
+    served.ask("POST", "/api/jobs", asked()).json(202);
+    served.ask("DELETE", &format!("/api/jobs/{running}"), None).json(200);
+    for job in &waiting[..2] {
+        let events = served.followed(job);
+        assert_eq!(ended(&events).0, "done");
+    }
+}
+
+#[test]
+fn a_job_that_may_not_take_so_long_is_ended_and_says_so() {
+    let served = Served::with(|settings| settings.limits.job = std::time::Duration::ZERO);
+    let events = served.followed(&served.begin("tune", endless()));
+    let (state, end) = ended(&events);
+    assert_eq!(state, "failed");
+    assert!(end["reason"].as_str().is_some_and(|it| it.contains("a job may take")), "{end}");
+}
+
+#[test]
+fn what_is_no_job_is_refused_with_the_words_of_the_command_line() {
+    let served = Served::new();
+    let id = served.id("mine.toml");
+    for (body, status, why) in [
+        (json!({ "kind": "tnue", "id": id }), 400, "did you mean `tune`?"),
+        (json!({ "kind": "tune", "id": id, "options": { "budget": 0 } }), 400, "the budget is 0"),
+        (
+            json!({ "kind": "tune", "id": id, "options": { "bugdet": 1 } }),
+            400,
+            "did you mean `budget`?",
+        ),
+        (json!({ "kind": "tune", "id": id, "options": { "set": "a" } }), 400, "a list of texts"),
+        (json!({ "kind": "campaign", "id": id, "options": { "runs": -1 } }), 400, "a whole number"),
+        (
+            json!({ "kind": "campaign", "id": id, "options": { "measures": ["x"] } }),
+            400,
+            "no measure `x`",
+        ),
+        (json!({ "kind": "tune", "id": "../../etc/passwd" }), 404, "no such scenario"),
+        (json!({ "kind": "tune", "id": id, "path": "/etc" }), 400, "no `path` here"),
+    ] {
+        let told = served.ask("POST", "/api/jobs", Some(body)).error(status);
+        assert!(told.contains(why), "{told}");
+    }
+    for path in ["/api/jobs/7/events", "/api/jobs/x/events", "/api/jobs/..%2f1/events"] {
+        assert_eq!(served.get(path).status, 404, "{path}");
+    }
+    assert_eq!(served.ask("DELETE", "/api/jobs/7", None).status, 404);
+}
+
+#[test]
+fn a_scenario_that_is_wrong_fails_its_job_with_every_problem() {
+    let served = Served::new();
+    std::fs::write(served.path("wrong.toml"), "schema = 1\n[[controller]]\nkind = \"pdi\"\n")
+        .expect("written");
+    let asked = json!({ "kind": "tune", "id": served.id("wrong.toml"), "options": {} });
+    let job = served.ask("POST", "/api/jobs", Some(asked)).json(202);
+    let events = served.followed(job["job"].as_str().expect("an id"));
+    let (state, end) = ended(&events);
+    assert_eq!(state, "failed");
+    assert!(end["problems"]["problems"].as_array().is_some_and(|it| it.len() > 1), "{end}");
+}
+
+/// Whoever has the token may save a text; that shall not become a program that runs.
+#[test]
+fn no_program_that_a_scenario_names_is_started() {
+    let served = Served::new();
+    let library = served.path("own.so");
+    std::fs::write(&library, "no library").expect("written");
+    let own = "\n[[controller]]\nname = \"own\"\nkind = \"external\"\nlibrary = \"own.so\"\n";
+    let text = format!("{}{own}", crate::common::SCENARIO);
+    std::fs::write(served.path("mine.toml"), text).expect("written");
+    let events = served.followed(&served.begin("campaign", json!({ "runs": 2 })));
+    let (state, end) = ended(&events);
+    assert_eq!(state, "failed", "{events:?}");
+    let reason = end["reason"].as_str().expect("a sentence");
+    assert!(reason.contains("starts no external controllers"), "{reason}");
+}
+
+#[test]
+fn a_server_that_ends_ends_its_jobs_and_takes_what_they_wrote_with_it() {
+    let kept = tempfile::tempdir().expect("a folder");
+    let served = Served::with(|settings| settings.kept = Some(kept.path().join("kept")));
+    let job = served.begin("tune", endless());
+    assert_eq!(served.events(&job, None).next().expect("the first").1, "begun");
+    let Served { server, .. } = served;
+    server.stop();
+    let folders = std::fs::read_dir(kept.path().join("kept")).expect("a folder").count();
+    assert_eq!(folders, 1, "what somebody asked to be kept stays");
+}

@@ -1,0 +1,66 @@
+// The page in two forms: as files beside each other for a server, and as one file that works from disk.
+import { mkdirSync, readFileSync, rmSync, writeFileSync, copyFileSync } from "node:fs";
+import { gzipSync } from "node:zlib";
+import { build } from "vite";
+import { toLetters } from "./src/letters.mjs";
+import { svelte } from "@sveltejs/vite-plugin-svelte";
+
+const out = "dist/site";
+
+// Scenarios of the repository that name no file beside them; others come with the mathematics.
+const SCENARIOS = ["747-pitch-step", "limits", "disturbances", "requirements", "plant-change"];
+const scenarios = SCENARIOS.map((name) => ({
+  name: `scenarios/${name}`,
+  about: "",
+  text: readFileSync(`../scenarios/${name}.toml`, "utf8"),
+}));
+
+rmSync(out, { recursive: true, force: true });
+mkdirSync(out, { recursive: true });
+
+/** One script without imports, and its style. */
+async function script(entry, name, plugins) {
+  await build({
+    configFile: false,
+    logLevel: "warn",
+    plugins,
+    define: { __SCENARIOS__: JSON.stringify(scenarios) },
+    build: {
+      outDir: out,
+      emptyOutDir: false,
+      target: "es2022",
+      cssCodeSplit: false,
+      lib: { entry, name: "fspid", formats: ["iife"], fileName: () => `${name}.js`, cssFileName: name },
+    },
+  });
+}
+
+await script("src/worker.ts", "worker", []);
+await script("src/main.ts", "app", [svelte()]);
+copyFileSync("dist/fspid.wasm", `${out}/fspid.wasm`);
+
+const text = (name) => readFileSync(`${out}/${name}`, "utf8");
+const template = readFileSync("src/index.html", "utf8");
+const fill = (parts) => template.replace(/<!-- (\w+) -->/g, (_, name) => parts[name] ?? "");
+
+writeFileSync(
+  `${out}/index.html`,
+  fill({
+    style: '<link rel="stylesheet" href="app.css">',
+    script: '<script src="app.js" defer></script>',
+  }),
+);
+
+// Nothing in a script may end the element that it stands in.
+const quiet = (source) => source.replaceAll("</script", "<\\/script").replaceAll("<!--", "<\\!--");
+const wasm = gzipSync(readFileSync("dist/fspid.wasm"), { level: 9 });
+writeFileSync(
+  "dist/page.html",
+  fill({
+    style: `<style>${text("app.css")}</style>`,
+    data:
+      `<script type="text/plain" id="fspid-worker">${quiet(text("worker.js"))}</script>\n` +
+      `<script type="text/plain" id="fspid-wasm" data-bytes="${wasm.length}">${toLetters(wasm)}</script>\n<!-- scenario -->`,
+    script: `<script>${quiet(text("app.js"))}</script>`,
+  }),
+);

@@ -1,0 +1,256 @@
+// What the page knows: the scenario's text, what was answered of it, and what can be undone.
+import { Engine, OVERTAKEN } from "./engine";
+import { served, type Listed, type Served } from "./server";
+import type { Flight, Judged, Judgement, Moment, Problem, Shape, Summary, Trace } from "./types";
+import type { Answer } from "./wasm";
+
+export interface Shipped {
+  name: string;
+  about: string;
+  text: string;
+}
+
+/** Those of the repository, put in by the build. */
+declare const __SCENARIOS__: Shipped[];
+
+export type View = "fly" | "shape" | "judge" | "explain" | "many" | "keep";
+
+class Cockpit {
+  readonly engine = new Engine();
+  readonly server: Served | null = served();
+
+  shipped = $state.raw<Shipped[]>([]);
+  listed = $state.raw<Listed[]>([]);
+  view = $state<View>("fly");
+  /** What it is called, and where the server has it. */
+  name = $state("");
+  id = $state<string | null>(null);
+  /** The digest that the server gave of the text that was read. */
+  readDigest = $state("");
+  /** The text as it was opened or saved last. */
+  original = $state("");
+  text = $state("");
+  past = $state.raw<string[]>([]);
+  future = $state.raw<string[]>([]);
+
+  summary = $state.raw<Summary | null>(null);
+  problems = $state.raw<Problem[]>([]);
+  refused = $state("");
+  flight = $state.raw<Flight | null>(null);
+  pinned = $state.raw<{ text: string; traces: Trace[] } | null>(null);
+  judged = $state.raw<Judged | null>(null);
+  judgeRefused = $state("");
+  verified = $state.raw<any>(null);
+  sets = $state<string[]>([]);
+  shape = $state.raw<Shape | null>(null);
+  moment = $state.raw<Moment | null>(null);
+  momentRefused = $state("");
+  controller = $state("");
+  at_s = $state(0);
+  certified = $state.raw<any>(null);
+  certifying = $state("");
+  /** How many flights were drawn: for tests that wait. */
+  flights = $state(0);
+
+  get tuned(): string[] {
+    return this.summary?.controllers.filter((it) => it.kind === "self-tuning").map((it) => it.name) ?? [];
+  }
+
+  get isChanged(): boolean {
+    return this.text !== this.original;
+  }
+
+  /** The first scenario: the server's, the page's own, or one that comes with fspid. */
+  async begin(): Promise<void> {
+    const shipped = this.engine.ask("shipped").then(({ json }) => (this.shipped = [...__SCENARIOS__, ...(json.scenarios ?? [])]));
+    const own = document.getElementById("fspid-scenario")?.textContent;
+    try {
+      this.listed = (await this.server?.scenarios()) ?? [];
+    } catch (error) {
+      this.refused = String(error);
+    }
+    const [first] = this.listed;
+    await shipped;
+    if (first) await this.read(first.id);
+    else if (own) await this.open(JSON.parse(own).name, JSON.parse(own).text);
+    else if (this.shipped[0]) await this.open(this.shipped[0].name, this.shipped[0].text);
+  }
+
+  /** A scenario of the server's folder. */
+  async read(id: string): Promise<void> {
+    try {
+      const found = await this.server!.read(id);
+      await this.open(found.name, found.text, found.id, found.digest);
+    } catch (error) {
+      this.refused = String(error);
+    }
+  }
+
+  async open(name: string, text: string, id: string | null = null, digest = ""): Promise<void> {
+    Object.assign(this, { name, id, readDigest: digest, original: text, past: [], future: [] });
+    Object.assign(this, { pinned: null, certified: null, moment: null, flight: null, judged: null, at_s: 0 });
+    this.text = text;
+    this.controller = "";
+    await this.refresh();
+  }
+
+  /** Another text; one step that can be undone, unless it only moves on from `before`. */
+  async change(text: string, before = this.text): Promise<void> {
+    if (before !== text && this.past.at(-1) !== before) this.past = [...this.past, before];
+    this.future = [];
+    this.text = text;
+    await this.refresh();
+  }
+
+  async undo(): Promise<void> {
+    const before = this.past.at(-1);
+    if (before === undefined) return;
+    this.future = [...this.future, this.text];
+    this.past = this.past.slice(0, -1);
+    this.text = before;
+    await this.refresh();
+  }
+
+  async redo(): Promise<void> {
+    const after = this.future.at(-1);
+    if (after === undefined) return;
+    this.past = [...this.past, this.text];
+    this.future = this.future.slice(0, -1);
+    this.text = after;
+    await this.refresh();
+  }
+
+  /** A value in the place of another, from the text before a slider began to move. */
+  async set(path: string, value: string, before = this.text): Promise<boolean> {
+    const found = await this.engine.latest("set", "set", { text: before, path, value });
+    if (found === OVERTAKEN) return false;
+    if (found.json.text === undefined) {
+      this.tell(found);
+      return false;
+    }
+    await this.change(found.json.text, before);
+    return true;
+  }
+
+  tell({ json }: Answer): void {
+    this.problems = json.problems ?? [];
+    this.refused = json.refused ?? "";
+  }
+
+  /** Everything that is shown of the text, anew. */
+  async refresh(): Promise<void> {
+    const { text } = this;
+    const found = await this.engine.latest("open", "open", { text });
+    if (found === OVERTAKEN) return;
+    this.tell(found);
+    if (!found.json.paths) return;
+    this.summary = found.json as Summary;
+    const names = this.summary.controllers.map((it) => it.name);
+    if (!names.includes(this.controller)) this.controller = this.tuned[0] ?? names[0] ?? "";
+    await this.fly(text);
+    await this.look();
+  }
+
+  async fly(text: string): Promise<void> {
+    const found = await this.engine.latest("fly", "fly", { text });
+    if (found === OVERTAKEN) return;
+    const { json } = found;
+    if (!json.simulation) return this.tell(found);
+    this.flight = {
+      controllers: json.simulation.controllers,
+      requirements: json.simulation.requirements ?? [],
+      notes: json.simulation.notes ?? [],
+      met: json.met,
+      failed: json.failed,
+      traces: json.traces.map((trace: any) => ({ ...trace, columns: named(trace.columns, found) })),
+    };
+    this.flights += 1;
+  }
+
+  /** What the open view shows beside the flight. */
+  async look(): Promise<void> {
+    if (this.view === "judge") await Promise.all([this.judge(), this.verify()]);
+    if (this.view === "shape" || this.view === "explain") await Promise.all([this.shapeOf(), this.explain()]);
+  }
+
+  async judge(): Promise<void> {
+    const found = await this.engine.latest("judge", "judge", { text: this.text });
+    if (found === OVERTAKEN) return;
+    const { json } = found;
+    this.judgeRefused = json.refused ?? "";
+    if (!json.analysis) return;
+    const curve = (it: any) => ({ name: it.name, columns: named(it.columns, found) });
+    this.judged = { analysis: json.analysis, held: json.held, loops: json.loops.map(curve), poles: json.poles.map(curve) };
+  }
+
+  async verify(): Promise<void> {
+    const { text } = this;
+    const found = await this.engine.latest("verify", "verify", { text, sets: [...this.sets] });
+    if (found !== OVERTAKEN) this.verified = found.json;
+  }
+
+  async shapeOf(): Promise<void> {
+    if (!this.tuned.includes(this.controller)) {
+      this.shape = null;
+      return;
+    }
+    const found = await this.engine.latest("shape", "shape", { text: this.text, controller: this.controller });
+    if (found === OVERTAKEN || !found.json.curves) return;
+    const { json, columns } = found;
+    const curves = (numbers: number[]) => numbers.map((at) => columns[at] ?? new Float64Array());
+    this.shape = {
+      ...json,
+      inputs: columns[json.curves.inputs],
+      grades: { error: curves(json.curves.error), change: curves(json.curves.change) },
+    };
+  }
+
+  async explain(): Promise<void> {
+    const { text, controller, at_s } = this;
+    const found = await this.engine.latest("explain", "explain", { text, controller, at_s });
+    if (found === OVERTAKEN) return;
+    this.momentRefused = found.json.refused ?? "";
+    this.moment = found.json.parts ? found.json : null;
+  }
+
+  async certify(controller: string): Promise<void> {
+    this.certifying = controller || "all";
+    this.certified = null;
+    const prover = new Engine();
+    this.#prover = prover;
+    const { json } = await prover.ask("certify", { text: this.text, controller });
+    prover.end();
+    if (this.#prover !== prover) return;
+    this.certified = { ...json, of: this.text };
+    this.certifying = "";
+  }
+
+  stopCertifying(): void {
+    this.#prover?.end();
+    this.#prover = null;
+    this.certifying = "";
+  }
+
+  #prover: Engine | null = null;
+
+  async figure(kind: string): Promise<string> {
+    const { json } = await this.engine.ask("figure", { text: this.text, kind, controller: this.controller });
+    return json.svg ?? "";
+  }
+
+  requirement(name: string): Judgement[] {
+    return this.flight?.requirements.filter((it) => it.controller === name) ?? [];
+  }
+
+  show(view: View): void {
+    this.view = view;
+    void this.look();
+  }
+}
+
+/** Columns by their names. */
+function named(columns: { name: string; at: number }[], answer: Answer): Record<string, Float64Array> {
+  return Object.fromEntries(columns.map(({ name, at }) => [name, answer.columns[at] ?? new Float64Array()]));
+}
+
+export const cockpit = new Cockpit();

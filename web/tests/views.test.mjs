@@ -1,0 +1,285 @@
+// The page in a real browser, each view by mouse and by keys. Run by `web/test.sh`; CHROMIUM names the browser.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { after, before, test } from "node:test";
+import { fileURLToPath, pathToFileURL } from "node:url";
+import { chromium } from "playwright-core";
+import { digestOf, start } from "./mock-server.mjs";
+
+const path = (name) => fileURLToPath(new URL(name, import.meta.url));
+const PAGE = pathToFileURL(path("../dist/page.html")).href;
+const STEP = readFileSync(path("../../scenarios/747-pitch-step.toml"), "utf8");
+const AXE = readFileSync(path("../node_modules/axe-core/axe.min.js"), "utf8");
+const VIEWS = ["fly", "shape", "judge", "explain", "many", "keep"];
+const KP = "controller.FSPID.nominal.kp";
+
+let browser;
+before(async () => (browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox"] })));
+after(() => browser?.close());
+
+/** A page that has flown; whatever goes wrong in it fails the test. */
+async function opened(options = {}, address = PAGE) {
+  const page = await browser.newPage({ viewport: { width: 1400, height: 900 }, ...options });
+  page.wrong = [];
+  page.outside = [];
+  page.on("pageerror", (error) => page.wrong.push(error.message));
+  page.on("console", (message) => message.type() === "error" && page.wrong.push(message.text()));
+  page.on("request", (request) => /^https?:/.test(request.url()) && page.outside.push(request.url()));
+  page.setDefaultTimeout(30_000);
+  await page.goto(address);
+  await flown(page, 1);
+  return page;
+}
+
+const flights = (page) => page.locator("#panel").getAttribute("data-flights").then(Number);
+const flown = (page, count) => page.waitForFunction((count) => Number(document.querySelector("#panel")?.dataset.flights) >= count, count);
+const metric = (page, name, controller) => page.locator(`[data-metric="${name}"][data-controller="${controller}"]`).getAttribute("data-value").then(Number);
+const text = async (page) => {
+  await page.click("#tab-keep");
+  return page.inputValue("[data-test=text]");
+};
+const close = async (page) => {
+  assert.deepEqual(page.wrong, []);
+  await page.close();
+};
+
+test("the page opens from disk, flies a scenario, and asks nobody outside", async () => {
+  const page = await opened();
+  assert.match(await page.locator(".verdict[data-controller=FSPID]").innerText(), /✓.*FSPID.*settled/s);
+  assert.ok((await page.locator(".chart canvas").count()) >= 6);
+  assert.deepEqual(page.outside, []);
+  await close(page);
+});
+
+test("Fly: a slider that is dragged moves the measures, and undo brings them back to the bit", async () => {
+  const page = await opened();
+  const before = await metric(page, "overshoot_pct", "FSPID");
+  const slider = page.locator(`[data-path="${KP}"] input[type=range]`);
+  await slider.scrollIntoViewIfNeeded();
+  const box = await slider.boundingBox();
+  await page.mouse.move(box.x + box.width * 0.66, box.y + box.height / 2);
+  await page.mouse.down();
+  for (const part of [0.7, 0.8, 0.9]) await page.mouse.move(box.x + box.width * part, box.y + box.height / 2, { steps: 4 });
+  await page.mouse.up();
+  await page.waitForFunction(([name, value]) => Number(document.querySelector(`[data-metric="${name}"][data-controller="FSPID"]`)?.dataset.value) !== value, ["overshoot_pct", before]);
+  await page.waitForTimeout(300);
+  await page.keyboard.press("Control+z");
+  await page.waitForFunction(([name, value]) => Number(document.querySelector(`[data-metric="${name}"][data-controller="FSPID"]`)?.dataset.value) === value, ["overshoot_pct", before]);
+  assert.ok(await page.getByRole("button", { name: "undo" }).isDisabled(), "a drag is one step");
+  await close(page);
+});
+
+test("Fly: by keys alone a slider moves, a field takes a number, and a curve tells its values", async () => {
+  const page = await opened();
+  await page.locator(`[data-path="${KP}"] input[type=range]`).focus();
+  const count = await flights(page);
+  await page.keyboard.press("ArrowRight");
+  await flown(page, count + 1);
+  const field = page.locator(`[data-path="${KP}"] input[type=number]`);
+  await field.focus();
+  await page.keyboard.press("Control+a");
+  await page.keyboard.type("2.5");
+  await page.keyboard.press("Enter");
+  await flown(page, count + 2);
+  const plot = page.locator(".plot").first();
+  await plot.focus();
+  await page.keyboard.press("End");
+  assert.match(await page.locator(".readout").first().innerText(), /^20: .*FSPID/);
+  assert.match(await text(page), /nominal = \{ kp = 2\.5, ki = 0\.5, kd = 1\.0 \}/);
+  await close(page);
+});
+
+test("Fly: a pinned run stays beside the new one, and a line is hidden by its button", async () => {
+  const page = await opened();
+  await page.click("[data-test=pin]");
+  await page.getByRole("button", { name: "CPID, pinned" }).first().waitFor();
+  const line = page.getByRole("button", { name: "CPID", exact: true }).first();
+  await line.click();
+  assert.equal(await line.getAttribute("aria-pressed"), "false");
+  await close(page);
+});
+
+test("Shape: a rule is another one after a letter, after a click, and what it was after undo", async () => {
+  const page = await opened();
+  await page.click("#tab-shape");
+  const grid = page.getByRole("grid", { name: "rules for Δkp" });
+  const cell = grid.locator('[data-cell="3-3"]');
+  await cell.focus();
+  assert.equal(await cell.innerText(), "ZO");
+  await page.keyboard.press("p");
+  await page.waitForFunction(() => document.querySelector('[data-cell="3-3"]').innerText === "PS");
+  await page.keyboard.press("ArrowDown");
+  assert.equal(await page.evaluate(() => document.activeElement.dataset.cell), "4-3");
+  await grid.locator('[data-cell="3-4"]').click();
+  await page.locator(".labels").first().getByRole("button", { name: "PB" }).click();
+  await page.waitForFunction(() => document.querySelector('[data-cell="3-4"]').innerText === "PB");
+  assert.match(await text(page), /PM PM PS PS PB NM NM/);
+  await page.locator("h1").click();
+  await page.keyboard.press("Control+z");
+  await page.keyboard.press("Control+z");
+  await page.waitForFunction((text) => document.querySelector("[data-test=text]").value === text, STEP);
+  await close(page);
+});
+
+test("Shape: the centre of a set is dragged by mouse and moved by keys", async () => {
+  const page = await opened();
+  await page.click("#tab-shape");
+  const handle = page.locator('[data-handle="error-PS"]');
+  await handle.scrollIntoViewIfNeeded();
+  const box = await handle.boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 30, box.y + box.height / 2, { steps: 5 });
+  await page.mouse.up();
+  await page.waitForFunction(() => Number(document.querySelector('[data-handle="error-PS"]').getAttribute("aria-valuenow")) > 0.36);
+  await page.locator('[data-handle="change-PM"]').focus();
+  await page.keyboard.press("ArrowRight");
+  await page.waitForFunction(() => Number(document.querySelector('[data-handle="change-PM"]').getAttribute("aria-valuenow")) > 0.67);
+  const found = await text(page);
+  assert.match(found, /error_set_centres = \[0\.\d+, 0\.66\d\]/);
+  assert.match(found, /change_set_centres = \[0\.333, 0\.67\d\]/);
+  await close(page);
+});
+
+test("Judge: margins move with a slider, a ready set is judged, and a fixed controller is certified", async () => {
+  const page = await opened();
+  await page.locator("#tab-fly").focus();
+  await page.keyboard.press("ArrowRight");
+  await page.keyboard.press("ArrowRight");
+  const row = page.locator("[data-test=margins] tr", { hasText: "CPID" });
+  await row.waitFor();
+  const before = await row.innerText();
+  assert.match(before, /✓ stable/);
+  await page.locator('[data-path="controller.CPID.kp"] input[type=range]').focus();
+  for (let times = 0; times < 20; times += 1) await page.keyboard.press("ArrowRight");
+  await page.waitForFunction((before) => ![...document.querySelectorAll("[data-test=margins] tr")].some((it) => it.innerText === before), before);
+  await page.getByLabel("mil-f-9490d").check();
+  await page.locator(".requirements td.good").first().waitFor();
+  assert.ok((await page.locator(".requirements td.bad").count()) > 0);
+  await page.getByRole("button", { name: "certify CPID" }).click();
+  await page.locator("[data-test=certified] .verdict").waitFor({ timeout: 120_000 });
+  assert.match(await page.locator("[data-test=certified]").innerText(), /PROVED|REFUTED|OPEN/);
+  await close(page);
+});
+
+test("Explain: a click in a curve tells the parts of the command there and the rules that fired; keys move on", async () => {
+  const page = await opened();
+  const box = await page.locator(".chart .u-over").first().boundingBox();
+  await page.mouse.click(box.x + box.width * 0.05, box.y + box.height / 2);
+  await page.locator("[data-test=parts]").waitFor();
+  assert.match(await page.locator("[data-test=parts] caption").innerText(), /FSPID at (0\.9|1)/);
+  assert.ok((await page.locator("[data-test=fired] tbody tr").count()) > 1);
+  const caption = await page.locator("[data-test=parts] caption").innerText();
+  await page.locator("[data-test=instant]").focus();
+  await page.keyboard.press("ArrowRight");
+  await page.waitForFunction((before) => document.querySelector("[data-test=parts] caption").innerText !== before, caption);
+  await close(page);
+});
+
+test("Keep: the difference is shown, the command sets what differs, and the file that is saved keeps its comments", async () => {
+  const page = await opened();
+  const field = page.locator(`[data-path="${KP}"] input[type=number]`);
+  await field.fill("2.25");
+  await field.press("Enter");
+  await page.click("#tab-keep");
+  await page.locator(".added").waitFor();
+  assert.match(await page.locator("[data-test=difference]").innerText(), /\+ nominal = \{ kp = 2\.25/);
+  await page.waitForFunction(() => document.querySelector("[data-test=command]").innerText.includes("kp=2.25"));
+  const [download] = await Promise.all([page.waitForEvent("download"), page.click("[data-test=save]")]);
+  const saved = readFileSync(await download.path(), "utf8");
+  assert.equal(saved, STEP.replace("nominal = { kp = 2.0", "nominal = { kp = 2.25"));
+  const [figure] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "save Nyquist as SVG" }).click()]);
+  assert.match(readFileSync(await figure.path(), "utf8"), /^<svg/);
+  const [pixels] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "save time responses as PNG" }).click()]);
+  assert.equal(readFileSync(await pixels.path()).subarray(1, 4).toString(), "PNG");
+  await close(page);
+});
+
+test("a bad text is marked at its lines and does not fly", async () => {
+  const page = await opened();
+  await page.click("#tab-keep");
+  await page.fill("[data-test=text]", STEP.replace("kp = 3.5287", "kpp = 3.5287"));
+  const problems = page.getByRole("alert", { name: "problems" });
+  await problems.waitFor();
+  assert.match(await problems.innerText(), /line 23, column 1.*kpp.*kp/s);
+  assert.match(await problems.innerText(), /last text that could fly/);
+  await close(page);
+});
+
+test("on a phone nothing is cut off, in any view, light or dark", async () => {
+  for (const colorScheme of ["light", "dark"]) {
+    const page = await opened({ viewport: { width: 390, height: 800 }, colorScheme });
+    for (const view of VIEWS) {
+      await page.click(`#tab-${view}`);
+      await page.waitForTimeout(400);
+      const [wide, room] = await page.evaluate(() => [document.documentElement.scrollWidth, innerWidth]);
+      assert.ok(wide <= room, `${view}, ${colorScheme}: ${wide} px in ${room} px`);
+    }
+    await close(page);
+  }
+});
+
+test("axe finds nothing serious in any view, light or dark", async () => {
+  for (const colorScheme of ["light", "dark"]) {
+    const page = await opened({ colorScheme });
+    await page.evaluate(AXE);
+    for (const view of VIEWS) {
+      await page.click(`#tab-${view}`);
+      await page.waitForTimeout(800);
+      const found = await page.evaluate(() => axe.run(document, { resultTypes: ["violations"] }));
+      assert.equal(found.testEngine.name, "axe-core");
+      const serious = found.violations.filter((it) => ["serious", "critical"].includes(it.impact));
+      const told = serious.map((it) => `${it.id}: ${it.nodes.map((node) => node.target.join(" ")).join(", ")}`);
+      assert.deepEqual(told, [], `${view}, ${colorScheme}`);
+    }
+    await close(page);
+  }
+});
+
+test("behind a server the page keeps its policy, saves what it read, and refuses to write over what changed", async () => {
+  const server = await start(path("../dist/site"), STEP);
+  const page = await opened({}, server.address);
+  try {
+    await page.waitForFunction(() => document.querySelector("[data-test=scenario]").value === "file:pitch.toml");
+    await page.waitForTimeout(500);
+    const field = page.locator(`[data-path="${KP}"] input[type=number]`);
+    await field.fill("2.25");
+    await field.press("Enter");
+    await page.click("#tab-keep");
+    await page.locator(".added").waitFor();
+    await page.click("[data-test=save]");
+    await page.getByText("pitch.toml is saved").waitFor();
+    assert.match(server.state.text, /kp = 2\.25/);
+    server.state.text += "# somebody else\n";
+    await page.fill("[data-test=text]", STEP);
+    await page.waitForTimeout(600);
+    page.wrong = [];
+    await page.click("[data-test=save]");
+    await page.getByText("has changed on disk").waitFor();
+    assert.match(server.state.text, /somebody else/);
+    assert.equal(page.wrong.filter((it) => !it.includes("409")).length, 0);
+    page.wrong = [];
+    assert.ok(page.outside.every((it) => it.startsWith("http://127.0.0.1")));
+    assert.equal(digestOf("").length, 64);
+  } finally {
+    server.stop();
+    await close(page);
+  }
+});
+
+test("Tune and fly many: candidates of a job appear as points, and its result at the end", async () => {
+  const server = await start(path("../dist/site"), STEP);
+  const page = await opened({}, server.address);
+  try {
+    await page.waitForFunction(() => document.querySelector("[data-test=scenario]").value === "file:pitch.toml");
+    await page.click("#tab-many");
+    await page.click("[data-test=start]");
+    await page.getByText("✓ done").waitFor();
+    assert.equal(await page.locator(".plane circle.sign").count(), 10);
+    assert.match(await page.locator("#panel").innerText(), /best: 1 at candidate 9/);
+    assert.match(await page.locator("#panel").innerText(), /ten candidates/);
+  } finally {
+    server.stop();
+    await close(page);
+  }
+});
