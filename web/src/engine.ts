@@ -1,13 +1,12 @@
 // The worker as the page sees it: questions and promises of answers, of each kind at most one on its way and one waiting.
-import { fromLetters } from "./letters.mjs";
 import type { Answer } from "./wasm";
+import type { Letters } from "./worker";
 
 /** A question that was overtaken by a newer one of its kind. */
 export const OVERTAKEN = Symbol("overtaken");
 
 export class Engine {
   #worker: Worker;
-  #ready: Promise<void> = Promise.resolve();
   #next = 1;
   #waiting = new Map<number, (answer: Answer) => void>();
   #lanes = new Map<string, Lane>();
@@ -24,7 +23,7 @@ export class Engine {
       this.#waiting.get(data.id)?.(data);
       this.#waiting.delete(data.id);
     };
-    this.#ready = wasm().then((found) => worker.postMessage({ wasm: found }));
+    worker.postMessage({ wasm: mathematics() });
     return worker;
   }
 
@@ -35,8 +34,7 @@ export class Engine {
     this.#waiting.clear();
   }
 
-  async ask(verb: string, rest: object = {}): Promise<Answer> {
-    await this.#ready;
+  ask(verb: string, rest: object = {}): Promise<Answer> {
     const id = this.#next++;
     return new Promise((resolve) => {
       this.#waiting.set(id, resolve);
@@ -72,19 +70,9 @@ interface Lane {
   next?: ((go: boolean) => void) | undefined;
 }
 
-let found: Promise<ArrayBuffer | string> | undefined;
-
-/** The mathematics as bytes out of the page, or where a server has it. */
-function wasm(): Promise<ArrayBuffer | string> {
-  found ??= unpacked();
-  return found;
-}
-
-async function unpacked(): Promise<ArrayBuffer | string> {
+/** Where the mathematics is: letters in the page, or a file that a server has. */
+function mathematics(): Letters | string {
   const element = document.getElementById("fspid-wasm");
-  const text = element?.textContent;
-  if (!text) return new URL("fspid.wasm", location.href).href;
-  const packed = fromLetters(text, Number(element.dataset["bytes"]));
-  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
-  return new Response(stream).arrayBuffer();
+  const letters = element?.textContent;
+  return letters ? { letters, bytes: Number(element.dataset["bytes"]) } : new URL("fspid.wasm", location.href).href;
 }

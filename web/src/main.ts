@@ -5,8 +5,13 @@ import App from "./App.svelte";
 import { cockpit } from "./cockpit.svelte";
 
 const target = document.getElementById("app");
-if (target) {
+
+/** The worker reads its mathematics while the page is built. */
+function begin(target: HTMLElement): void {
+  void cockpit.begin();
   target.replaceChildren();
   mount(App, { target });
-  void cockpit.begin();
 }
+
+// What stands in the file is painted first.
+if (target) requestAnimationFrame(() => setTimeout(begin, 0, target));

@@ -1,5 +1,12 @@
 // All mathematics happens here, so that the page never waits.
+import { fromLetters } from "./letters.mjs";
 import { Mathematics, type Answer } from "./wasm";
+
+/** The mathematics as letters, zipped, and how many bytes that is. */
+export interface Letters {
+  letters: string;
+  bytes: number;
+}
 
 interface Asked {
   id: number;
@@ -26,13 +33,17 @@ function fault(id: number, error: unknown): void {
   answer(id, { json: { refused: `a fault in the mathematics: ${String(error)}` }, columns: [] });
 }
 
-onmessage = async ({ data }: MessageEvent<Asked & { wasm?: ArrayBuffer | string }>) => {
+function compiled(wasm: Letters | string): Promise<WebAssembly.Module> {
+  if (typeof wasm === "string") return WebAssembly.compileStreaming(fetch(wasm));
+  const packed = new Response(fromLetters(wasm.letters, wasm.bytes) as Uint8Array<ArrayBuffer>).body!;
+  const whole = packed.pipeThrough(new DecompressionStream("gzip"));
+  return WebAssembly.compileStreaming(new Response(whole, { headers: { "Content-Type": "application/wasm" } }));
+}
+
+onmessage = async ({ data }: MessageEvent<Asked & { wasm?: Letters | string }>) => {
   try {
     if (data.wasm !== undefined) {
-      const { wasm } = data;
-      module = (typeof wasm === "string"
-        ? WebAssembly.compileStreaming(fetch(wasm))
-        : WebAssembly.compile(wasm));
+      module = compiled(data.wasm);
       return;
     }
     answer(data.id, (await ready()).ask(data.question));
