@@ -13,7 +13,17 @@ export interface Shipped {
 /** Those of the repository, put in by the build. */
 declare const __SCENARIOS__: Shipped[];
 
-export type View = "fly" | "shape" | "judge" | "explain" | "many" | "keep";
+export type View = "fly" | "shape" | "judge" | "explain" | "many" | "watch" | "keep";
+
+/** A scenario that is flown in the place of the person's own, which stays as it is: the best candidate so far, a bad run. */
+export interface Guest {
+  title: string;
+  text: string;
+  flight: Flight;
+}
+
+/** Views in which a guest is shown; the others are about the person's own scenario. */
+const WITH_GUESTS: View[] = ["fly", "many"];
 
 class Cockpit {
   readonly engine = new Engine();
@@ -36,7 +46,11 @@ class Cockpit {
   summary = $state.raw<Summary | null>(null);
   problems = $state.raw<Problem[]>([]);
   refused = $state("");
-  flight = $state.raw<Flight | null>(null);
+  /** The flight of the scenario itself. */
+  own = $state.raw<Flight | null>(null);
+  guest = $state.raw<Guest | null>(null);
+  /** Whether candidates of a search may come as guests while they get better. */
+  live = $state(true);
   pinned = $state.raw<{ text: string; traces: Trace[] } | null>(null);
   judged = $state.raw<Judged | null>(null);
   judgeRefused = $state("");
@@ -54,6 +68,11 @@ class Cockpit {
 
   get tuned(): string[] {
     return this.summary?.controllers.filter((it) => it.kind === "self-tuning").map((it) => it.name) ?? [];
+  }
+
+  /** What the flight view shows. */
+  get flight(): Flight | null {
+    return this.guest?.flight ?? this.own;
   }
 
   get isChanged(): boolean {
@@ -88,7 +107,7 @@ class Cockpit {
 
   async open(name: string, text: string, id: string | null = null, digest = ""): Promise<void> {
     Object.assign(this, { name, id, readDigest: digest, original: text, past: [], future: [] });
-    Object.assign(this, { pinned: null, certified: null, moment: null, flight: null, judged: null, at_s: 0 });
+    Object.assign(this, { pinned: null, certified: null, moment: null, own: null, guest: null, judged: null, at_s: 0 });
     this.text = text;
     this.controller = "";
     await this.refresh();
@@ -96,6 +115,7 @@ class Cockpit {
 
   /** Another text; one step that can be undone, unless it only moves on from `before`. */
   async change(text: string, before = this.text): Promise<void> {
+    this.live = false;
     if (before !== text && this.past.at(-1) !== before) this.past = [...this.past, before];
     this.future = [];
     this.text = text;
@@ -140,6 +160,7 @@ class Cockpit {
   /** Everything that is shown of the text, anew. */
   async refresh(): Promise<void> {
     const { text } = this;
+    this.guest = null;
     const found = await this.engine.latest("open", "open", { text });
     if (found === OVERTAKEN) return;
     this.tell(found);
@@ -154,17 +175,28 @@ class Cockpit {
   async fly(text: string): Promise<void> {
     const found = await this.engine.latest("fly", "fly", { text });
     if (found === OVERTAKEN) return;
-    const { json } = found;
-    if (!json.simulation) return this.tell(found);
-    this.flight = {
-      controllers: json.simulation.controllers,
-      requirements: json.simulation.requirements ?? [],
-      notes: json.simulation.notes ?? [],
-      met: json.met,
-      failed: json.failed,
-      traces: json.traces.map((trace: any) => ({ ...trace, columns: named(trace.columns, found) })),
-    };
+    if (!found.json.simulation) return this.tell(found);
+    this.own = flightOf(found);
     this.flights += 1;
+  }
+
+  /** Flies another scenario in the place of the person's own; why it could not, in a sentence. */
+  async visit(title: string, text: string): Promise<string> {
+    const own = this.text;
+    const found = await this.engine.latest("visit", "fly", { text });
+    // Whoever has gone on with the own scenario meanwhile is not disturbed.
+    if (found === OVERTAKEN || this.text !== own || !WITH_GUESTS.includes(this.view)) return "";
+    const { json } = found;
+    if (!json.simulation) return json.refused ?? json.problems?.[0]?.message ?? "it does not fly";
+    this.guest = { title, text, flight: flightOf(found) };
+    this.flights += 1;
+    return "";
+  }
+
+  /** The person's own scenario again. */
+  leave(): void {
+    this.guest = null;
+    this.live = false;
   }
 
   /** What the open view shows beside the flight. */
@@ -244,8 +276,22 @@ class Cockpit {
 
   show(view: View): void {
     this.view = view;
+    if (!WITH_GUESTS.includes(view)) this.guest = null;
     void this.look();
   }
+}
+
+/** A flight with its columns by their names. */
+function flightOf(found: Answer): Flight {
+  const { simulation, met, failed, traces } = found.json;
+  return {
+    controllers: simulation.controllers,
+    requirements: simulation.requirements ?? [],
+    notes: simulation.notes ?? [],
+    met,
+    failed,
+    traces: traces.map((trace: any) => ({ ...trace, columns: named(trace.columns, found) })),
+  };
 }
 
 /** Columns by their names. */

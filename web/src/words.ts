@@ -52,6 +52,11 @@ export function measure(name: string): string {
   return MEASURES[name] ?? label(name);
 }
 
+/** A measure whose unit was told with it: the unit of its name may be a product, as in `iae_deg_s`. */
+export function titled(name: string, unit: string | null): string {
+  return unit ? label(name.replace(/_deg2(?=_)/, ""), unit) : label(name);
+}
+
 /** What a flight of this outcome is: good, to be looked at, or bad. */
 export function standing(good: boolean, failed: boolean): "good" | "fair" | "bad" {
   return failed ? "bad" : good ? "good" : "fair";

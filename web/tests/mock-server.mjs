@@ -47,6 +47,8 @@ async function answer(state, { site, token }, request, response) {
     state.text = asked.text;
     return send(200, { digest: digestOf(state.text) });
   }
+  if (path === "/api/health") return send(200, { telemetry: null });
+  if (path === "/api/jobs" && request.method === "GET") return send(200, []);
   if (path === "/api/jobs" && request.method === "POST") return send(200, { job: "7" });
   if (path === "/api/jobs/7" && request.method === "DELETE") {
     state.cancelled = true;
@@ -60,8 +62,9 @@ async function answer(state, { site, token }, request, response) {
 function tune(state, response) {
   response.writeHead(200, { "Content-Type": "text/event-stream" });
   const event = (name, data) => `event: ${name}\ndata: ${JSON.stringify(data)}\n\n`;
-  const all = Array.from({ length: 10 }, (_, at) => event("progress", { done: at + 1, total: 10 }) + event("candidate", { number: at, cost: 10 - at, text: state.text }));
-  const whole = all.join("") + event("done", { report: "ten candidates" });
+  const trial = (cost) => ({ generation: 0, allowed: true, cost, violation: 0, values: [cost], parameters: [cost] });
+  const all = Array.from({ length: 10 }, (_, at) => event("candidates", { first: at, trials: [trial(10 - at)] }) + event("progress", { done: at + 1, total: 10, text: "so many" }));
+  const whole = all.join("") + event("done", { text: "ten candidates" });
   for (let at = 0; at < whole.length; at += 37) response.write(whole.slice(at, at + 37));
   response.end();
 }

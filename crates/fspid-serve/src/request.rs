@@ -101,6 +101,11 @@ impl Fields {
         }
     }
 
+    /// What nobody has taken yet.
+    pub(crate) fn json(&self) -> Value {
+        Value::Object(self.fields.clone())
+    }
+
     /// Refuses what nobody has taken.
     pub(crate) fn end(self) -> Result<(), Refusal> {
         match self.fields.keys().next() {

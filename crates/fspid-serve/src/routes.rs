@@ -15,7 +15,7 @@ use serde_json::{Value, json};
 use crate::answer::{Refusal, json_answer};
 use crate::app::App;
 use crate::health::health;
-use crate::jobs::Asked;
+use crate::jobs::{self, Asked};
 use crate::request::object;
 
 type Shared = State<Arc<App>>;
@@ -24,7 +24,7 @@ type Answer = Result<Response<Body>, Refusal>;
 type Row = (&'static str, &'static str, fn() -> MethodRouter<Arc<App>>);
 
 /// Method, path, and who answers.
-const ROUTES: [Row; 9] = [
+const ROUTES: [Row; 11] = [
     ("GET", "/api/health", || get(told_health)),
     ("GET", "/api/scenarios", || get(list)),
     ("GET", "/api/scenarios/{id}", || get(read)),
@@ -33,10 +33,12 @@ const ROUTES: [Row; 9] = [
     ("POST", "/api/jobs", || post(begin)),
     ("DELETE", "/api/jobs/{id}", || delete(cancel)),
     ("GET", "/api/jobs/{id}/events", || get(follow)),
+    ("GET", "/api/jobs/{id}/runs/{run}", || get(read_run)),
+    ("GET", "/api/jobs/{id}/report", || get(read_report)),
     ("GET", "/api/telemetry/events", || get(watch)),
 ];
 
-/// Method and path of everything below `/api`; `{id}` stands for an id.
+/// Method and path of everything below `/api`; `{id}` stands for an id, `{run}` for a number.
 pub fn routes() -> impl Iterator<Item = (&'static str, &'static str)> {
     ROUTES.iter().map(|(method, path, _)| (*method, *path))
 }
@@ -127,6 +129,22 @@ async fn cancel(State(app): Shared, id: Id) -> Answer {
 async fn follow(State(app): Shared, id: Id, headers: HeaderMap) -> Answer {
     let job = app.jobs.find(&named(id)?)?;
     app.streams.of_job(job, &headers, &app.limits).map(IntoResponse::into_response)
+}
+
+async fn read_run(
+    State(app): Shared,
+    ids: Result<Path<(String, String)>, PathRejection>,
+) -> Answer {
+    let Path((id, run)) =
+        ids.map_err(|_| Refusal::missing("there is nothing of that name"))?;
+    let job = app.jobs.find(&id)?;
+    done(&apart(move || jobs::run(&job, &run)).await?)
+}
+
+async fn read_report(State(app): Shared, id: Id) -> Answer {
+    let job = app.jobs.find(&named(id)?)?;
+    let page = apart(move || jobs::report(&job)).await?;
+    Ok(json_answer(StatusCode::OK, &json!({ "html": page })))
 }
 
 async fn watch(State(app): Shared) -> Answer {

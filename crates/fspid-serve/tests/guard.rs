@@ -9,7 +9,7 @@ fn every_route() -> Vec<(String, String)> {
     let page = [("GET", "/"), ("GET", "/app.js"), ("GET", "/nothing"), ("GET", "/api")];
     let mut all: Vec<(String, String)> = Vec::new();
     for (method, path) in fspid_serve::routes().chain(page) {
-        let path = path.replace("{id}", "0123456789abcdef0123456789abcdef");
+        let path = path.replace("{id}", "0123456789abcdef0123456789abcdef").replace("{run}", "3");
         all.push((method.to_owned(), path));
     }
     assert!(all.len() >= 12, "{all:?}");

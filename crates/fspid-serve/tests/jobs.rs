@@ -90,6 +90,83 @@ fn a_campaign_tells_its_rows_and_what_they_say() {
 }
 
 #[test]
+fn a_campaign_tells_while_it_flies_how_its_measures_spread_and_what_pitch_does() {
+    let served = Served::new();
+    let job = served.begin("campaign", json!({ "runs": 60, "measures": ["iae_deg_s"] }));
+    let events = served.followed(&job);
+    let summary = &ended(&events).1["json"];
+    let spread = events.iter().find(|(_, name, _)| name == "spread").map(|(_, _, it)| it);
+    let spread = spread.unwrap_or_else(|| panic!("no spread: {events:?}"));
+    assert!(spread["runs"].as_u64().is_some_and(|runs| runs < 60), "{spread}");
+    assert_eq!(spread["planned_runs"], 60);
+    let measures = spread["controllers"][0]["measures"].as_array().expect("a list");
+    assert_eq!((measures.len(), &measures[0]["name"]), (1, &json!("iae_deg_s")));
+    let last = events.iter().rfind(|(_, name, _)| name == "envelope").map(|(_, _, it)| it);
+    let last = last.unwrap_or_else(|| panic!("no envelope: {events:?}"));
+    assert_eq!(last["runs"], 60);
+    let of_pid = &last["controllers"][0];
+    let (all, end) = (&of_pid["bands"][0], of_pid["time_s"].as_array().expect("a list").len() - 1);
+    let at_end = |list: &Value| list[end].as_f64().expect("a number");
+    assert!(at_end(&all["lower"]) < at_end(&of_pid["median"]), "{all}");
+    assert!(at_end(&of_pid["median"]) < at_end(&all["upper"]), "{all}");
+    assert_eq!(summary["controllers"][0]["name"], of_pid["name"]);
+}
+
+#[test]
+fn a_run_of_a_campaign_is_had_as_a_scenario_that_flies_the_numbers_of_its_row() {
+    let served = Served::new();
+    let job = served.begin("campaign", json!({ "runs": 40, "measures": ["iae_deg_s"] }));
+    let events = served.followed(&job);
+    let rows = events.iter().filter(|(_, name, _)| name == "rows");
+    let mut rows = rows.flat_map(|(_, _, it)| it["rows"].as_array().expect("a list"));
+    let row = rows.find(|row| row[0] == 17 && row[1] == "PID").expect("its row");
+    let run = served.json(&format!("/api/jobs/{job}/runs/17"));
+    let text = run["text"].as_str().expect("a text");
+    assert!(text.contains("# A comment that stays."), "{text}");
+    let study = fspid_scenario::file::parse(text, "run", None, &[]).expect("a scenario");
+    let flown = fspid_study::simulation::Simulation::of(&study).expect("flown").json();
+    assert_eq!(flown["controllers"][0]["metrics"]["iae"], row[3], "{flown}");
+    let changes = run["changes"].as_array().expect("a list");
+    assert!(changes[0].as_str().is_some_and(|it| it.starts_with("setpoint.amplitude_deg=")));
+    for (wrong, why) in [("40", "39"), ("x", "numbers"), ("-1", "numbers")] {
+        let told = served.get(&format!("/api/jobs/{job}/runs/{wrong}")).error(404);
+        assert!(told.contains(why), "{told}");
+    }
+    let page = served.json(&format!("/api/jobs/{job}/report"));
+    assert!(page["html"].as_str().is_some_and(|it| it.contains("Envelope") || it.contains("Responses")));
+    let proof = served.begin("certify", json!({ "controller": "slow" }));
+    served.followed(&proof);
+    let told = served.get(&format!("/api/jobs/{proof}/runs/1")).error(404);
+    assert!(told.contains("certify"), "{told}");
+}
+
+#[test]
+fn the_list_of_jobs_says_what_was_asked_for_so_that_it_can_be_asked_for_again() {
+    let served = Served::new();
+    let options = json!({ "budget": 8, "seed": 3 });
+    let job = served.begin("tune", options.clone());
+    served.followed(&job);
+    assert_eq!(served.json("/api/jobs")[0]["options"], options);
+}
+
+#[test]
+fn a_search_for_a_front_tells_the_trade_offs_that_it_has() {
+    let served = Served::new();
+    let two = "\n[[tuning.objective]]\nmeasure = \"largest_command_deg\"\n";
+    let text = crate::common::SCENARIO
+        .replace("[[tuning.case]]", &format!("{two}\n[[tuning.case]]"));
+    std::fs::write(served.path("mine.toml"), text).expect("written");
+    let job = served.begin("tune", json!({ "budget": 60, "optimiser": "nsga-ii", "seed": 1 }));
+    let events = served.followed(&job);
+    let front = events.iter().rfind(|(_, name, _)| name == "front").map(|(_, _, it)| it);
+    let front = front.unwrap_or_else(|| panic!("no front: {:?}", ended(&events)));
+    let trials = front["trials"].as_array().expect("a list");
+    let told = &ended(&events).1["json"];
+    assert_eq!(Some(trials.len()), told["front"].as_array().map(Vec::len), "{told}");
+    assert!(trials.len() > 1 && trials[0]["values"].as_array().is_some_and(|it| it.len() == 2));
+}
+
+#[test]
 fn a_contest_and_a_proof_tell_their_answers() {
     let served = Served::new();
     let contest = served.begin("contest", json!({ "budget": 8, "seeds": 1 }));

@@ -30,6 +30,7 @@ use fspid_page::campaign::CampaignPage;
 use fspid_plot::{SeriesStyle, Svg};
 
 use crate::summary::{Files, Found, Summary, SummaryError, SummarySettings};
+pub use responses::{Envelope, Envelopes};
 
 /// What can be chosen about a page.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -67,6 +68,25 @@ pub fn page_of(
     }
     let folder = settings.folder.as_deref().unwrap_or("DIR");
     Ok(Source { summary, files: &found.files, folder }.page()?.render())
+}
+
+/// What pitch does over time in the first runs, `most` at most, of the merged file at a path or of the parts in a
+/// campaign's folder, which `summary` is about. They are flown again on the threads of the pool that this is called in.
+///
+/// # Errors
+/// In a sentence: a file that cannot be read or is not that of the summary; runs that cannot be flown again, or that do
+/// not give the bits of the file.
+pub fn envelopes(
+    path: &Path,
+    summary: &Summary,
+    settings: SummarySettings,
+    most: u64,
+) -> Result<Envelopes, String> {
+    let found = Found::at(path, settings).map_err(|error| error.to_string())?;
+    match found.is_of(summary) {
+        true => responses::envelopes(&Source { summary, files: &found.files, folder: "" }, most),
+        false => Err("the file has changed since it was summarised".to_owned()),
+    }
 }
 
 /// What a page is made from.

@@ -54,16 +54,20 @@ pub(super) struct Reflown {
     pub(super) left_out: u64,
 }
 
-/// Flies the first runs again, and some worst ones of each controller.
+/// Flies the first runs again, so many at most, and some worst ones of each controller.
 ///
 /// # Errors
 /// Why that cannot be, in a sentence.
-pub(super) fn reflown(source: &Source<'_>, worst: &[Vec<u64>]) -> Result<Reflown, String> {
+pub(super) fn reflown(
+    source: &Source<'_>,
+    worst: &[Vec<u64>],
+    most: u64,
+) -> Result<Reflown, String> {
     let campaign = campaign(source)?;
     compare(&campaign, source.files)?;
     let nominal = campaign.template().study();
     let grid = Grid::of(nominal)?;
-    let runs = how_many(nominal, campaign.plan().runs);
+    let runs = how_many(nominal, campaign.plan().runs.min(most));
     let first: Vec<Option<Vec<Curves>>> =
         (0..runs).into_par_iter().map(|run| curves_of(&campaign, run, &grid)).collect();
     let left_out = first.iter().filter(|flight| flight.is_none()).count() as u64;

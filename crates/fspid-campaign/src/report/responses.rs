@@ -32,13 +32,49 @@ type Pick = fn(&Curves) -> &[f64];
 
 pub(super) fn chapter(source: &Source<'_>) -> Chapter {
     let worst: Vec<Vec<u64>> = source.summary.controllers.iter().map(worst).collect();
-    let items = match reflown(source, &worst) {
+    let items = match reflown(source, &worst, u64::MAX) {
         Ok(reflown) => items(source, &reflown),
         Err(reason) => vec![Item::Warning(format!(
             "Responses are not drawn, because the runs could not be flown again: {reason}."
         ))],
     };
     Chapter { id: "responses".to_owned(), title: "Responses".to_owned(), items }
+}
+
+/// What pitch does over time in the first runs of a campaign, flown again.
+#[derive(Clone, Debug)]
+pub struct Envelopes {
+    /// How many of the first runs were looked at.
+    pub runs: u64,
+    /// How many of them have no curves: their numbers make no scenario, or another sample period.
+    pub left_out: u64,
+    /// One a controller.
+    pub controllers: Vec<Envelope>,
+}
+
+/// What pitch does with one controller.
+#[derive(Clone, Debug)]
+pub struct Envelope {
+    /// Bands from the widest to the narrowest, the median, the scenario's own response, and the worst ones.
+    pub panel: EnvelopePanel,
+    /// Numbers of the worst runs.
+    pub worst: Vec<u64>,
+    /// Flights that ended early: from then on they are in no band.
+    pub ended: u64,
+}
+
+pub(super) fn envelopes(source: &Source<'_>, most: u64) -> Result<Envelopes, String> {
+    let worst: Vec<Vec<u64>> = source.summary.controllers.iter().map(worst).collect();
+    let reflown = reflown(source, &worst, most)?;
+    let (time_s, setpoint) = (&*reflown.time_s, &*reflown.setpoint_deg);
+    let shown = Quantity { time_s, setpoint, pick: |curves| &curves.pitch_deg };
+    let one = |(place, flights): (usize, &Flights)| Envelope {
+        panel: panel(source, place, flights, &shown),
+        worst: flights.worst.iter().map(|(run, _)| *run).collect(),
+        ended: flights.first.iter().filter(|it| it.pitch_deg.len() < time_s.len()).count() as u64,
+    };
+    let controllers = reflown.controllers.iter().enumerate().map(one).collect();
+    Ok(Envelopes { runs: reflown.runs, left_out: reflown.left_out, controllers })
 }
 
 /// Flights that were lost, then those with the worst values of requirements and measures.

@@ -41,6 +41,8 @@ fn changed(report: &mut Report, text: &str, path: &str, value: &str) -> Option<S
             steps.push(Step::Name(START.to_owned()));
             return added(text, &document, &steps, &value);
         }
+        // Below its header a table has no place of its own that could hold another value.
+        Found::Here(found) if has_header(text, found) => None,
         Found::Here(found) => return Some(replaced(text, found, &value)),
         Found::InFile(..) => None,
         Found::Nothing => added(text, &document, &steps, &value),
@@ -193,6 +195,13 @@ mod tests {
         assert_eq!(twice, once.replace("=-1.5", "=-2.0"));
         let other = changed_text(&once, "plant.preset.numerator[1]", "-2.0").expect("another");
         assert_eq!(other, once.replace("-1.5\"]", "-1.5\", \"plant.preset.numerator[1]=-2.0\"]"));
+    }
+
+    #[test]
+    fn a_whole_table_below_its_header_becomes_an_entry_of_the_list_of_changes() {
+        let found = change("loop", "{ sample_period_s = 0.02, duration_s = 5.0 }");
+        let line = "set = [\"loop={ sample_period_s = 0.02, duration_s = 5.0 }\"]\n";
+        assert_eq!(found, TEXT.replace("name = \"x\"\n", &format!("name = \"x\"\n{line}")));
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! What a job is asked to do, read from the body of a request.
 
 use fspid_scenario::count::Count;
+use serde_json::Value;
 
 use super::campaign::Campaign;
 use super::certify::Certify;
@@ -14,6 +15,8 @@ use crate::request::Fields;
 pub(crate) struct Asked {
     /// Id of the scenario.
     pub(crate) scenario: String,
+    /// The options as they came.
+    pub(super) options: Value,
     pub(super) work: Work,
 }
 
@@ -35,6 +38,7 @@ impl Asked {
         let (kind, scenario) = (fields.needed_text("kind")?, fields.needed_text("id")?);
         let mut options = fields.object("options")?;
         fields.end()?;
+        let as_asked = options.json();
         let work = match kind.as_str() {
             "tune" => Work::Tune(Tune::read(&mut options)?),
             "campaign" => Work::Campaign(Campaign::read(&mut options)?),
@@ -46,7 +50,7 @@ impl Asked {
             }
         };
         options.end()?;
-        Ok(Self { scenario, work })
+        Ok(Self { scenario, options: as_asked, work })
     }
 }
 

@@ -1,5 +1,8 @@
 //! A campaign: rows of measures as they are flown, then what all of them say.
 
+use std::path::Path;
+
+use fspid_campaign::report::{self, Envelope};
 use fspid_campaign::sample::Sampling;
 use fspid_campaign::summary::{self, Summary, SummarySettings};
 use fspid_campaign::table::{Cell, ColumnTable, Reader};
@@ -9,6 +12,7 @@ use fspid_scenario::count::RUNS;
 use serde_json::{Value, json};
 
 use super::asked::counted;
+use super::rest::Rest;
 use super::task::{Ended, Pace, Task};
 use crate::answer::Refusal;
 use crate::request::Fields;
@@ -24,6 +28,12 @@ const SHARDS: u64 = 64;
 const MOST_OF_SHARD: u64 = 2048;
 /// Most rows that are told; of more, the summary tells.
 const MOST_ROWS: usize = 50_000;
+/// Runs whose responses are flown again for the first envelope; each further one has so many times as many.
+const FIRST_ENVELOPE: u64 = 20;
+const LARGER: u64 = 5;
+/// Most runs and most instants of an envelope.
+const MOST_OF_ENVELOPE: u64 = 400;
+const MOST_INSTANTS: usize = 250;
 
 /// The options of `fspid campaign run`, and which measures are told.
 #[derive(Clone, Debug)]
@@ -83,6 +93,8 @@ impl Campaign {
             measures: &self.measures,
             rows: 0,
             pace: Pace::new(),
+            rest: Rest::new(),
+            next_envelope: FIRST_ENVELOPE,
             runs: self.runs,
         };
         let progress = &task.job.campaign;
@@ -90,6 +102,7 @@ impl Campaign {
         teller.progress();
         let summary = Summary::of(&folder.merged_path(), SummarySettings::default());
         let summary = summary.map_err(Ended::failed)?;
+        tell_envelopes(task, &folder.merged_path(), &summary, MOST_OF_ENVELOPE);
         Ok(json!({ "text": summary::text(&summary), "json": summary::json(&summary) }))
     }
 }
@@ -102,6 +115,9 @@ struct Teller<'a> {
     /// Rows told so far.
     rows: usize,
     pace: Pace,
+    /// When the next summary of what there is may be made.
+    rest: Rest,
+    next_envelope: u64,
     runs: u64,
 }
 
@@ -127,7 +143,40 @@ impl Teller<'_> {
         if self.pace.is_time_to_tell() {
             self.progress();
         }
+        let mut rest = std::mem::take(&mut self.rest);
+        rest.work(|| self.tell_spread());
+        self.rest = rest;
         Ok(())
+    }
+
+    /// Tells what the runs say that there are. What goes wrong with that goes wrong with all of them in the end, and is told
+    /// there.
+    fn tell_spread(&mut self) {
+        let settings = SummarySettings { incomplete: true, ..SummarySettings::default() };
+        let Ok(summary) = Summary::of(self.folder.path(), settings) else { return };
+        let mut told = summary::json(&summary);
+        self.shorten(&mut told);
+        self.task.tell("spread", &told);
+        let runs = summary.head.runs;
+        if runs >= self.next_envelope && runs < self.runs {
+            self.next_envelope = runs.saturating_mul(LARGER);
+            let most = runs.min(MOST_OF_ENVELOPE);
+            tell_envelopes(self.task, self.folder.path(), &summary, most);
+        }
+    }
+
+    /// Of a summary that more follow: the measures that were asked for, and nothing that is the same in all of them.
+    fn shorten(&self, told: &mut Value) {
+        let Some(told) = told.as_object_mut() else { return };
+        let kept = ["runs", "planned_runs", "controllers", "notes"];
+        told.retain(|key, _| kept.contains(&key.as_str()));
+        let controllers = told.get_mut("controllers").and_then(Value::as_array_mut);
+        for controller in controllers.into_iter().flatten().filter_map(Value::as_object_mut) {
+            controller.remove("sensitivities");
+            let measures = controller.get_mut("measures").and_then(Value::as_array_mut);
+            let is_asked = |it: &Value| self.measures.iter().any(|name| it["name"] == **name);
+            measures.into_iter().for_each(|measures| measures.retain(is_asked));
+        }
     }
 
     fn progress(&self) {
@@ -136,6 +185,43 @@ impl Teller<'_> {
         let failed = grouped(progress.failed());
         self.task.progress(done, self.runs, &format!("runs, {failed} flights failed"));
     }
+}
+
+/// Tells what pitch does in the first runs, flown again; or why that is not known.
+fn tell_envelopes(task: &Task<'_>, path: &Path, summary: &Summary, most: u64) {
+    let settings = SummarySettings { incomplete: true, ..SummarySettings::default() };
+    let told = match report::envelopes(path, summary, settings, most) {
+        Ok(found) => {
+            let controllers: Vec<Value> = found.controllers.iter().map(envelope).collect();
+            json!({ "runs": found.runs, "left_out": found.left_out, "controllers": controllers })
+        }
+        Err(reason) => json!({ "reason": reason }),
+    };
+    task.tell("envelope", &told);
+}
+
+/// One controller's, at fewer instants: null where no flight is any more.
+fn envelope(found: &Envelope) -> Value {
+    let panel = &found.panel;
+    let every = panel.x.len().div_ceil(MOST_INSTANTS).max(1);
+    // Nobody sees more than four digits after the point, and JSON would have seventeen.
+    let short = |value: &f64| value.is_finite().then(|| (value * 1e4).round() / 1e4);
+    let few = |values: &[f64]| values.iter().step_by(every).map(short).collect::<Vec<_>>();
+    let bands = panel.bands.iter().map(|band| {
+        json!({ "name": band.name, "lower": few(&band.lower), "upper": few(&band.upper) })
+    });
+    let worst = panel.worst.iter().zip(&found.worst);
+    let worst = worst.map(|(curve, run)| json!({ "run": run, "pitch_deg": few(curve) }));
+    json!({
+        "name": panel.name,
+        "time_s": few(&panel.x),
+        "setpoint_deg": few(&panel.setpoint),
+        "bands": bands.collect::<Vec<_>>(),
+        "median": few(&panel.median),
+        "nominal": few(&panel.nominal),
+        "worst": worst.collect::<Vec<_>>(),
+        "ended_early": found.ended,
+    })
 }
 
 /// The cells of a table, row by row; null where a flight has no such measure.

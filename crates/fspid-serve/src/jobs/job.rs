@@ -1,8 +1,9 @@
 //! A job and what it has told: a list of events with numbers, so that a client can go on where it was.
 
 use std::collections::VecDeque;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
 use axum::body::Bytes;
 use fspid_campaign::Progress;
@@ -57,6 +58,10 @@ pub(crate) struct Job {
     id: u64,
     kind: &'static str,
     scenario: String,
+    /// What was asked for, as it was asked.
+    options: Value,
+    /// Where it keeps what it writes, once it has begun.
+    folder: OnceLock<PathBuf>,
     log: Mutex<Log>,
     news: watch::Sender<()>,
     cancelled: AtomicBool,
@@ -74,12 +79,14 @@ struct Log {
 }
 
 impl Job {
-    pub(super) fn new(id: u64, kind: &'static str, scenario: &str) -> Self {
+    pub(super) fn new(id: u64, kind: &'static str, scenario: &str, options: Value) -> Self {
         let log = Log { state: "waiting", events: VecDeque::new(), bytes: 0, first: 0 };
         Self {
             id,
             kind,
             scenario: scenario.to_owned(),
+            options,
+            folder: OnceLock::new(),
             log: Mutex::new(log),
             news: watch::Sender::new(()),
             cancelled: AtomicBool::new(false),
@@ -91,10 +98,28 @@ impl Job {
         self.id
     }
 
-    /// `{job, kind, scenario, state}`
+    /// `{job, kind, scenario, options, state}`
     pub(super) fn told(&self) -> Value {
         let state = self.log().state;
-        json!({ "job": self.id.to_string(), "kind": self.kind, "scenario": self.scenario, "state": state })
+        json!({
+            "job": self.id.to_string(), "kind": self.kind, "scenario": self.scenario,
+            "options": self.options, "state": state,
+        })
+    }
+
+    pub(super) fn kind(&self) -> &'static str {
+        self.kind
+    }
+
+    /// Remembers where it keeps what it writes.
+    pub(super) fn keeps_in(&self, folder: &Path) {
+        // A job begins once.
+        let _ = self.folder.set(folder.to_owned());
+    }
+
+    /// Where it keeps what it writes; none before it has begun.
+    pub(super) fn folder(&self) -> Option<&Path> {
+        self.folder.get().map(PathBuf::as_path)
     }
 
     pub(super) fn begin(&self) {
@@ -178,7 +203,7 @@ mod tests {
 
     #[test]
     fn who_comes_back_gets_what_came_since_and_is_told_what_is_lost() {
-        let job = Job::new(7, "tune", "a");
+        let job = Job::new(7, "tune", "a", json!({}));
         (0..5).for_each(|number| job.tell("progress", &json!({ "number": number })));
         let found = job.events(3, 1);
         assert_eq!((found.next, found.lost, found.is_all, found.is_over), (4, 0, false, false));
@@ -198,7 +223,7 @@ mod tests {
 
     #[test]
     fn events_take_no_more_memory_than_they_may() {
-        let job = Job::new(1, "campaign", "a");
+        let job = Job::new(1, "campaign", "a", json!({}));
         let large = json!("x".repeat(MOST_BYTES / 3));
         (0..9).for_each(|_| job.tell("rows", &large));
         let kept = job.events(0, usize::MAX);

@@ -6,6 +6,8 @@ mod certify;
 mod contest;
 mod job;
 mod place;
+mod rest;
+mod run;
 mod task;
 mod tune;
 
@@ -24,6 +26,7 @@ use crate::settings::Limits;
 pub(crate) use asked::Asked;
 pub(crate) use job::{Event, Job};
 pub(crate) use place::Place;
+pub(crate) use run::{report, run};
 use task::{Ended, Task};
 
 /// Jobs that have ended and can still be asked for.
@@ -73,7 +76,7 @@ impl Jobs {
         }
         state.last += 1;
         let id = state.last;
-        let job = Arc::new(Job::new(id, asked.work.kind(), &asked.scenario));
+        let job = Arc::new(Job::new(id, asked.work.kind(), &asked.scenario, asked.options.clone()));
         state.jobs.insert(id, job);
         state.waiting.push_back((id, asked, path));
         state.forget();

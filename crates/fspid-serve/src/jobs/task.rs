@@ -128,6 +128,7 @@ impl<'a> Task<'a> {
         name.truncate(16);
         let folder = place.join(format!("{}-{name}", asked.work.kind()));
         output::make_folder(&folder)?;
+        job.keeps_in(&folder);
         study.warnings.iter().for_each(|warning| job.tell("warning", &json!({ "text": warning })));
         let stopping = Stopping { job: Arc::clone(job), begun: Instant::now(), longest };
         Ok(Self { job, source, study, folder, stopping, seen })

@@ -9,6 +9,7 @@ use fspid_tune::{
 use serde_json::{Value, json};
 
 use super::asked::counted;
+use super::rest::Rest;
 use super::task::{Ended, Pace, Task};
 use crate::answer::Refusal;
 use crate::request::Fields;
@@ -63,7 +64,7 @@ impl Tune {
         let (mut search, beginning) = place.begun(&problem, &effort, Crew::Here(&stops))?;
         let goes_on = matches!(beginning, Beginning::Resumed(_)).then(|| search.spent());
         task.tell("begun", &begun(&problem, &effort, goes_on));
-        let mut teller = Teller { task, problem: &problem, told: 0, best: None };
+        let mut teller = Teller { task, problem: &problem, told: 0, best: None, front: Vec::new(), rest: Rest::new() };
         let (mut pace, mut saved) = (Pace::new(), Pace::new());
         // The first time is now, where there is nothing to save.
         saved.is_due(SAVED_EVERY);
@@ -78,6 +79,7 @@ impl Tune {
             }
         })?;
         teller.tell(&search);
+        teller.tell_front(&search);
         let tuned = Tuned::of(&problem, &search, stop).map_err(|it| place.left(&search, it))?;
         let heading = tuned.heading(&effort.command(&task.source, self.controller.as_deref()));
         let design = teller.design(&search.best().point, &heading);
@@ -95,7 +97,7 @@ fn begun(problem: &TuningProblem, effort: &Effort, goes_on: Option<usize>) -> Va
     let numbers = numbers.map(|(path, start)| json!({ "path": path, "start": start }));
     let objectives = problem.tuning().objectives.iter().map(|objective| {
         let measure = objective.requirement.measure;
-        json!({ "measure": measure.name(), "unit": measure.unit() })
+        json!({ "measure": measure.name(), "unit": measure.unit(), "weight": objective.weight })
     });
     json!({
         "controller": problem.controller(),
@@ -118,6 +120,9 @@ struct Teller<'a> {
     told: usize,
     /// What the best one cost that was told.
     best: Option<f64>,
+    /// The trade-offs that were told.
+    front: Vec<Vec<f64>>,
+    rest: Rest,
 }
 
 impl Teller<'_> {
@@ -138,6 +143,28 @@ impl Teller<'_> {
             row["text"] = self.design(&best.point, &heading).into();
             self.task.tell("best", &row);
         }
+        let mut rest = std::mem::take(&mut self.rest);
+        rest.work(|| self.tell_front(search));
+        self.rest = rest;
+    }
+
+    /// Tells the trade-offs that nothing beats, where a front is searched and has changed.
+    fn tell_front(&mut self, search: &Search<'_>) {
+        if self.problem.tuning().objectives.len() < 2 {
+            return;
+        }
+        let front = search.front();
+        // A search for one cost knows its best one alone.
+        if front.len() < 2 {
+            return;
+        }
+        let points: Vec<Vec<f64>> = front.iter().map(|trial| trial.point.clone()).collect();
+        if points == self.front {
+            return;
+        }
+        self.front = points;
+        let rows: Vec<Value> = front.iter().map(|trial| self.row(trial)).collect();
+        self.task.tell("front", &json!({ "trials": rows }));
     }
 
     /// A candidate: what it costs where it is allowed, its numbers, and the values of the objectives.
