@@ -25,6 +25,9 @@ export interface Guest {
 /** Views in which a guest is shown; the others are about the person's own scenario. */
 const WITH_GUESTS: View[] = ["fly", "many"];
 
+/** How long nothing moves before the whole scenario is read again, in ms. */
+const REST_MS = 60;
+
 class Cockpit {
   readonly engine = new Engine();
   readonly server: Served | null = served();
@@ -81,7 +84,7 @@ class Cockpit {
 
   /** The first scenario: the server's, the page's own, or one that comes with fspid. */
   async begin(): Promise<void> {
-    const shipped = this.engine.ask("shipped").then(({ json }) => (this.shipped = [...__SCENARIOS__, ...(json.scenarios ?? [])]));
+    this.shipped = __SCENARIOS__;
     const own = document.getElementById("fspid-scenario")?.textContent;
     try {
       this.listed = (await this.server?.scenarios()) ?? [];
@@ -89,10 +92,11 @@ class Cockpit {
       this.refused = String(error);
     }
     const [first] = this.listed;
-    await shipped;
     if (first) await this.read(first.id);
     else if (own) await this.open(JSON.parse(own).name, JSON.parse(own).text);
     else if (this.shipped[0]) await this.open(this.shipped[0].name, this.shipped[0].text);
+    const { json } = await this.engine.ask("shipped");
+    this.shipped = [...__SCENARIOS__, ...(json.scenarios ?? [])];
   }
 
   /** A scenario of the server's folder. */
@@ -115,11 +119,15 @@ class Cockpit {
 
   /** Another text; one step that can be undone, unless it only moves on from `before`. */
   async change(text: string, before = this.text): Promise<void> {
+    this.#keep(text, before);
+    await this.refresh();
+  }
+
+  #keep(text: string, before: string): void {
     this.live = false;
     if (before !== text && this.past.at(-1) !== before) this.past = [...this.past, before];
     this.future = [];
     this.text = text;
-    await this.refresh();
   }
 
   async undo(): Promise<void> {
@@ -148,8 +156,32 @@ class Cockpit {
       this.tell(found);
       return false;
     }
-    await this.change(found.json.text, before);
+    this.#keep(found.json.text, before);
+    this.#place(path, value);
+    await this.#move();
     return true;
+  }
+
+  /** A number that was set stands in its field at once; the whole scenario is read where the hand rests. */
+  #place(path: string, value: string): void {
+    const number = Number(value);
+    if (!this.summary || !Number.isFinite(number)) return;
+    const paths = this.summary.paths.map((it) => (it.path === path && typeof it.value === "number" ? { ...it, value: number } : it));
+    this.summary = { ...this.summary, paths };
+  }
+
+  /** As `refresh` for a text in which one value was moved: the flight first, all else where no other value follows. */
+  async #move(): Promise<void> {
+    const { text } = this;
+    this.guest = null;
+    const found = await this.engine.latest("fly", "fly", { text });
+    if (found === OVERTAKEN) return;
+    this.#draw(found);
+    if (this.text === text) await this.look();
+    await new Promise((go) => setTimeout(go, REST_MS));
+    if (this.text !== text) return;
+    const opened = await this.engine.latest("open", "open", { text });
+    if (opened !== OVERTAKEN) this.#take(opened);
   }
 
   tell({ json }: Answer): void {
@@ -161,21 +193,30 @@ class Cockpit {
   async refresh(): Promise<void> {
     const { text } = this;
     this.guest = null;
-    const found = await this.engine.latest("open", "open", { text });
-    if (found === OVERTAKEN) return;
-    this.tell(found);
-    if (!found.json.paths) return;
-    this.summary = found.json as Summary;
-    const names = this.summary.controllers.map((it) => it.name);
-    if (!names.includes(this.controller)) this.controller = this.tuned[0] ?? names[0] ?? "";
-    await this.fly(text);
+    // Both are asked for at once, so that the worker does not wait for the page in between.
+    const opened = this.engine.latest("open", "open", { text });
+    const flown = this.engine.latest("fly", "fly", { text });
+    const summary = await opened;
+    if (summary === OVERTAKEN || !this.#take(summary)) return;
+    const flight = await flown;
+    if (flight === OVERTAKEN) return;
+    this.#draw(flight);
     await this.look();
   }
 
-  async fly(text: string): Promise<void> {
-    const found = await this.engine.latest("fly", "fly", { text });
-    if (found === OVERTAKEN) return;
-    if (!found.json.simulation) return this.tell(found);
+  /** What a scenario holds; false for a text that is none. */
+  #take(found: Answer): boolean {
+    this.tell(found);
+    if (!found.json.paths) return false;
+    this.summary = found.json as Summary;
+    const names = this.summary.controllers.map((it) => it.name);
+    if (!names.includes(this.controller)) this.controller = this.tuned[0] ?? names[0] ?? "";
+    return true;
+  }
+
+  #draw(found: Answer): void {
+    this.tell(found);
+    if (!found.json.simulation) return;
     this.own = flightOf(found);
     this.flights += 1;
   }
