@@ -81,6 +81,8 @@ fn environment(texts: &'static [(&'static str, &'static str)]) -> Environment<'s
     if let Ok(syntax) = syntax.trim_blocks(true).lstrip_blocks(true).build() {
         environment.set_syntax(syntax);
     }
+    environment.add_global("script", crate::page::SCRIPT);
+    environment.add_global("policy", crate::page::policy());
     for (name, text) in SHARED.iter().chain(texts) {
         // A template with a mistake is then missing, and `render` says so.
         let _ = environment.add_template(name, text);

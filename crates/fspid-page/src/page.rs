@@ -16,6 +16,8 @@ pub struct Figure {
     pub svg: String,
     /// True for a drawing that does not shrink to a narrow screen but is moved sideways there.
     pub wide: bool,
+    /// Width in which it was drawn, px; a wide screen shows it larger, up to a limit.
+    pub drawn_px: f64,
     /// What it shows.
     pub caption: String,
     /// Numbers of the assumptions it rests on.
@@ -66,9 +68,9 @@ impl Figure {
     pub fn new(name: impl Into<String>, svg: Svg, caption: impl Into<String>) -> Self {
         let svg = svg.into_string();
         let width = svg.split(" width=\"").nth(1).and_then(|rest| rest.split('"').next());
-        let wide =
-            width.and_then(|width| width.parse::<f64>().ok()).is_some_and(|width| width > WIDE_PX);
-        Self { name: name.into(), svg, wide, caption: caption.into(), assumptions: Vec::new() }
+        let drawn_px = width.and_then(|width| width.parse::<f64>().ok()).unwrap_or(WIDE_PX);
+        let (wide, assumptions) = (drawn_px > WIDE_PX, Vec::new());
+        Self { name: name.into(), svg, wide, drawn_px, caption: caption.into(), assumptions }
     }
 
     /// The same, resting on these.
@@ -230,6 +232,20 @@ impl PageSection {
     pub fn with_figures(self, figures: Vec<Figure>) -> Self {
         Self { figures, ..self }
     }
+}
+
+/// What makes figures live, where scripts run: read at the pointer, enlarged, curve by curve.
+pub const SCRIPT: &str = include_str!("template/figures.js");
+
+/// SHA-256 of [`SCRIPT`], the only script that a browser may run in a report.
+pub const SCRIPT_DIGEST: &str = "sha256-yj/rX6Q2xIDh13GSyDRgsYeCR3vRLJMXe0s1VIiKF/E=";
+
+/// What a browser may load and run in a report: its own style and script, and nothing from outside.
+pub(crate) fn policy() -> String {
+    format!(
+        "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; \
+         img-src data:; script-src '{SCRIPT_DIGEST}'\">"
+    )
 }
 
 /// The style sheet of a report.

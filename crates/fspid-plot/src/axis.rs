@@ -129,6 +129,11 @@ impl Axis {
         (self.unit(value) - lo) / (hi - lo)
     }
 
+    /// Lower end, upper end, and `log` where they are decimal logarithms, as a script reads them.
+    pub(super) fn data(&self) -> String {
+        format!("{:e} {:e}{}", self.lo, self.hi, if self.log { " log" } else { "" })
+    }
+
     /// Label of the tick at `unit`.
     pub(super) fn label(&self, unit: f64) -> String {
         let index = (unit + self.origin()).round();

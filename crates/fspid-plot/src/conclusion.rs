@@ -65,7 +65,7 @@ impl ConclusionFigure {
         let label = if is_weighted { "weight" } else { "grade" };
         page::upright_label(&mut canvas, right, area.y + HEIGHT / 2.0, &[label.to_owned()]);
         let below = (area.x + area.width / 2.0, area.y + HEIGHT + 36.0);
-        canvas.text(below.0, below.1, &self.x_label, Font::new(LABEL_PX, Anchor::Middle));
+        page::level_label(&mut canvas, below.0, below.1, &self.x_label);
         canvas.finish(&self.title, &self.describe())
     }
 
@@ -91,14 +91,15 @@ impl ConclusionFigure {
     }
 
     fn content(&self) -> Content {
-        let curve = |points: &Vec<(f64, f64)>| Curve {
+        let curve = |(name, points): &(String, Vec<(f64, f64)>)| Curve {
+            name: name.clone(),
             style: SeriesStyle::SetpointDashed,
             points: points.clone(),
             stairs: false,
             marked: false,
         };
         Content {
-            curves: self.sets.iter().map(|set| curve(&set.1)).collect(),
+            curves: self.sets.iter().map(curve).collect(),
             ..Content::default()
         }
     }

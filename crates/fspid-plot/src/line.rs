@@ -6,7 +6,7 @@ use super::axis::{Axis, extent, short_number};
 use super::page::{self, EDGE, Entry, LABEL_PX, Legend, Swatch};
 use super::plot::{self, Content, Curve, Frame};
 use super::style::SeriesStyle;
-use super::svg::{Anchor, Canvas, Font, Rect, Svg};
+use super::svg::{Canvas, Rect, Svg};
 
 /// A figure of one or more panels above one another, with aligned abscissas.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,7 +22,7 @@ pub struct LineFigure {
 /// One panel of a [`LineFigure`].
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct LinePanel {
-    /// Name and unit of the ordinate, such as "pitch angle (deg)".
+    /// Name and unit of the ordinate, such as "pitch angle [deg]".
     pub y_label: String,
     /// Name and unit of the abscissa; written under the lowest panel, and where the next one differs.
     pub x_label: String,
@@ -207,6 +207,7 @@ fn draw(canvas: &mut Canvas, placed: &Placed<'_>, named: bool) {
     let area = placed.frame.area;
     placed.legend.draw(canvas, area.x, placed.legend_top);
     let curves = placed.panel.series.iter().map(|series| Curve {
+        name: series.name.clone(),
         style: series.style,
         points: series.points().collect(),
         stairs: series.stairs,
@@ -216,18 +217,14 @@ fn draw(canvas: &mut Canvas, placed: &Placed<'_>, named: bool) {
         bands: merged(&placed.panel.bands),
         references: Vec::new(),
         curves: curves.collect(),
+        is_all: true,
     };
     plot::draw(canvas, &placed.frame, &content);
     let label_right = EDGE + page::upright_room(placed.y_label.len()) - 3.0;
     page::upright_label(canvas, label_right, area.y + area.height / 2.0, &placed.y_label);
     if named {
         let y = area.y + area.height + 36.0;
-        canvas.text(
-            area.x + area.width / 2.0,
-            y,
-            &placed.panel.x_label,
-            Font::new(LABEL_PX, Anchor::Middle),
-        );
+        page::level_label(canvas, area.x + area.width / 2.0, y, &placed.panel.x_label);
     }
 }
 

@@ -28,9 +28,9 @@ pub fn memberships(title: &str, x_label: &str, sets: Vec<(String, Vec<(f64, f64)
         let style = style(peak, range);
         let at = short_number(peak.unwrap_or(f64::NAN));
         described.push_str(&format!(" {label} peaks at {at};"));
-        labels.extend(peak.map(|x| (x, label, style)));
+        labels.extend(peak.map(|x| (x, label.clone(), style)));
         let points = without_tails(points);
-        content.curves.push(Curve { style, points, stairs: false, marked: false });
+        content.curves.push(Curve { name: label, style, points, stairs: false, marked: false });
     }
     plot::draw(&mut canvas, &frame, &content);
     for (x, label, style) in labels {
@@ -40,7 +40,7 @@ pub fn memberships(title: &str, x_label: &str, sets: Vec<(String, Vec<(f64, f64)
     let label_right = EDGE + page::upright_room(1) - 3.0;
     page::upright_label(&mut canvas, label_right, area.y + HEIGHT / 2.0, &["grade".to_owned()]);
     let below = (area.x + area.width / 2.0, area.y + HEIGHT + 36.0);
-    canvas.text(below.0, below.1, x_label, Font::new(LABEL_PX, Anchor::Middle));
+    page::level_label(&mut canvas, below.0, below.1, x_label);
     canvas.finish(title, &described)
 }
 

@@ -116,6 +116,9 @@ impl Legend {
         for (n, row) in self.rows.iter().enumerate() {
             let y = top + (n as f64 + 0.5) * LEGEND_ROW;
             for (x, entry) in row {
+                if let Swatch::Line { style, .. } = entry.swatch {
+                    canvas.begin_marked(&format!("data-entry=\"{}\"", style.key()));
+                }
                 swatch(canvas, left + x, y, entry.swatch);
                 canvas.text(
                     left + x + SWATCH + 6.0,
@@ -123,6 +126,9 @@ impl Legend {
                     &entry.name,
                     Font::new(LABEL_PX, Anchor::Start),
                 );
+                if matches!(entry.swatch, Swatch::Line { .. }) {
+                    canvas.end();
+                }
             }
         }
     }
@@ -193,10 +199,16 @@ pub(super) fn tick_room(axis: &Axis) -> f64 {
 /// Writes a label that reads upwards, centred at `middle`, its last line ending at `right`.
 pub(super) fn upright_label(canvas: &mut Canvas, right: f64, middle: f64, lines: &[String]) {
     let font = Font::new(LABEL_PX, Anchor::Middle).turned(-90.0);
+    let all = lines.join(" ");
     for (n, line) in lines.iter().enumerate() {
         let x = right - (lines.len() - 1 - n) as f64 * (LABEL_PX + 3.0);
-        canvas.text(x, middle, line, font);
+        canvas.axis_text((x, middle), line, font, ("y", &all));
     }
+}
+
+/// Writes a label that reads across, centred at `middle`, with its baseline at `y`.
+pub(super) fn level_label(canvas: &mut Canvas, middle: f64, y: f64, label: &str) {
+    canvas.axis_text((middle, y), label, Font::new(LABEL_PX, Anchor::Middle), ("x", label));
 }
 
 /// Width of an upright label of that many lines (px).

@@ -3,8 +3,11 @@
 use super::axis::Axis;
 use super::style::{Role, SeriesStyle};
 use super::svg::{Anchor, Canvas, Font, Paint, Rect};
+use super::text::num;
 use super::thin;
 
+/// Marks grid lines, ticks and their numbers: what a script puts others in place of.
+const GROUND: &str = "data-ground=\"\"";
 /// Size of tick labels (px).
 pub(super) const TICK_PX: f64 = 11.0;
 /// Length of ticks (px).
@@ -38,11 +41,15 @@ pub(super) struct Content {
     /// Horizontal reference lines.
     pub(super) references: Vec<f64>,
     pub(super) curves: Vec<Curve>,
+    /// True where nothing else is drawn in the frame, so that a script may stretch all of it.
+    pub(super) is_all: bool,
 }
 
 /// A line, perhaps with marked points.
 #[derive(Debug, Clone)]
 pub(super) struct Curve {
+    /// Empty for one that only its style names.
+    pub(super) name: String,
     pub(super) style: SeriesStyle,
     pub(super) points: Vec<(f64, f64)>,
     pub(super) stairs: bool,
@@ -81,15 +88,21 @@ impl Frame {
 
 /// Draws grid, axes and content of `frame`.
 pub(super) fn draw(canvas: &mut Canvas, frame: &Frame, content: &Content) {
-    for (axis_is_x, axis) in [(true, &frame.x), (false, &frame.y)] {
-        if axis.log {
-            log_ticks(canvas, frame, axis, axis_is_x);
-        }
+    canvas.begin_marked(&data(frame, content.is_all));
+    let logarithmic =
+        [(true, &frame.x), (false, &frame.y)].into_iter().filter(|(_, axis)| axis.log);
+    for (axis_is_x, axis) in logarithmic {
+        canvas.begin_marked(GROUND);
+        log_ticks(canvas, frame, axis, axis_is_x);
+        canvas.end();
     }
     canvas.begin_shift(0.0, frame.area.y - ROOM_ABOVE);
     let area = Rect { y: ROOM_ABOVE, ..frame.area };
     let frame = Frame { area, ..frame.clone() };
+    canvas.begin_marked(GROUND);
     grid(canvas, &frame);
+    ticks_and_numbers(canvas, &frame);
+    canvas.end();
     axes(canvas, &frame);
     canvas.begin_clip(area);
     bands(canvas, &frame, content);
@@ -99,6 +112,19 @@ pub(super) fn draw(canvas: &mut Canvas, frame: &Frame, content: &Content) {
     lines(canvas, &frame, content);
     canvas.end();
     canvas.end();
+    canvas.end();
+}
+
+/// Where the panel is and what its axes span: what a script needs to read values off the drawing.
+fn data(frame: &Frame, is_all: bool) -> String {
+    let Rect { x, y, width, height } = frame.area;
+    let place = [x, y, width, height].map(num).join(" ");
+    let all = if is_all { " data-all=\"\"" } else { "" };
+    format!(
+        "data-panel=\"{place}\" data-x=\"{}\" data-y=\"{}\"{all}",
+        frame.x.data(),
+        frame.y.data()
+    )
 }
 
 /// Whole tick units within a range.
@@ -124,13 +150,20 @@ fn grid(canvas: &mut Canvas, frame: &Frame) {
     }
 }
 
-/// The lines of the axes, their ticks and their numbers.
+/// The lines of the axes.
 fn axes(canvas: &mut Canvas, frame: &Frame) {
     let Rect { x: left, y: top, width, height } = frame.area;
     let bottom = top + height;
     let paint = Paint::line(Role::Ink, 1.0);
     canvas.line((left, bottom), (left + width, bottom), &paint);
     canvas.line((left, top), (left, bottom), &paint);
+}
+
+/// The ticks of the axes and their numbers.
+fn ticks_and_numbers(canvas: &mut Canvas, frame: &Frame) {
+    let Rect { x: left, y: top, height, .. } = frame.area;
+    let bottom = top + height;
+    let paint = Paint::line(Role::Ink, 1.0);
     for unit in ticks(frame.x.unit_range()) {
         let x = frame.x_of_unit(unit);
         canvas.line((x, bottom), (x, bottom + TICK_LENGTH), &paint);
@@ -204,6 +237,7 @@ impl Band {
 
 fn draw_curve(canvas: &mut Canvas, frame: &Frame, curve: &Curve) {
     let style = curve.style;
+    canvas.begin_curve(&style.key(), &curve.name);
     let units = curve.points.iter().map(|&(x, y)| (frame.x.unit(x), frame.y.unit(y)));
     let paint = Paint::line(style.role(), style.width()).dashed(style.dash());
     for mut run in thin::runs(units.clone(), frame.scale(), curve.stairs) {
@@ -217,6 +251,7 @@ fn draw_curve(canvas: &mut Canvas, frame: &Frame, curve: &Curve) {
             draw_mark(canvas, style, frame.unit_place(point));
         }
     }
+    canvas.end();
 }
 
 /// A circle, square, triangle or diamond, by the number of the style.

@@ -4,7 +4,7 @@ use super::axis::{Axis, extent, short_number};
 use super::line::Series;
 use super::page::{self, EDGE, Entry, LABEL_PX, Legend, Swatch};
 use super::plot::{self, Content, Curve, Frame};
-use super::svg::{Anchor, Canvas, Font, Rect, Svg};
+use super::svg::{Canvas, Rect, Svg};
 
 /// Marked lines over a sweep, with a line of reference such as "equal cost" at 1.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,6 +50,7 @@ impl RatioFigure {
         page::title(&mut canvas, &self.title);
         legend.draw(&mut canvas, left, legend_top);
         let curve = |series: &Series| Curve {
+            name: series.name.clone(),
             style: series.style,
             points: series.points().collect(),
             stairs: series.stairs,
@@ -59,17 +60,13 @@ impl RatioFigure {
             bands: Vec::new(),
             references: self.reference.iter().map(|reference| reference.0).collect(),
             curves: self.series.iter().map(curve).collect(),
+            is_all: true,
         };
         plot::draw(&mut canvas, &Frame { area, x, y, x_labels: true }, &content);
         let label_right = EDGE + page::upright_room(y_label.len()) - 3.0;
         page::upright_label(&mut canvas, label_right, area.y + HEIGHT / 2.0, &y_label);
         let below = area.y + HEIGHT + 36.0;
-        canvas.text(
-            left + plot_width / 2.0,
-            below,
-            &self.x_label,
-            Font::new(LABEL_PX, Anchor::Middle),
-        );
+        page::level_label(&mut canvas, left + plot_width / 2.0, below, &self.x_label);
         canvas.finish(&self.title, &self.describe())
     }
 

@@ -85,7 +85,7 @@ impl RuleTable {
         let font = Font::new(LABEL_PX, Anchor::Middle).bold();
         let middle =
             (side + count as f64 * CELL_WIDTH / 2.0, top + count as f64 * CELL_HEIGHT / 2.0);
-        canvas.text(middle.0, top - 26.0, &self.column_header, Font::new(LABEL_PX, Anchor::Middle));
+        page::level_label(canvas, middle.0, top - 26.0, &self.column_header);
         page::upright_label(canvas, EDGE + 12.0, middle.1, std::slice::from_ref(&self.row_header));
         for (n, label) in self.labels.iter().take(count).enumerate() {
             canvas.text(side + (n as f64 + 0.5) * CELL_WIDTH, top - 8.0, label, font);

@@ -25,6 +25,15 @@ impl SeriesStyle {
     /// Number of distinct numbered styles.
     pub const COUNT: usize = 7;
 
+    /// Tells styles apart where a script asks which curve a legend means.
+    pub(super) fn key(self) -> String {
+        match self {
+            Self::Setpoint => "set-point".to_owned(),
+            Self::SetpointDashed => "set-point-dashed".to_owned(),
+            Self::Numbered(n) => n.to_string(),
+        }
+    }
+
     /// The role that colours the line.
     pub(super) fn role(self) -> Role {
         match self {

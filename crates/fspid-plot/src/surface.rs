@@ -194,12 +194,7 @@ impl Surface {
         if hatched {
             gaps::crosses(canvas, &grid);
         }
-        canvas.text(
-            area.x + MAP / 2.0,
-            top + MAP + 36.0,
-            &self.x_label,
-            Font::new(LABEL_PX, Anchor::Middle),
-        );
+        page::level_label(canvas, area.x + MAP / 2.0, top + MAP + 36.0, &self.x_label);
         page::upright_label(
             canvas,
             EDGE + LABEL_PX,

@@ -145,8 +145,18 @@ impl Canvas {
 
     /// Writes `text` with its baseline at `y`.
     pub(super) fn text(&mut self, x: f64, y: f64, text: &str, font: Font) {
+        self.marked_text((x, y), text, font, "");
+    }
+
+    /// Writes the name of an axis, `"x"` or `"y"`; a line of a longer name is marked with all of it.
+    pub(super) fn axis_text(&mut self, at: (f64, f64), text: &str, font: Font, (axis, all): (&str, &str)) {
+        let mark = format!(" data-axis=\"{axis}\" data-label=\"{}\"", escape(&unmarked(all)));
+        self.marked_text(at, text, font, &mark);
+    }
+
+    fn marked_text(&mut self, (x, y): (f64, f64), text: &str, font: Font, mark: &str) {
         let mut tag =
-            format!("<text x=\"{}\" y=\"{}\" font-size=\"{}\"", num(x), num(y), num(font.size));
+            format!("<text x=\"{}\" y=\"{}\" font-size=\"{}\"{mark}", num(x), num(y), num(font.size));
         match font.anchor {
             Anchor::Start => {}
             Anchor::Middle => tag.push_str(" text-anchor=\"middle\""),
@@ -252,6 +262,21 @@ impl Canvas {
             num(r.width),
             num(r.height)
         ));
+    }
+
+    /// Opens a group that says with `data-` attributes, written as they are, what is drawn in it; a script reads them.
+    pub(super) fn begin_marked(&mut self, data: &str) {
+        self.body.push_str(&format!("<g {data}>\n"));
+    }
+
+    /// Opens a group that holds a curve: the key of its style, and its name where it has one.
+    pub(super) fn begin_curve(&mut self, key: &str, name: &str) {
+        let name = if name.is_empty() {
+            String::new()
+        } else {
+            format!(" data-name=\"{}\"", escape(&unmarked(name)))
+        };
+        self.begin_marked(&format!("data-curve=\"{key}\"{name}"));
     }
 
     /// Opens a group that is moved by (`dx`, `dy`).

@@ -92,7 +92,7 @@ impl Tiles {
 
     fn labels(&self, canvas: &mut Canvas, area: Rect) {
         let middle = (area.x + area.width / 2.0, area.y + area.height + 36.0);
-        canvas.text(middle.0, middle.1, &self.x_label, Font::new(LABEL_PX, Anchor::Middle));
+        page::level_label(canvas, middle.0, middle.1, &self.x_label);
         let label = std::slice::from_ref(&self.y_label);
         page::upright_label(canvas, EDGE + LABEL_PX, area.y + area.height / 2.0, label);
     }

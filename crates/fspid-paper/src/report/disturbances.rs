@@ -164,7 +164,7 @@ fn ratio(of: &Match, sweeps: &[Sweep], shape: &str) -> Figure {
     let series = sweeps.iter().filter(|sweep| sweep.shape == shape).enumerate().map(line).collect();
     let drawn = RatioFigure {
         title: format!("Fig. 7, {shape}: {}", of.name),
-        x_label: "size of the disturbance (deg)".to_owned(),
+        x_label: "size of the disturbance [deg]".to_owned(),
         y_label: "ratio of costs (below 1: FSPID better)".to_owned(),
         series,
         log_x: true,
@@ -217,7 +217,7 @@ fn outcome(sweeps: &[Sweep]) -> PageTable {
 fn gains(flights: &[StoredFlight]) -> PageTable {
     let caption = "Gains of the four controllers: fixed, or nominal where the FSPID moves them. Tuned ones were tuned \
                    for each disturbance and place of entry.";
-    let mut table = PageTable::new(caption, &["controller", "kp", "ki, 1/s", "kd, s", "gains are"]);
+    let mut table = PageTable::new(caption, &["controller", "kp", "ki [1/s]", "kd [s]", "gains are"]);
     for (index, StoredFlight { name, study, .. }) in flights.iter().enumerate() {
         for named in &study.scenario.controllers {
             let tuned = named.name.ends_with("tuned");

@@ -11,7 +11,7 @@ pub(super) fn errata(_: &Paper<'_>) -> PageSection {
     PageSection::of(
         "errata",
         "Errata",
-        render("document", context! { html => markdown::html(ERRATA) }),
+        render("document", context! { html => markdown::html(ERRATA), dense => false }),
     )
 }
 
@@ -20,6 +20,6 @@ pub(super) fn assumptions(_: &Paper<'_>) -> PageSection {
     PageSection::of(
         "assumptions",
         "Assumptions",
-        render("document", context! { html => markdown::html(ASSUMPTIONS) }),
+        render("document", context! { html => markdown::html(ASSUMPTIONS), dense => true }),
     )
 }

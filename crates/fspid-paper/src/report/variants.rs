@@ -153,8 +153,8 @@ fn drawing(pair: &Pair<'_>) -> Figure {
     let printed = line("FSPID, printed table", SeriesStyle::Numbered(0), stored);
     let mirrored = line("FSPID, mirrored table", SeriesStyle::Numbered(1), &pair.changed);
     let panel = LinePanel {
-        y_label: "pitch angle (deg)".to_owned(),
-        x_label: "time (s)".to_owned(),
+        y_label: "pitch angle [deg]".to_owned(),
+        x_label: "time [s]".to_owned(),
         series: [command, printed, mirrored].into_iter().flatten().collect(),
         ..LinePanel::default()
     };

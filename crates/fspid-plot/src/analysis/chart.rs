@@ -9,7 +9,7 @@ use crate::plot::{self, Content, Frame};
 use crate::sign::Sign;
 use crate::style::{Role, SeriesStyle};
 use crate::surface::map_axes;
-use crate::svg::{Anchor, Canvas, Font, Paint, Rect};
+use crate::svg::{Canvas, Paint, Rect};
 
 /// A plot area with what has been drawn in it so far.
 #[derive(Debug, Clone)]
@@ -49,7 +49,7 @@ impl Chart {
     pub(super) fn name_axes(&self, canvas: &mut Canvas, x_label: &str, y_label: &str) {
         let a = self.frame.area;
         let below = (a.x + a.width / 2.0, a.y + a.height + 36.0);
-        canvas.text(below.0, below.1, x_label, Font::new(LABEL_PX, Anchor::Middle));
+        page::level_label(canvas, below.0, below.1, x_label);
         self.name_ordinate(canvas, y_label, page::tick_room(&self.frame.y));
     }
 
@@ -80,7 +80,9 @@ impl Chart {
         style: SeriesStyle,
     ) -> Runs {
         let paint = Paint::line(style.role(), style.width()).dashed(style.dash());
+        canvas.begin_curve(&style.key(), "");
         let runs = self.line(canvas, points.clone(), &paint);
+        canvas.end();
         if runs.is_empty() {
             // A single point makes no line, but it shall be seen.
             for at in points.filter_map(|(x, y)| self.visible(x, y)).take(1) {

@@ -116,6 +116,8 @@ impl Labels {
     }
 
     fn write(&mut self, canvas: &mut Canvas, place: Rect, text: &str, role: Role) {
+        let of = role.variable().unwrap_or_default();
+        canvas.begin_marked(&format!("data-of=\"{of}\""));
         // Grid lines behind the words would make them hard to read.
         let ground = Rect { x: place.x - 1.5, width: place.width + 3.0, ..place };
         canvas.rounded(ground, 2.0, &Paint::face(Role::Face).opacity(0.8));
@@ -126,6 +128,7 @@ impl Labels {
         let font = Font::new(TICK_PX, Anchor::Middle).role(ink);
         let middle = (place.x + (place.width + bar) / 2.0, place.y + place.height / 2.0);
         canvas.text(middle.0, middle.1 + TICK_PX * 0.36, text, font);
+        canvas.end();
         self.taken.push(place);
     }
 

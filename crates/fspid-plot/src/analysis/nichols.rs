@@ -97,11 +97,11 @@ impl NicholsFigure {
             .iter()
             .map(|exclusion| Entry { name: exclusion.name.clone(), swatch: Swatch::Band });
         let contours = (!self.contours_db.is_empty()).then(|| Entry {
-            name: "closed-loop gain, dB".to_owned(),
+            name: "closed-loop gain [dB]".to_owned(),
             swatch: Swatch::Line { style: SeriesStyle::SetpointDashed, marked: false },
         });
         let dots = Entry {
-            name: "frequency, rad/s".to_owned(),
+            name: "frequency [rad/s]".to_owned(),
             swatch: Swatch::Sign(Sign::Dot, Role::Ink),
         };
         frequency::legend(&self.curves)

@@ -77,7 +77,7 @@ impl NyquistFigure {
             swatch: Swatch::Line { style: SeriesStyle::SetpointDashed, marked: false },
         };
         let dots = Entry {
-            name: "frequency, rad/s".to_owned(),
+            name: "frequency [rad/s]".to_owned(),
             swatch: Swatch::Sign(Sign::Dot, Role::Ink),
         };
         frequency::legend(&self.curves).into_iter().chain([circle, dots]).chain(disks).collect()

@@ -4,7 +4,7 @@ use super::chart::Chart;
 use crate::axis::Axis;
 use crate::page::{self, EDGE, Entry, LABEL_PX, Legend};
 use crate::plot::Frame;
-use crate::svg::{Anchor, Canvas, Font, Rect};
+use crate::svg::{Canvas, Rect};
 
 /// What a figure of panels needs to be laid out.
 pub(super) struct Stack<'a> {
@@ -58,7 +58,7 @@ impl Stack<'_> {
             y += panel.height + GAP;
         }
         let below = (left + plot_width / 2.0, y - GAP + 36.0);
-        canvas.text(below.0, below.1, self.x_label, Font::new(LABEL_PX, Anchor::Middle));
+        page::level_label(&mut canvas, below.0, below.1, self.x_label);
         (canvas, charts)
     }
 }

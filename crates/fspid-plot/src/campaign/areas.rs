@@ -1,7 +1,7 @@
 //! What figures of campaigns share: grids without a library, words cut to their room, signs of series.
 
 use crate::axis::Axis;
-use crate::page::{EDGE, LABEL_PX, TITLE_PX};
+use crate::page::{self, EDGE, LABEL_PX, TITLE_PX};
 use crate::plot::TICK_PX;
 use crate::sign::Sign;
 use crate::style::{Role, SeriesStyle};
@@ -83,7 +83,7 @@ pub(super) fn name_abscissa(canvas: &mut Canvas, area: Rect, label: &str) {
     // A name longer than its axis must not leave the picture.
     let most = (canvas.width() - half).max(half);
     let x = (area.x + area.width / 2.0).clamp(half, most);
-    canvas.text(x, area.y + area.height + 36.0, &words, Font::new(LABEL_PX, Anchor::Middle));
+    page::level_label(canvas, x, area.y + area.height + 36.0, &words);
 }
 
 #[cfg(test)]

@@ -202,7 +202,7 @@ class Trace(Columns):
 
         ax = axes(ax)
         ax.plot(list(self["time_s"]), list(self[column]), label=self.name)
-        ax.set_xlabel("time (s)")
+        ax.set_xlabel("time [s]")
         ax.set_ylabel(column)
         return ax
 
@@ -305,7 +305,7 @@ class Flight(Answer, Mapping[str, Trace]):
         if column == "theta_deg" and len(self) > 0:
             first = next(iter(self.values()))
             ax.plot(list(first["time_s"]), list(first["setpoint_deg"]), "k--", linewidth=0.8, label="set-point")
-        ax.set_xlabel("time (s)")
+        ax.set_xlabel("time [s]")
         ax.set_ylabel(column)
         ax.legend()
         return ax

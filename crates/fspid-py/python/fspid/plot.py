@@ -34,7 +34,7 @@ def bode(ax: Sequence[Axes] | None, loops: Mapping[str, Mapping[str, Any]]) -> S
         raise InputError(f"{len(ax)} axes; this draws on two, the gain on the first and the phase on the second")
     for part, column, label, critical in (
         (ax[0], "gain_db", "gain of the open loop (dB)", 0.0),
-        (ax[1], "phase_deg", "phase of the open loop (deg)", -180.0),
+        (ax[1], "phase_deg", "phase of the open loop [deg]", -180.0),
     ):
         for name, curve in loops.items():
             part.semilogx(list(curve["frequency_rad_s"]), list(curve[column]), label=name)

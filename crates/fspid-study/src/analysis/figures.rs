@@ -290,39 +290,34 @@ pub(crate) fn gain_map(
         values.dedup();
         values
     };
-    let rows = (0..map.side).map(|change| {
-        let column = (0..map.side).filter_map(|error| map.points.get(error * map.side + change));
-        column.map(|point| cell(point, quantity)).collect()
-    });
+    let row = |row: &[FrozenPoint]| row.iter().map(|point| cell(point, quantity)).collect();
     GainMap {
         title: format!("{name}: {label} of every frozen gain"),
-        x_label: "error [supervisor units]".to_owned(),
-        y_label: format!("{} [supervisor units]", map.beside),
+        // The error is on the side, as in rule tables.
+        x_label: format!("{} [supervisor units]", map.beside),
+        y_label: "error [supervisor units]".to_owned(),
         quantity: label.to_owned(),
-        xs: inputs(0),
-        ys: inputs(1),
-        cells: rows.collect(),
+        xs: inputs(1),
+        ys: inputs(0),
+        cells: map.points.chunks(map.side.max(1)).map(row).collect(),
         scale: None,
         required: Some((required.0, required.1.to_owned())),
         worst: Some(MapPoint {
-            at: (map.worst.input[0], map.worst.input[1]),
+            at: (map.worst.input[1], map.worst.input[0]),
             name: format!("worst: {}", super::text::triple(map.worst.gains)),
         }),
         equilibrium: Some(MapPoint { at: (0.0, 0.0), name: "at rest".to_owned() }),
-        flown,
+        flown: flown.into_iter().map(|(error, change)| (change, error)).collect(),
     }
 }
 
 /// The surface of the proportional gain over the supervisor's inputs, coloured by a margin.
 pub(crate) fn gain_surface(name: &str, map: &FrozenMap, quantity: MapQuantity) -> GainSurface {
-    let rows = (0..map.side).map(|change| {
-        let column = (0..map.side).filter_map(|error| map.points.get(error * map.side + change));
-        column.map(|point| point.gains.kp).collect()
-    });
+    let row = |row: &[FrozenPoint]| row.iter().map(|point| point.gains.kp).collect();
     GainSurface {
         map: gain_map(name, map, quantity, Vec::new()),
         gain_label: "kp".to_owned(),
-        gains: rows.collect(),
+        gains: map.points.chunks(map.side.max(1)).map(row).collect(),
     }
 }
 

@@ -12,13 +12,13 @@ use fspid_scenario::units::degrees;
 type Column = (&'static str, usize, fn(&StepMetrics) -> Measured);
 
 const COLUMNS: &[Column] = &[
-    ("rise time, s", 3, |step| step.rise_time_s),
-    ("settling time, s", 3, |step| step.settling_time_s),
-    ("overshoot, %", 2, |step| step.overshoot_pct),
-    ("undershoot, %", 2, |step| step.undershoot_pct),
-    ("final error, %", 2, |step| step.final_error_pct),
-    ("peak, deg", 3, |step| step.peak.map(degrees)),
-    ("time of peak, s", 2, |step| step.peak_time_s),
+    ("rise time [s]", 3, |step| step.rise_time_s),
+    ("settling time [s]", 3, |step| step.settling_time_s),
+    ("overshoot [%]", 2, |step| step.overshoot_pct),
+    ("undershoot [%]", 2, |step| step.undershoot_pct),
+    ("final error [%]", 2, |step| step.final_error_pct),
+    ("peak [deg]", 3, |step| step.peak.map(degrees)),
+    ("time of peak [s]", 2, |step| step.peak_time_s),
 ];
 
 /// More steps than these would bury the rest of a report.
@@ -129,13 +129,13 @@ pub fn side_by_side(caption: &str, variants: &[(&str, &Simulation)], only: &[&st
 pub fn integrals(caption: &str, simulation: &Simulation) -> PageTable {
     let head = [
         "controller",
-        "IAE, deg s",
-        "ITAE, deg s²",
-        "ISE, deg² s",
-        "ITSE, deg² s²",
-        "command variation, deg",
-        "largest command, deg",
-        "fastest command, deg/s",
+        "IAE [deg s]",
+        "ITAE [deg s²]",
+        "ISE [deg² s]",
+        "ITSE [deg² s²]",
+        "command variation [deg]",
+        "largest command [deg]",
+        "fastest command [deg/s]",
         "samples cut by limits",
         "faults",
     ];

@@ -26,7 +26,7 @@ pub fn of_controllers(settings: &[Setting]) -> Vec<PageTable> {
 /// The gains that fly where no setting states them; none without such a controller.
 pub fn derived(gains: &[DerivedGains]) -> Option<PageTable> {
     let caption = "Gains that fly, where a schedule or a design makes them.";
-    let head = ["controller", "kp", "ki, 1/s", "kd, s", "rate gain, s", "from"];
+    let head = ["controller", "kp", "ki [1/s]", "kd [s]", "rate gain [s]", "from"];
     let mut table = PageTable::new(caption, &head).in_cards();
     for DerivedGains { controller, gains, rate_gain_s, source } in gains {
         let mut row = vec![Cell::text(controller)];

@@ -49,8 +49,8 @@ pub fn sets(prefix: &str, supervisor: &Supervisor<f64>) -> Vec<Figure> {
         let grade = |x: f64| (x, ShapeKind::Triangle.grade(&corners, x));
         ((*label).to_owned(), points.map(grade).collect())
     });
-    let input_label = "error e, change of error ec (supervisor units)";
-    let output_label = "increments \u{394}k_{p}, \u{394}k_{i}, \u{394}k_{d} (supervisor units)";
+    let input_label = "error e, change of error ec [supervisor units]";
+    let output_label = "increments \u{394}k_{p}, \u{394}k_{i}, \u{394}k_{d} [supervisor units]";
     let shapes = match supervisor.numbers() {
         None => "Gaussian sets, neighbours cross at a grade of 0.5",
         Some(_) => "triangles from neighbour to neighbour",
@@ -248,16 +248,19 @@ pub fn surfaces(
         let value = |delta: &Option<Increments<f64>>| {
             delta.map_or(f64::NAN, |delta| component(delta, output))
         };
-        let surface = Surface {
+        let values: Vec<Vec<f64>> =
+            answers.iter().map(|row| row.iter().map(value).collect()).collect();
+        let surface = |x_label: &str, y_label: &str, values: Vec<Vec<f64>>| Surface {
             title: format!("{symbol}, {name}"),
-            x_label: "error e".to_owned(),
-            y_label: "change of error ec".to_owned(),
+            x_label: x_label.to_owned(),
+            y_label: y_label.to_owned(),
             z_label: symbol.to_owned(),
             xs: axis.clone(),
             ys: axis.clone(),
-            values: answers.iter().map(|row| row.iter().map(value).collect()).collect(),
+            values,
             limit: Some(range),
         };
+        let (error, change) = ("error e", "change of error ec");
         let plain = symbol.replace("_{", "").replace('}', "");
         for kind in kinds {
             let (word, how) = match kind {
@@ -266,6 +269,11 @@ pub fn surfaces(
                 }
                 SurfaceKind::View => ("view", "the same, seen in space"),
                 SurfaceKind::Relief => ("relief", "in space and as a map"),
+            };
+            // A map has the error on the side, as the rule tables have.
+            let surface = match kind {
+                SurfaceKind::Map => surface(change, error, turned(&values)),
+                SurfaceKind::View | SurfaceKind::Relief => surface(error, change, values.clone()),
             };
             let caption = format!("{plain} in supervisor units over both inputs; {how}.");
             figures.push(Figure::new(
@@ -276,6 +284,13 @@ pub fn surfaces(
         }
     }
     figures
+}
+
+/// Columns as rows.
+fn turned(values: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    (0..values.len())
+        .map(|column| values.iter().filter_map(|row| row.get(column).copied()).collect())
+        .collect()
 }
 
 /// What a supervisor adds at rest: kp, ki, kd.

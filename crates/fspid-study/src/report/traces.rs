@@ -22,11 +22,19 @@ pub struct Drawing<'a> {
     pub width_px: f64,
 }
 
+/// What panels are about.
+#[derive(Clone, Copy)]
+enum Part {
+    Angles,
+    Air,
+    Gains,
+}
+
 /// What a nonlinear aircraft adds to the panels: label and column.
 const AIRCRAFT: [(&str, &str); 3] = [
-    ("airspeed (m/s)", "airspeed_m_s"),
-    ("altitude (m)", "altitude_m"),
-    ("air, downward (m/s)", "air_down_m_s"),
+    ("airspeed [m/s]", "airspeed_m_s"),
+    ("altitude [m]", "altitude_m"),
+    ("air, downward [m/s]", "air_down_m_s"),
 ];
 
 /// A command beyond this many times its 99th percentile is a spike, and the panel does not show it.
@@ -49,20 +57,53 @@ fn style(name: &str, index: usize) -> SeriesStyle {
 impl Drawing<'_> {
     /// Draws pitch, command and, for self-tuning controllers, the three gains.
     pub fn render(&self) -> Svg {
+        let panels = [self.angles(), self.air(), self.gains()].concat();
+        self.figure(self.title.to_owned(), panels)
+    }
+
+    /// The same as a figure for each kind, to stand side by side: what it shows, in words, and the drawing.
+    pub fn parts(&self) -> Vec<(String, Svg)> {
+        let parts = [
+            (Part::Angles, "angles", self.angles()),
+            (Part::Air, "through the air", self.air()),
+            (Part::Gains, "gains", self.gains()),
+        ];
+        let drawn = parts.into_iter().filter(|(_, _, panels)| !panels.is_empty());
+        let figure = |(part, what, panels)| {
+            (self.in_words(part), self.figure(format!("{}: {what}", self.title), panels))
+        };
+        drawn.map(figure).collect()
+    }
+
+    fn figure(&self, title: String, panels: Vec<LinePanel>) -> Svg {
+        LineFigure { title, panels, width_px: self.width_px }.render()
+    }
+
+    fn angles(&self) -> Vec<LinePanel> {
         let mut panels =
-            vec![self.pitch(), self.angle("command u (deg)", |r| &r.trace.command_rad)];
+            vec![self.pitch(), self.angle("command u [deg]", |r| &r.trace.command_rad)];
         if self.detailed {
-            panels.push(self.angle("elevator (deg)", |r| &r.trace.elevator_rad));
+            panels.push(self.angle("elevator [deg]", |r| &r.trace.elevator_rad));
         }
-        if self.detailed {
-            panels.extend(AIRCRAFT.iter().filter_map(|(label, name)| self.column(label, name)));
+        panels
+    }
+
+    fn air(&self) -> Vec<LinePanel> {
+        if !self.detailed {
+            return Vec::new();
         }
-        if self.flown().any(|(_, result)| self.is_tuned(&result.name)) {
-            panels.push(self.gain("k_{p}", |gains| gains.kp));
-            panels.push(self.gain("k_{i} (1/s)", |gains| gains.ki));
-            panels.push(self.gain("k_{d} (s)", |gains| gains.kd));
+        AIRCRAFT.iter().filter_map(|(label, name)| self.column(label, name)).collect()
+    }
+
+    fn gains(&self) -> Vec<LinePanel> {
+        if !self.flown().any(|(_, result)| self.is_tuned(&result.name)) {
+            return Vec::new();
         }
-        LineFigure { title: self.title.to_owned(), panels, width_px: self.width_px }.render()
+        vec![
+            self.gain("k_{p}", |gains| gains.kp),
+            self.gain("k_{i} [1/s]", |gains| gains.ki),
+            self.gain("k_{d} [s]", |gains| gains.kd),
+        ]
     }
 
     fn flown(&self) -> impl Iterator<Item = (usize, &ControllerResult)> {
@@ -109,8 +150,8 @@ impl Drawing<'_> {
         series.extend(self.series(|result| in_degrees(&result.trace.theta_rad), false));
         let y_range = self.range(&series, |r| &r.trace.theta_rad);
         LinePanel {
-            y_label: "pitch angle (deg)".to_owned(),
-            x_label: "time (s)".to_owned(),
+            y_label: "pitch angle [deg]".to_owned(),
+            x_label: "time [s]".to_owned(),
             series,
             bands: if self.detailed { self.bands() } else { Vec::new() },
             x_range: self.window(),
@@ -121,7 +162,7 @@ impl Drawing<'_> {
     fn angle(&self, label: &str, of: fn(&ControllerResult) -> &Vec<f64>) -> LinePanel {
         let series = self.series(|result| of(result).iter().copied().map(degrees).collect(), true);
         let y_range = self.range(&[], of).or_else(|| self.without_spikes(of));
-        let (y_label, x_label) = (label.to_owned(), "time (s)".to_owned());
+        let (y_label, x_label) = (label.to_owned(), "time [s]".to_owned());
         LinePanel {
             y_label,
             x_label,
@@ -137,7 +178,7 @@ impl Drawing<'_> {
         let values = |trace: &Trace| Some(shown(trace, trace.column(name)?).to_vec());
         self.flown().find_map(|(_, result)| values(&result.trace))?;
         let series = self.series(|result| values(&result.trace).unwrap_or_default(), false);
-        let (y_label, x_label) = (label.to_owned(), "time (s)".to_owned());
+        let (y_label, x_label) = (label.to_owned(), "time [s]".to_owned());
         Some(LinePanel { y_label, x_label, series, x_range: self.window(), ..LinePanel::default() })
     }
 
@@ -157,28 +198,40 @@ impl Drawing<'_> {
         spiky.then_some((lowest.max(low - margin), highest.min(high + margin)))
     }
 
-    /// What the panels show, from above: only those that are drawn.
-    pub fn panels_in_words(&self) -> String {
-        let bands = match self.bands().is_empty() {
-            true => "",
-            false => " with bands of 2 % of the step about each level of the command",
+    /// What the panels of a part show, from above: only those that are drawn.
+    fn in_words(&self, part: Part) -> String {
+        let mut panels: Vec<String> = match part {
+            Part::Angles => {
+                let bands = match self.bands().is_empty() {
+                    true => "",
+                    false => " with bands of 2 % of the step about each level of the command",
+                };
+                vec![
+                    format!("pitch angle{bands}"),
+                    "command of the controller (positive: nose up)".to_owned(),
+                    "elevator in the aircraft's own sign".to_owned(),
+                ]
+            }
+            Part::Air => {
+                let flown = AIRCRAFT.iter().filter(|(label, name)| self.column(label, name).is_some());
+                let word = |label: &str| {
+                    let bare = label.split(" [").next().unwrap_or(label);
+                    bare.replace(", downward", " moving downwards")
+                };
+                flown.map(|(label, _)| word(label)).collect()
+            }
+            Part::Gains => {
+                let flown = self.flown().filter(|(_, result)| self.is_tuned(&result.name));
+                let whose = if flown.count() == 1 { "controller" } else { "controllers" };
+                let last = format!("kd of the self-tuning {whose}");
+                vec!["the gains kp".to_owned(), "ki".to_owned(), last]
+            }
         };
-        let mut panels = vec![
-            format!("pitch angle{bands}"),
-            "command of the controller (positive: nose up)".to_owned(),
-            "elevator in the aircraft's own sign".to_owned(),
-        ];
-        let columns = AIRCRAFT.iter().filter(|(label, name)| self.column(label, name).is_some());
-        panels.extend(columns.map(|(label, _)| {
-            label.split(" (").next().unwrap_or(label).replace(", downward", " moving downwards")
-        }));
-        match self.flown().filter(|(_, result)| self.is_tuned(&result.name)).count() {
-            0 => {}
-            1 => panels.push("the gains of the self-tuning controller".to_owned()),
-            _ => panels.push("the gains of the self-tuning controllers".to_owned()),
-        }
         let last = panels.pop().unwrap_or_default();
-        format!("From above: {} and {last}.", panels.join(", "))
+        match panels.is_empty() {
+            true => format!("{}.", fspid_page::number::capital(&last)),
+            false => format!("From above: {} and {last}.", panels.join(", ")),
+        }
     }
 
     /// A sentence for the caption where the command's panel leaves spikes out.
@@ -200,7 +253,7 @@ impl Drawing<'_> {
     fn gain(&self, label: &str, of: fn(&fspid_core::Gains<f64>) -> f64) -> LinePanel {
         let mut series = self.series(|result| result.trace.gains.iter().map(of).collect(), true);
         series.retain(|series| self.is_tuned(&series.name));
-        let (y_label, x_label) = (label.to_owned(), "time (s)".to_owned());
+        let (y_label, x_label) = (label.to_owned(), "time [s]".to_owned());
         LinePanel { y_label, x_label, series, x_range: self.window(), ..LinePanel::default() }
     }
 

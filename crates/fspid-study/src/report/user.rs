@@ -13,7 +13,7 @@ use crate::simulation::{ControllerResult, Simulation};
 use fspid_page::context;
 use fspid_page::number::{capital, fixed, measured, sentence, significant, with_sign};
 use fspid_page::page::{self, Cell, Figure, PageSection, PageTable};
-use fspid_plot::SurfaceKind;
+use fspid_plot::{SurfaceKind, Svg};
 use fspid_scenario::file::{Setting, Study};
 
 #[derive(Clone, Copy)]
@@ -183,17 +183,22 @@ impl User<'_> {
         let ended = self.simulation.results.iter().filter(|result| is_cut_short(result));
         let ended: Vec<&str> = ended.map(|result| result.name.as_str()).collect();
         let leaving = drawing.leaving();
-        let caption = drawing.panels_in_words();
         let aircraft = match self.study.scenario.plant.aircraft() {
             Some(_) => " Pitch counts from the trim; the elevator is the whole deflection.",
             None => "",
         };
-        let caption = format!("{caption}{aircraft}{}", drawing.spikes());
-        let figure = Figure::new("responses-figure", drawing.render(), caption);
+        let part = |(n, (words, svg)): (usize, (String, Svg))| match n {
+            0 => {
+                let caption = format!("{words}{aircraft}{}", drawing.spikes());
+                Figure::new("responses-figure", svg, caption)
+            }
+            _ => Figure::new(format!("responses-{}", n + 1), svg, words),
+        };
+        let figures: Vec<Figure> = drawing.parts().into_iter().enumerate().map(part).collect();
         PageSection::of(
             "responses",
             "Time responses",
-            render("user", context! { part => "responses", figure, leaving, ended }),
+            render("user", context! { part => "responses", figures, leaving, ended }),
         )
     }
 
@@ -332,8 +337,8 @@ fn at_rest(fspid: &fspid_core::Fspid<f64>, supervisor: &fspid_fuzzy::Supervisor<
     let added = supervisor::at_rest(supervisor).unwrap_or([f64::NAN; 3]);
     let rows = [
         ("kp", added[0], nominal.kp, rest.kp),
-        ("ki, 1/s", added[1], nominal.ki, rest.ki),
-        ("kd, s", added[2], nominal.kd, rest.kd),
+        ("ki [1/s]", added[1], nominal.ki, rest.ki),
+        ("kd [s]", added[2], nominal.kd, rest.kd),
     ];
     for (name, added, nominal, rest) in rows {
         table.push(vec![

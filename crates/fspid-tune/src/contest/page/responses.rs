@@ -94,7 +94,7 @@ fn figure(contest: &Contest, outcome: &Outcome, case: usize) -> Option<Item> {
         let is_cut = flown.iter().any(|(_, _, it)| it.time_s.len() < whole);
         LinePanel {
             y_label: y_label.to_owned(),
-            x_label: "time (s)".to_owned(),
+            x_label: "time [s]".to_owned(),
             y_range: is_cut.then(|| widened(values)).flatten(),
             series: first.iter().cloned().chain(flown.iter().map(curve)).collect(),
             ..LinePanel::default()
@@ -104,8 +104,8 @@ fn figure(contest: &Contest, outcome: &Outcome, case: usize) -> Option<Item> {
     let figure = LineFigure {
         title: name.clone(),
         panels: vec![
-            panel("pitch (deg)", |it| &it.pitch_deg, Some(setpoint)),
-            panel("elevator (deg)", |it| &it.elevator_deg, None),
+            panel("pitch [deg]", |it| &it.pitch_deg, Some(setpoint)),
+            panel("elevator [deg]", |it| &it.elevator_deg, None),
         ],
         width_px: 760.0,
     };
