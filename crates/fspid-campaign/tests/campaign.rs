@@ -121,7 +121,7 @@ fn a_part_of_a_worker_with_any_bit_changed_is_refused() {
     let folder = Folder::new(&home.path().join("driver"));
     let campaign = planned(&folder, 4, 2);
     // Values, the statistics around them, names, the footer.
-    for place in (0..part.len()).step_by(part.len() / 300 | 1) {
+    for place in (0..part.len()).step_by((part.len() / 300) | 1) {
         let mut damaged = part.clone();
         damaged[place] ^= 1 << (place % 8);
         let told = shard::put(&folder, &campaign, 1, &damaged);

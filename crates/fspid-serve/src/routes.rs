@@ -135,8 +135,7 @@ async fn read_run(
     State(app): Shared,
     ids: Result<Path<(String, String)>, PathRejection>,
 ) -> Answer {
-    let Path((id, run)) =
-        ids.map_err(|_| Refusal::missing("there is nothing of that name"))?;
+    let Path((id, run)) = ids.map_err(|_| Refusal::missing("there is nothing of that name"))?;
     let job = app.jobs.find(&id)?;
     done(&apart(move || jobs::run(&job, &run)).await?)
 }

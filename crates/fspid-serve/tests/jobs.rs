@@ -133,7 +133,9 @@ fn a_run_of_a_campaign_is_had_as_a_scenario_that_flies_the_numbers_of_its_row() 
         assert!(told.contains(why), "{told}");
     }
     let page = served.json(&format!("/api/jobs/{job}/report"));
-    assert!(page["html"].as_str().is_some_and(|it| it.contains("Envelope") || it.contains("Responses")));
+    assert!(
+        page["html"].as_str().is_some_and(|it| it.contains("Envelope") || it.contains("Responses"))
+    );
     let proof = served.begin("certify", json!({ "controller": "slow" }));
     served.followed(&proof);
     let told = served.get(&format!("/api/jobs/{proof}/runs/1")).error(404);
@@ -153,8 +155,8 @@ fn the_list_of_jobs_says_what_was_asked_for_so_that_it_can_be_asked_for_again() 
 fn a_search_for_a_front_tells_the_trade_offs_that_it_has() {
     let served = Served::new();
     let two = "\n[[tuning.objective]]\nmeasure = \"largest_command_deg\"\n";
-    let text = crate::common::SCENARIO
-        .replace("[[tuning.case]]", &format!("{two}\n[[tuning.case]]"));
+    let text =
+        crate::common::SCENARIO.replace("[[tuning.case]]", &format!("{two}\n[[tuning.case]]"));
     std::fs::write(served.path("mine.toml"), text).expect("written");
     let job = served.begin("tune", json!({ "budget": 60, "optimiser": "nsga-ii", "seed": 1 }));
     let events = served.followed(&job);

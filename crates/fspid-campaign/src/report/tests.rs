@@ -268,7 +268,7 @@ fn curves_are_those_of_the_run_as_it_is_flown_alone() {
     let summary = Summary::of(&path, SummarySettings::default()).expect("a summary");
     let found = Found::at(&path, SummarySettings::default()).expect("a file");
     let source = Source { summary: &summary, files: &found.files, folder: "DIR" };
-    let reflown = reflown::reflown(&source, &[vec![7], vec![]]).expect("flown again");
+    let reflown = reflown::reflown(&source, &[vec![7], vec![]], u64::MAX).expect("flown again");
     let campaign = crate::Campaign::new(flown.folder.plan().expect("a plan"), flown.folder.path());
     let replay = crate::replay::replay(&campaign.expect("a campaign"), 7).expect("flown");
     let degrees = |rad: &f64| fspid_scenario::units::degrees(*rad);

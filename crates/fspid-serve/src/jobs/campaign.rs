@@ -207,9 +207,9 @@ fn envelope(found: &Envelope) -> Value {
     // Nobody sees more than four digits after the point, and JSON would have seventeen.
     let short = |value: &f64| value.is_finite().then(|| (value * 1e4).round() / 1e4);
     let few = |values: &[f64]| values.iter().step_by(every).map(short).collect::<Vec<_>>();
-    let bands = panel.bands.iter().map(|band| {
-        json!({ "name": band.name, "lower": few(&band.lower), "upper": few(&band.upper) })
-    });
+    let bands = panel.bands.iter().map(
+        |band| json!({ "name": band.name, "lower": few(&band.lower), "upper": few(&band.upper) }),
+    );
     let worst = panel.worst.iter().zip(&found.worst);
     let worst = worst.map(|(curve, run)| json!({ "run": run, "pitch_deg": few(curve) }));
     json!({

@@ -64,7 +64,14 @@ impl Tune {
         let (mut search, beginning) = place.begun(&problem, &effort, Crew::Here(&stops))?;
         let goes_on = matches!(beginning, Beginning::Resumed(_)).then(|| search.spent());
         task.tell("begun", &begun(&problem, &effort, goes_on));
-        let mut teller = Teller { task, problem: &problem, told: 0, best: None, front: Vec::new(), rest: Rest::new() };
+        let mut teller = Teller {
+            task,
+            problem: &problem,
+            told: 0,
+            best: None,
+            front: Vec::new(),
+            rest: Rest::new(),
+        };
         let (mut pace, mut saved) = (Pace::new(), Pace::new());
         // The first time is now, where there is nothing to save.
         saved.is_due(SAVED_EVERY);
