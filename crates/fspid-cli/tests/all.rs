@@ -25,6 +25,7 @@ mod one_verdict;
 #[cfg(unix)]
 mod own_files;
 mod packages;
+mod reports;
 mod repository;
 #[cfg(all(unix, feature = "web"))]
 mod serve;

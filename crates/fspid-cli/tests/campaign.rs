@@ -138,7 +138,7 @@ fn a_report_says_how_often_it_fails_as_text_json_and_page() {
     assert!(page.contains("<span>here</span> <span>--run</span>"), "a replay names the folder");
     assert!(
         !page.contains("http://")
-            || page.matches("http").count() == page.matches("http://www.w3.org").count()
+            || page.matches("http://").count() == page.matches("http://www.w3.org").count()
     );
     let json = done(&["campaign", "report", file, "--format", "json"], folder);
     let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");

@@ -379,7 +379,7 @@ fn audit_tells_what_is_true_in_text_json_and_a_page() {
     assert_eq!(code(&text), 0, "{}", stderr(&text));
     assert!(stdout(&text).contains("no two contradict each other"));
     let page = std::fs::read_to_string(folder.path().join("tip.html")).expect("written");
-    assert!(page.contains("</html>") && !page.contains("<script"));
+    assert!(page.contains("</html>") && page.matches("<script").count() == 1);
     let found = json(&fspid(&[&quick[..], &["--format", "json"]].concat(), folder.path()));
     assert!(found["outputs"]["tip"]["least"]["bounds"].is_array());
     assert_eq!(found["rules"]["contradictions"], 0);

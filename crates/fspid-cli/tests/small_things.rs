@@ -265,13 +265,18 @@ fn the_caption_of_a_report_names_what_is_drawn() {
         sets.iter().for_each(|set| words.extend(["--set", set]));
         assert!(code(&fspid(&words, folder)) < 2);
         let page = std::fs::read_to_string(folder.join("r.html")).expect("written");
-        let (_, rest) = page.split_once("From above: ").expect("a caption");
-        rest.split_once('.').map_or(String::new(), |(caption, _)| caption.to_owned())
+        let captions = page.split("From above: ").skip(1);
+        let captions = captions.filter_map(|rest| rest.split_once('.').map(|(caption, _)| caption));
+        captions.collect::<Vec<_>>().join("; ")
     };
     let gusts = caption("aircraft-in-turbulence", &["loop.duration_s=2"]);
     assert!(gusts.contains("airspeed, altitude") && !gusts.contains("bands"), "{gusts}");
     let step = caption("pitch-hold", &[]);
-    assert!(step.contains("bands of 2 %") && step.contains("gains of the self-tuning"), "{step}");
+    assert!(
+        step.contains("bands of 2 %")
+            && step.contains("the gains kp, ki and kd of the self-tuning"),
+        "{step}"
+    );
     let alone = caption("tuning", &[]);
     assert!(alone.contains("bands of 2") && !alone.contains("gains"), "{alone}");
 }

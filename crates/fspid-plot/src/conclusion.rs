@@ -98,10 +98,7 @@ impl ConclusionFigure {
             stairs: false,
             marked: false,
         };
-        Content {
-            curves: self.sets.iter().map(curve).collect(),
-            ..Content::default()
-        }
+        Content { curves: self.sets.iter().map(curve).collect(), ..Content::default() }
     }
 
     /// The name of each set above its peak.

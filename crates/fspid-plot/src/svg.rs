@@ -149,14 +149,24 @@ impl Canvas {
     }
 
     /// Writes the name of an axis, `"x"` or `"y"`; a line of a longer name is marked with all of it.
-    pub(super) fn axis_text(&mut self, at: (f64, f64), text: &str, font: Font, (axis, all): (&str, &str)) {
+    pub(super) fn axis_text(
+        &mut self,
+        at: (f64, f64),
+        text: &str,
+        font: Font,
+        (axis, all): (&str, &str),
+    ) {
         let mark = format!(" data-axis=\"{axis}\" data-label=\"{}\"", escape(&unmarked(all)));
         self.marked_text(at, text, font, &mark);
     }
 
     fn marked_text(&mut self, (x, y): (f64, f64), text: &str, font: Font, mark: &str) {
-        let mut tag =
-            format!("<text x=\"{}\" y=\"{}\" font-size=\"{}\"{mark}", num(x), num(y), num(font.size));
+        let mut tag = format!(
+            "<text x=\"{}\" y=\"{}\" font-size=\"{}\"{mark}",
+            num(x),
+            num(y),
+            num(font.size)
+        );
         match font.anchor {
             Anchor::Start => {}
             Anchor::Middle => tag.push_str(" text-anchor=\"middle\""),

@@ -10,7 +10,7 @@
 
   const within = (value, low, high) => Math.min(Math.max(value, low), high);
   const element = (name, attributes = {}, text = "") => {
-    const made = document.createElementNS("http://www.w3.org/2000/svg", name);
+    const made = document.createElementNS(document.querySelector("svg").namespaceURI, name);
     for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
     made.textContent = text;
     return made;
@@ -93,7 +93,8 @@
     for (const group of svg.querySelectorAll("[data-curve]")) {
       const runs = runsOf(group, svg);
       const point = runs[0]?.[0];
-      const inside = (panel) => point[0] >= panel.x - 1 && point[0] <= panel.x + panel.width + 1 && point[1] >= panel.y - 1 && point[1] <= panel.y + panel.height + 1;
+      // A curve that is cut off ends a little outside.
+      const inside = (panel) => [0, 1].every((n) => point[n] >= [panel.x, panel.y][n] - 5 && point[n] <= [panel.x + panel.width, panel.y + panel.height][n] + 5);
       const panel = point && (panels.find((one) => one.group.contains(group)) ?? panels.find(inside));
       const rises = runs.every((run) => run.every((at, n) => n === 0 || at[0] >= run[n - 1][0]));
       panel?.curves.push({ group, runs, rises, key: group.dataset.curve, name: group.dataset.name });

@@ -217,7 +217,8 @@ fn outcome(sweeps: &[Sweep]) -> PageTable {
 fn gains(flights: &[StoredFlight]) -> PageTable {
     let caption = "Gains of the four controllers: fixed, or nominal where the FSPID moves them. Tuned ones were tuned \
                    for each disturbance and place of entry.";
-    let mut table = PageTable::new(caption, &["controller", "kp", "ki [1/s]", "kd [s]", "gains are"]);
+    let mut table =
+        PageTable::new(caption, &["controller", "kp", "ki [1/s]", "kd [s]", "gains are"]);
     for (index, StoredFlight { name, study, .. }) in flights.iter().enumerate() {
         for named in &study.scenario.controllers {
             let tuned = named.name.ends_with("tuned");

@@ -328,12 +328,7 @@ impl Drawing<'_> {
 
     fn labels(&self, canvas: &mut Canvas) {
         let a = self.area;
-        page::level_label(
-            canvas,
-            a.x + a.width / 2.0,
-            a.y + a.height + 36.0,
-            &self.map.x_label,
-        );
+        page::level_label(canvas, a.x + a.width / 2.0, a.y + a.height + 36.0, &self.map.x_label);
         let label = std::slice::from_ref(&self.map.y_label);
         page::upright_label(canvas, EDGE + LABEL_PX, a.y + a.height / 2.0, label);
     }

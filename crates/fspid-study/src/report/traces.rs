@@ -213,7 +213,8 @@ impl Drawing<'_> {
                 ]
             }
             Part::Air => {
-                let flown = AIRCRAFT.iter().filter(|(label, name)| self.column(label, name).is_some());
+                let flown =
+                    AIRCRAFT.iter().filter(|(label, name)| self.column(label, name).is_some());
                 let word = |label: &str| {
                     let bare = label.split(" [").next().unwrap_or(label);
                     bare.replace(", downward", " moving downwards")

@@ -1,0 +1,212 @@
+// The reports of the program in a real browser: figures that are read, enlarged and sorted by mouse and by keys, and that are
+// complete without scripts and on paper. Run by `web/test.sh`; CHROMIUM names the browser, FSPID the program.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { fileURLToPath, pathToFileURL } from "node:url";
+import { chromium } from "playwright-core";
+
+const path = (name) => fileURLToPath(new URL(name, import.meta.url));
+const AXE = readFileSync(path("../node_modules/axe-core/axe.min.js"), "utf8");
+const FSPID = process.env.FSPID ?? path("../../target/debug/fspid");
+const STEP = path("../../scenarios/747-pitch-step.toml");
+/** The reports and the commands that write them, in this order. */
+const REPORTS = {
+  "flight.html": ["simulate", STEP, "--report", "flight.html", "--trace", "flight.csv"],
+  "loop.html": ["analyse", STEP, "--report", "loop.html"],
+  "audit.html": ["audit", path("../../examples/systems/tip.toml"), "--report", "audit.html"],
+  "run/": ["campaign", "run", path("../../scenarios/campaign.toml"), "--runs", "60", "--quiet", "--out", "run"],
+  "campaign.html": ["campaign", "report", "run", "--out", "campaign.html"],
+  "paper/report.html": ["reproduce", "--out", "paper"],
+};
+const PAGES = Object.keys(REPORTS).filter((name) => name.endsWith(".html"));
+
+let browser;
+let folder;
+before(async () => {
+  folder = mkdtempSync(join(tmpdir(), "fspid-reports-"));
+  for (const command of Object.values(REPORTS)) execFileSync(FSPID, command, { cwd: folder, stdio: ["ignore", "ignore", "pipe"] });
+  browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox"] });
+});
+after(async () => {
+  await browser?.close();
+  rmSync(folder, { recursive: true, force: true });
+});
+
+/** A report; whatever goes wrong in it, or is asked for outside, fails the test. */
+async function opened(name, options = {}) {
+  const page = await browser.newPage({ viewport: { width: 1400, height: 900 }, ...options });
+  page.wrong = [];
+  page.on("pageerror", (error) => page.wrong.push(error.message));
+  page.on("console", (message) => message.type() === "error" && page.wrong.push(message.text()));
+  page.on("request", (request) => /^https?:/.test(request.url()) && page.wrong.push(request.url()));
+  page.setDefaultTimeout(20_000);
+  await page.goto(pathToFileURL(join(folder, name)).href);
+  return page;
+}
+async function close(page) {
+  assert.deepEqual(page.wrong, []);
+  await page.context().close();
+}
+/** The place of a panel's point on the screen, by parts of its axes. */
+const onScreen = (figure, x, y, panel = 0) =>
+  figure.locator("[data-panel]").nth(panel).evaluate((group, [x, y]) => {
+    const [left, top, width, height] = group.dataset.panel.split(" ").map(Number);
+    group.scrollIntoView({ block: "center" });
+    const at = new DOMPoint(left + x * width, top + (1 - y) * height).matrixTransform(group.ownerSVGElement.getScreenCTM());
+    return { x: at.x, y: at.y };
+  }, [x, y]);
+const numbers = (text) => [...text.matchAll(/\u2212?\d+(?:\.\d+)?/g)].map(([number]) => Number(number.replace("\u2212", "-")));
+
+test("the pointer reads every curve with its unit, and as the flight says", async () => {
+  const page = await opened("flight.html");
+  const figure = page.locator("#responses-figure");
+  const at = await onScreen(figure, 0.25, 0.5);
+  await page.mouse.move(at.x, at.y);
+  const reading = figure.locator(".reading");
+  const lines = await reading.locator("p").allInnerTexts();
+  assert.match(lines[0], /^time \[s\] 5\.\d+$/);
+  assert.match(lines[1], /^pitch angle \[deg\] set-point 1\.\d+ · PC \d.* · CPID \d.* · FSPID \d/);
+  const rows = readFileSync(join(folder, "flight.csv"), "utf8").split("\n").map((row) => row.split(","));
+  const head = rows[0];
+  const column = head.findIndex((name) => name.includes("FSPID") && name.includes("theta"));
+  const flown = column < 0 ? rows.filter((row) => row.includes("FSPID")) : rows;
+  const theta = column < 0 ? head.findIndex((name) => /theta|pitch/.test(name)) : column;
+  const time = head.findIndex((name) => name.startsWith("t"));
+  const [time_s] = numbers(lines[0]);
+  const row = flown.reduce((best, row) => (Math.abs(Number(row[time]) - time_s) < Math.abs(Number(best[time]) - time_s) ? row : best), flown[1]);
+  const read = numbers(lines[1].split("FSPID")[1])[0];
+  assert.ok(Math.abs(read - Number(row[theta])) < 0.004, `${read} is read where the flight has ${row[theta]} (${head[theta]})`);
+  // No more digits than a drawing of 200 px holds.
+  assert.ok(String(read).length <= 6, String(read));
+  await close(page);
+});
+
+test("a drag enlarges, panels over one time stay together, and the button shows all again", async () => {
+  const page = await opened("flight.html");
+  const figure = page.locator("#responses-figure");
+  const numbersBelow = () => figure.locator('text[text-anchor="middle"]:not([data-axis])').evaluateAll((texts) => texts.filter((text) => !text.closest("[style*=none]")).map((text) => text.textContent));
+  const before = await numbersBelow();
+  const [from, to] = [await onScreen(figure, 0.1, 0.9), await onScreen(figure, 0.3, 0.4)];
+  await page.mouse.move(from.x, from.y);
+  await page.mouse.down();
+  await page.mouse.move(to.x, to.y, { steps: 5 });
+  await page.mouse.up();
+  const after = await numbersBelow();
+  assert.notDeepEqual(after, before);
+  assert.ok(after.length >= 3 && after.every((text) => Number(text) >= 2 && Number(text) <= 6), after.join());
+  assert.equal(await figure.locator(".stretched").count(), 3, "panels over one time stay together");
+  const middle = await onScreen(figure, 0.5, 0.5, 1);
+  await page.mouse.move(middle.x, middle.y);
+  const [time_s] = numbers(await figure.locator(".reading p").first().innerText());
+  assert.ok(time_s > 3.9 && time_s < 4.1, `${time_s} s in the middle of 2 to 6 s`);
+  await figure.getByRole("button", { name: /^Show all/ }).click();
+  assert.deepEqual(await numbersBelow(), before);
+  await close(page);
+});
+
+test("keys alone read, enlarge and reset, and the wheel does once the figure is chosen", async () => {
+  const page = await opened("flight.html");
+  const figure = page.locator("#responses-figure");
+  const drawing = figure.locator(".drawing");
+  await drawing.focus();
+  await page.keyboard.press("ArrowRight");
+  const time = async () => numbers(await figure.locator(".reading p").first().innerText())[0];
+  const first = await time();
+  await page.keyboard.press("Shift+ArrowRight");
+  assert.ok((await time()) > first + 1.5);
+  await page.keyboard.press("+");
+  assert.ok(await figure.locator("svg[data-enlarged]").count());
+  await page.keyboard.press("0");
+  assert.equal(await figure.locator("svg[data-enlarged]").count(), 0);
+  const at = await onScreen(figure, 0.5, 0.5);
+  await page.mouse.move(at.x, at.y);
+  await page.mouse.wheel(0, -120);
+  await page.waitForFunction(() => document.querySelector("#responses-figure svg[data-enlarged]"));
+  await close(page);
+});
+
+test("an entry of the legend switches its curve by mouse and by keys, and paper shows all", async () => {
+  const page = await opened("flight.html");
+  const figure = page.locator("#responses-figure");
+  const entry = figure.getByRole("button", { name: "CPID", exact: true });
+  const curves = figure.locator('[data-curve][data-name="CPID"]');
+  const isShown = () => curves.evaluateAll((all) => all.map((one) => getComputedStyle(one).display !== "none"));
+  assert.deepEqual(await isShown(), [true, true, true]);
+  await entry.click();
+  assert.equal(await entry.getAttribute("aria-pressed"), "false");
+  assert.deepEqual(await isShown(), [false, false, false]);
+  const at = await onScreen(figure, 0.5, 0.5);
+  await page.mouse.move(at.x, at.y);
+  assert.doesNotMatch(await figure.locator(".reading").innerText(), /CPID/);
+  await entry.focus();
+  await page.keyboard.press("Enter");
+  assert.deepEqual(await isShown(), [true, true, true]);
+  await page.keyboard.press("Space");
+  assert.deepEqual(await isShown(), [false, false, false]);
+  await page.pdf();
+  assert.deepEqual(await isShown(), [true, true, true], "what is printed is complete");
+  await close(page);
+});
+
+test("a curve that runs to and fro is read at its nearest point, and its picture is enlarged", async () => {
+  const page = await opened("loop.html");
+  const figure = page.locator("#nyquist");
+  const at = await figure.locator('[data-curve="0"] path').first().evaluate((line) => {
+    line.scrollIntoView({ block: "center" });
+    const { x, y } = line.getPointAtLength(line.getTotalLength() / 2).matrixTransform(line.getScreenCTM());
+    return { x, y };
+  });
+  await page.mouse.move(at.x, at.y);
+  assert.match(await figure.locator(".reading").innerText(), /imaginary part PC \(.+, .+\)/);
+  const before = await figure.locator("svg").getAttribute("viewBox");
+  await figure.getByRole("button", { name: /^Enlarge/ }).click();
+  assert.notEqual(await figure.locator("svg").getAttribute("viewBox"), before);
+  await close(page);
+});
+
+test("without scripts a report is complete, and has no buttons that do nothing", async () => {
+  const page = await opened("flight.html", { javaScriptEnabled: false });
+  assert.equal(await page.locator("button").count(), 0);
+  assert.ok((await page.locator("figure svg [data-curve] path").count()) > 6);
+  await close(page);
+});
+
+test("every report fits a phone and uses a wide screen, where figures stand in two columns", async () => {
+  for (const name of PAGES) {
+    const phone = await opened(name, { viewport: { width: 390, height: 844 }, colorScheme: "dark" });
+    const cut = await phone.evaluate(() => {
+      const boxes = [...document.querySelectorAll("body *")].filter((one) => !one.closest(".scroll, .drawing, pre, svg, .skip, details:not([open])"));
+      return boxes.filter((one) => one.getBoundingClientRect().right > innerWidth + 1).map((one) => one.outerHTML.slice(0, 80));
+    });
+    assert.deepEqual(cut, [], name);
+    assert.equal(await phone.evaluate(() => document.documentElement.scrollWidth), 390, name);
+    await close(phone);
+    const wide = await opened(name);
+    const places = await wide.locator("figure").evaluateAll((all) => all.map((one) => one.getBoundingClientRect()).map(({ left, right, width }) => ({ left, right, width })));
+    assert.ok(places.some(({ right }) => right > 1100), `${name}: figures end in the left half`);
+    await close(wide);
+  }
+});
+
+test("the report of the paper prints on at most 25 pages", async () => {
+  const page = await opened("paper/report.html");
+  const pdf = (await page.pdf({ preferCSSPageSize: true })).toString("latin1");
+  const pages = pdf.match(/\/Type\s*\/Page[^s]/g).length;
+  assert.ok(pages <= 25, `${pages} pages`);
+  await close(page);
+});
+
+test("axe has no serious finding in any report", async () => {
+  for (const name of PAGES) {
+    const page = await opened(name);
+    await page.evaluate(AXE);
+    const found = await page.evaluate(() => globalThis.axe.run(document, { resultTypes: ["violations"] }));
+    const serious = found.violations.filter(({ impact }) => impact === "serious" || impact === "critical");
+    assert.deepEqual(serious.map(({ id, nodes }) => [id, nodes.length, nodes[0].html.slice(0, 200)]), [], name);
+    await close(page);
+  }
+});
