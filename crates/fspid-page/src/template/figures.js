@@ -147,7 +147,6 @@
     const tools = document.createElement("div");
     tools.className = "tools";
     drawing.after(tools);
-    drawing.parentElement.append(reading);
     const button = (text, label, act) => {
       const made = document.createElement("button");
       Object.assign(made, { type: "button", textContent: text, title: label, onclick: act });
@@ -202,7 +201,6 @@
         line.append(head, ` ${text}`);
         return line;
       }));
-      reading.classList.toggle("left", parts[0] > partOfView(panel.view[0], 0.5));
     }
 
     /** Puts the content, the grid and the numbers of a panel where its view is. */
@@ -271,6 +269,7 @@
     button("+", "Enlarge", () => enlarge(1.6));
     button("\u2212", "Reduce", () => enlarge(1 / 1.6));
     button("All", "Show all", reset);
+    tools.append(reading);
 
     svg.addEventListener("pointermove", (event) => {
       const at = place(event);
