@@ -178,7 +178,7 @@ test("a campaign fills histograms and an envelope, and its worst run flies in th
   const bars = page.locator("[data-distribution=iae_deg_s] rect.bar-0");
   const told = await bars.locator("title").evaluateAll((all) => all.map((it) => Number(/^(\d+)/.exec(it.textContent)[1])));
   const words = await page.locator("[data-distribution=iae_deg_s] .words li").first().innerText();
-  const beyond = Number(/(\d+) beyond/.exec(words)?.[1] ?? 0);
+  const beyond = Number(/(\d+) beyond the bars/.exec(words)?.[1] ?? 0);
   assert.equal(told.reduce((a, b) => a + b, 0) + beyond, 300, "every flight is in a bar or told");
   assert.equal(await page.locator("[data-envelope]").count(), 2);
   assert.match(await page.locator("[data-test=envelope]").innerText(), /first 300 runs, flown again/);

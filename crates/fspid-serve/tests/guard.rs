@@ -290,7 +290,8 @@ fn the_guide_names_every_route_and_no_test_that_there_is_not() {
     ];
     let sources: String = sources.map(read).concat();
     let words = guide.split('`').skip(1).step_by(2);
-    let tests: Vec<&str> = words.filter(|word| word.matches('_').count() > 4).collect();
+    let tests: Vec<&str> =
+        words.filter(|word| word.matches('_').count() > 4 && !word.contains(' ')).collect();
     assert!(tests.len() > 20, "{}", tests.len());
     for test in tests {
         assert!(sources.contains(&format!("fn {test}()")), "{test}");

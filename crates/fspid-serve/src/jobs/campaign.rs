@@ -1,6 +1,9 @@
 //! A campaign: rows of measures as they are flown, then what all of them say.
 
 use std::path::Path;
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::thread;
+use std::time::Duration;
 
 use fspid_campaign::report::{self, Envelope};
 use fspid_campaign::sample::Sampling;
@@ -12,8 +15,9 @@ use fspid_scenario::count::RUNS;
 use serde_json::{Value, json};
 
 use super::asked::counted;
+use super::job::Job;
 use super::rest::Rest;
-use super::task::{Ended, Pace, Task};
+use super::task::{Ended, Task};
 use crate::answer::Refusal;
 use crate::request::Fields;
 
@@ -26,6 +30,8 @@ const MEASURES: [&str; 4] =
 const SHARDS: u64 = 64;
 /// Most runs of a shard.
 const MOST_OF_SHARD: u64 = 2048;
+/// How often it is told how far it is.
+const TICK: Duration = Duration::from_millis(200);
 /// Most rows that are told; of more, the summary tells.
 const MOST_ROWS: usize = 50_000;
 /// Runs whose responses are flown again for the first envelope; each further one has so many times as many.
@@ -92,19 +98,46 @@ impl Campaign {
             folder: &folder,
             measures: &self.measures,
             rows: 0,
-            pace: Pace::new(),
             rest: Rest::new(),
             next_envelope: FIRST_ENVELOPE,
             runs: self.runs,
         };
         let progress = &task.job.campaign;
-        local::run_here(&folder, &campaign, progress, &mut |range| teller.tell(range))?;
-        teller.progress();
+        ticking(task.job, self.runs, || {
+            local::run_here(&folder, &campaign, progress, &mut |range| teller.tell(range))
+        })?;
         let summary = Summary::of(&folder.merged_path(), SummarySettings::default());
         let summary = summary.map_err(Ended::failed)?;
         tell_envelopes(task, &folder.merged_path(), &summary, MOST_OF_ENVELOPE);
         Ok(json!({ "text": summary::text(&summary), "json": summary::json(&summary) }))
     }
+}
+
+/// Works, and tells meanwhile how far it is: a shard of slow flights can take a minute.
+fn ticking<T>(job: &Job, runs: u64, work: impl FnOnce() -> T) -> T {
+    let mut told = None;
+    let mut tell = move || {
+        let progress = &job.campaign;
+        let now = (progress.flown() + progress.found(), progress.failed());
+        if told.replace(now) != Some(now) {
+            job.progress(now.0, runs, &format!("runs, {} flights failed", grouped(now.1)));
+        }
+    };
+    thread::scope(|scope| {
+        // Dropped when the work ends, in whatever way.
+        let (work_goes_on, ended) = mpsc::channel::<()>();
+        let ticks = scope.spawn(move || {
+            while ended.recv_timeout(TICK) == Err(RecvTimeoutError::Timeout) {
+                tell();
+            }
+            tell();
+        });
+        let done = work();
+        drop(work_goes_on);
+        // What it told is told before what comes next.
+        let _ = ticks.join();
+        done
+    })
 }
 
 /// Tells what a shard holds.
@@ -114,7 +147,6 @@ struct Teller<'a> {
     measures: &'a [String],
     /// Rows told so far.
     rows: usize,
-    pace: Pace,
     /// When the next summary of what there is may be made.
     rest: Rest,
     next_envelope: u64,
@@ -139,9 +171,6 @@ impl Teller<'_> {
                     &json!({ "columns": names, "rows": listed(&table, names.len()) }),
                 );
             }
-        }
-        if self.pace.is_time_to_tell() {
-            self.progress();
         }
         let mut rest = std::mem::take(&mut self.rest);
         rest.work(|| self.tell_spread());
@@ -177,13 +206,6 @@ impl Teller<'_> {
             let is_asked = |it: &Value| self.measures.iter().any(|name| it["name"] == **name);
             measures.into_iter().for_each(|measures| measures.retain(is_asked));
         }
-    }
-
-    fn progress(&self) {
-        let progress = &self.task.job.campaign;
-        let done = progress.flown() + progress.found();
-        let failed = grouped(progress.failed());
-        self.task.progress(done, self.runs, &format!("runs, {failed} flights failed"));
     }
 }
 

@@ -7,6 +7,7 @@ use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
 use axum::body::Bytes;
 use fspid_campaign::Progress;
+use fspid_diagnostics::digits::grouped;
 use serde_json::{Value, json};
 use tokio::sync::watch;
 
@@ -130,6 +131,12 @@ impl Job {
     pub(super) fn tell(&self, name: &'static str, data: &Value) {
         self.log().push(Event::new(name, data));
         self.news.send_replace(());
+    }
+
+    /// Tells how far it is: so many of so many.
+    pub(super) fn progress(&self, done: u64, total: u64, what: &str) {
+        let text = format!("{} of {} {what}", grouped(done), grouped(total));
+        self.tell("progress", &json!({ "done": done, "total": total, "text": text }));
     }
 
     /// The last event.

@@ -5,7 +5,6 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use fspid_campaign::CampaignError;
-use fspid_diagnostics::digits::grouped;
 use fspid_scenario::file::{self, LoadError, Study};
 use fspid_study::output::{self, OutputError};
 use fspid_tune::{Source, TuneError};
@@ -158,8 +157,7 @@ impl<'a> Task<'a> {
 
     /// Tells how far it is: so many of so many.
     pub(super) fn progress(&self, done: u64, total: u64, what: &str) {
-        let text = format!("{} of {} {what}", grouped(done), grouped(total));
-        self.tell("progress", &json!({ "done": done, "total": total, "text": text }));
+        self.job.progress(done, total, what);
     }
 
     /// True once somebody has cancelled it, or it took too long.
