@@ -52,10 +52,10 @@ most = 5.0
 fn base64(bytes: &[u8]) -> String {
     const LETTERS: &[u8] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let four = |three: &[u8]| {
-        let bits = three.iter().fold(0_usize, |bits, byte| bits << 8 | usize::from(*byte));
+        let bits = three.iter().fold(0_usize, |bits, byte| (bits << 8) | usize::from(*byte));
         let bits = bits << (8 * (3 - three.len()));
         let letter = |n: usize| match n <= three.len() {
-            true => char::from(LETTERS[bits >> (18 - 6 * n) & 63]),
+            true => char::from(LETTERS[(bits >> (18 - 6 * n)) & 63]),
             false => '=',
         };
         (0..4).map(letter).collect::<String>()
