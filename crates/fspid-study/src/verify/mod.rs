@@ -2,6 +2,7 @@
 //!
 //! One judging code with [`simulate`](crate::simulation): the same study, the same evidence, the same numbers.
 
+pub mod interval;
 mod json;
 mod junit;
 mod replay;
