@@ -50,3 +50,4 @@ pub use style::{SeriesStyle, page_style};
 pub use surface::{Surface, SurfaceKind};
 pub use svg::Svg;
 pub use tiles::Tiles;
+pub use view::Observer;

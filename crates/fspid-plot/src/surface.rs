@@ -8,7 +8,7 @@ use super::plot::TICK_PX;
 use super::style::{Rgb, Role, diverging, sequential};
 use super::svg::{Anchor, Canvas, Font, Paint, Rect, Svg, polyline_data};
 use super::text::text_width;
-use super::view::{Light, View};
+use super::view::{Light, Observer, View};
 
 /// How a [`Surface`] is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -120,16 +120,37 @@ impl Surface {
         canvas.finish(&self.title, &self.describe("Surface in space, and as a map"))
     }
 
-    /// Draws the surface in space and returns the axis of its values.
-    fn draw_view(&self, canvas: &mut Canvas, top: f64, width: f64, light: Light) -> Axis {
+    /// The surface as `observer` sees it, with the same light as a relief and without a bar of colours.
+    #[must_use]
+    pub fn seen_by(&self, observer: Observer) -> Svg {
+        let top = page::title_height(&self.title, WIDTH);
+        let mut canvas = Canvas::new(WIDTH, top + MAP + 52.0);
+        page::title(&mut canvas, &self.title);
+        let room = Rect { x: EDGE, y: top, width: WIDTH - 2.0 * EDGE, height: MAP + 44.0 };
+        let view = View::from(self.axes(), room, observer);
+        self.draw(&mut canvas, &view, Light::FromTheLeft);
+        canvas.finish(&self.title, &self.describe("Surface in space"))
+    }
+
+    fn axes(&self) -> [Axis; 3] {
         let ranges =
             [extent(self.xs.iter().copied()), extent(self.ys.iter().copied()), self.extent()];
-        let [x, y, z] = ranges.map(|range| Axis::linear(range, 0.0, 5));
-        let view = View::new([x, y, z], Rect { x: EDGE, y: top, width, height: VIEW });
+        ranges.map(|range| Axis::linear(range, 0.0, 5))
+    }
+
+    /// Draws the surface in space and returns the axis of its values.
+    fn draw_view(&self, canvas: &mut Canvas, top: f64, width: f64, light: Light) -> Axis {
+        let axes = self.axes();
+        let view = View::new(axes, Rect { x: EDGE, y: top, width, height: VIEW });
+        self.draw(canvas, &view, light);
+        let [_, _, z] = axes;
+        z
+    }
+
+    fn draw(&self, canvas: &mut Canvas, view: &View, light: Light) {
         let scale = self.scale();
         view.room(canvas, [&self.x_label, &self.y_label, &self.z_label]);
         view.faces(canvas, &self.coarse(), light, |value| scale.colour(value));
-        z
     }
 
     /// At most 40 cells each way: more would only thicken the lines.

@@ -6,6 +6,7 @@
 mod answer;
 mod audit;
 mod explain;
+mod marks;
 mod slice;
 mod table;
 mod words;
@@ -13,5 +14,6 @@ mod words;
 pub use answer::{Asked, ask};
 pub use audit::{Audit, Chapter, Finding, Mark, Question as AuditQuestion, audit};
 pub use explain::{Basis, Explanation, Lack, Share, Shares, WhyNot, explain};
+pub use marks::{Along, RuleMarks, rule_marks};
 pub use slice::{Question as SliceQuestion, Slice, slice};
 pub use table::SystemTable;

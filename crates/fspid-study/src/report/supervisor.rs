@@ -226,6 +226,67 @@ fn component(delta: Increments<f64>, output: Output) -> f64 {
     }
 }
 
+/// What the supervisor adds at each pair of inputs, a row for each change.
+fn answers(supervisor: &Supervisor<f64>, axis: &[f64]) -> Vec<Vec<Option<Increments<f64>>>> {
+    let row = |change: &f64| {
+        let delta = |error: &f64| supervisor.infer(*error, *change).ok().map(|i| i.delta);
+        axis.iter().map(delta).collect()
+    };
+    axis.iter().map(row).collect()
+}
+
+/// How fine a surface is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fineness {
+    /// As in reports.
+    Report,
+    /// For a surface that turns under a hand: as much as is drawn in a moment, the centres of the sets among it.
+    Moving,
+}
+
+impl Fineness {
+    const fn nodes(self) -> u32 {
+        match self {
+            Self::Report => NODES,
+            Self::Moving => 25,
+        }
+    }
+}
+
+/// A gain over the inputs of a supervisor, called `name`.
+#[must_use]
+pub fn surface_of(
+    name: &str,
+    supervisor: &Supervisor<f64>,
+    output: Output,
+    fineness: Fineness,
+) -> Surface {
+    let axis = nodes(supervisor.range(), fineness.nodes());
+    surface(name, output, &axis, &answers(supervisor, &axis), supervisor.range())
+}
+
+fn surface(
+    name: &str,
+    output: Output,
+    axis: &[f64],
+    answers: &[Vec<Option<Increments<f64>>>],
+    range: f64,
+) -> Surface {
+    let symbol = NAMES.iter().find(|it| it.0 == output).map_or("", |it| it.2);
+    let value =
+        |delta: &Option<Increments<f64>>| delta.map_or(f64::NAN, |delta| component(delta, output));
+    Surface {
+        title: format!("{symbol}, {name}"),
+        x_label: "error e".to_owned(),
+        y_label: "change of error ec".to_owned(),
+        z_label: symbol.to_owned(),
+        xs: axis.to_vec(),
+        ys: axis.to_vec(),
+        values: answers.iter().map(|row| row.iter().map(value).collect()).collect(),
+        limit: Some(range),
+    }
+}
+
 /// The three gain surfaces: maps, and views in space if asked for.
 pub fn surfaces(
     prefix: &str,
@@ -233,34 +294,11 @@ pub fn surfaces(
     supervisor: &Supervisor<f64>,
     kinds: &[SurfaceKind],
 ) -> Vec<Figure> {
-    let range = supervisor.range();
-    let axis = nodes(range, NODES);
-    let answers: Vec<Vec<Option<Increments<f64>>>> = axis
-        .iter()
-        .map(|&change| {
-            axis.iter()
-                .map(|&error| supervisor.infer(error, change).ok().map(|i| i.delta))
-                .collect()
-        })
-        .collect();
+    let (range, axis) = (supervisor.range(), nodes(supervisor.range(), NODES));
+    let answers = answers(supervisor, &axis);
     let mut figures = Vec::new();
     for (output, letter, symbol) in NAMES {
-        let value = |delta: &Option<Increments<f64>>| {
-            delta.map_or(f64::NAN, |delta| component(delta, output))
-        };
-        let values: Vec<Vec<f64>> =
-            answers.iter().map(|row| row.iter().map(value).collect()).collect();
-        let surface = |x_label: &str, y_label: &str, values: Vec<Vec<f64>>| Surface {
-            title: format!("{symbol}, {name}"),
-            x_label: x_label.to_owned(),
-            y_label: y_label.to_owned(),
-            z_label: symbol.to_owned(),
-            xs: axis.clone(),
-            ys: axis.clone(),
-            values,
-            limit: Some(range),
-        };
-        let (error, change) = ("error e", "change of error ec");
+        let surface = surface(name, output, &axis, &answers, range);
         let plain = symbol.replace("_{", "").replace('}', "");
         for kind in kinds {
             let (word, how) = match kind {
@@ -271,14 +309,14 @@ pub fn surfaces(
                 SurfaceKind::Relief => ("relief", "in space and as a map"),
             };
             // A map has the error on the side, as the rule tables have.
-            let surface = match kind {
-                SurfaceKind::Map => surface(change, error, turned(&values)),
-                SurfaceKind::View | SurfaceKind::Relief => surface(error, change, values.clone()),
+            let figure = match kind {
+                SurfaceKind::Map => turned(&surface).render(*kind),
+                SurfaceKind::View | SurfaceKind::Relief => surface.render(*kind),
             };
             let caption = format!("{plain} in supervisor units over both inputs; {how}.");
             figures.push(Figure::new(
                 format!("{prefix}-{letter}-{word}"),
-                surface.render(*kind),
+                figure,
                 caption,
             ));
         }
@@ -286,11 +324,17 @@ pub fn surfaces(
     figures
 }
 
-/// Columns as rows.
-fn turned(values: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    (0..values.len())
-        .map(|column| values.iter().filter_map(|row| row.get(column).copied()).collect())
-        .collect()
+/// The same surface with its inputs in each other's place.
+fn turned(surface: &Surface) -> Surface {
+    let column = |at: usize| surface.values.iter().filter_map(|row| row.get(at).copied()).collect();
+    Surface {
+        x_label: surface.y_label.clone(),
+        y_label: surface.x_label.clone(),
+        xs: surface.ys.clone(),
+        ys: surface.xs.clone(),
+        values: (0..surface.xs.len()).map(column).collect(),
+        ..surface.clone()
+    }
 }
 
 /// What a supervisor adds at rest: kp, ki, kd.

@@ -1,9 +1,10 @@
 //! Figures as reports draw them.
 
-use fspid_plot::SurfaceKind;
+use fspid_fuzzy::Output;
+use fspid_plot::{Observer, SurfaceKind};
 use fspid_sim::Controller;
 use fspid_study::report;
-use fspid_study::report::supervisor;
+use fspid_study::report::supervisor::{Fineness, surface_of};
 use fspid_study::simulation::Simulation;
 use serde_json::json;
 
@@ -12,8 +13,8 @@ use super::judge::analysed;
 use crate::Answer;
 use crate::question::Question;
 
-/// The figure of a `kind`: `responses`, `bode`, `nyquist`, `nichols`, `sensitivity`, or of a supervisor `surface-kp`,
-/// `surface-ki`, `surface-kd`.
+/// The figure of a `kind`: `responses`, `bode`, `nyquist`, `nichols`, `sensitivity`, or of a supervisor
+/// `surface-kp` and the like, `map-kp`, and `view-kp` from `azimuth_deg` and `elevation_deg`.
 pub(super) fn figure(question: &Question) -> Answered {
     let kind = question.text("kind")?;
     let svg = match kind {
@@ -22,7 +23,9 @@ pub(super) fn figure(question: &Question) -> Answered {
             let simulation = Simulation::of(&study).map_err(Answer::refused)?;
             Some(report::responses_of(&study, &simulation).as_str().to_owned())
         }
-        _ if kind.starts_with("surface-") => surface(question, kind)?,
+        _ if ["surface-", "map-", "view-"].iter().any(|it| kind.starts_with(it)) => {
+            surface(question, kind)?
+        }
         _ => {
             let figures = analysed(question)?.response_figures();
             let found = figures.into_iter().find(|(name, _)| *name == kind);
@@ -33,16 +36,27 @@ pub(super) fn figure(question: &Question) -> Answered {
     Ok(Answer::of(json!({ "svg": svg })))
 }
 
-/// A gain over the inputs of a supervisor.
+/// A gain over the inputs of a supervisor: as a report has it, as a map alone, or as an observer sees it.
 fn surface(question: &Question, kind: &str) -> Result<Option<String>, Answer> {
     let (study, name) = (question.study()?, question.text("controller")?);
     let named = study.scenario.controllers.iter().find(|named| named.name == name);
     let Some(Controller::SelfTuning(fspid)) = named.map(|named| &named.controller) else {
         return Ok(None);
     };
-    let figures =
-        supervisor::surfaces("cockpit", name, fspid.tuner().supervisor(), &[SurfaceKind::Relief]);
-    let gain = format!("cockpit{}-", kind.strip_prefix("surface").unwrap_or_default());
-    let found = figures.into_iter().find(|figure| figure.name.starts_with(&gain));
-    Ok(found.map(|figure| figure.svg))
+    let gain = kind.rsplit('-').next().unwrap_or_default();
+    let mut outputs = Output::ALL.into_iter();
+    let Some(output) = outputs.find(|it| it.name().strip_prefix("delta_") == Some(gain)) else {
+        return Ok(None);
+    };
+    let surface = |fineness| surface_of(name, fspid.tuner().supervisor(), output, fineness);
+    let svg = match kind.split('-').next() {
+        Some("view") => {
+            let [azimuth, elevation] =
+                ["azimuth_deg", "elevation_deg"].map(|it| question.number(it));
+            surface(Fineness::Moving).seen_by(Observer::at_deg(azimuth?, elevation?))
+        }
+        Some("map") => surface(Fineness::Report).render(SurfaceKind::Map),
+        _ => surface(Fineness::Report).render(SurfaceKind::Relief),
+    };
+    Ok(Some(svg.as_str().to_owned()))
 }

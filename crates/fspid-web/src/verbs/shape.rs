@@ -4,6 +4,7 @@ use fspid_core::{SelfTuner, SetCentres};
 use fspid_fuzzy::{Label, Output, Supervisor};
 use fspid_scenario::file::{paths_json, paths_of};
 use fspid_sim::Controller;
+use fspid_study::fuzzy_system::{RuleMarks, rule_marks};
 use fspid_study::moment::{set_curves, visits};
 use fspid_study::report::supervisor::odd_cells;
 use serde_json::{Map, Value, json};
@@ -38,6 +39,7 @@ pub(super) fn shape(question: &Question) -> Answered {
         "centres": centres(tuner),
         "rules": rules(tuner.supervisor()),
         "odd": odd(tuner.supervisor()),
+        "audit": rule_marks(tuner.supervisor()).iter().map(RuleMarks::json).collect::<Vec<_>>(),
         "visits": visits(&study, name),
         "curves": { "inputs": inputs, "error": grades[0], "change": grades[1] },
     });
