@@ -98,6 +98,13 @@ export interface Shape {
   centres: Record<"error" | "change", { small: number; medium: number; even: boolean }>;
   rules: { are_labels: boolean; grids: Record<string, (string | number)[][]> };
   odd: { grid: string; cell: [number, number]; opposite: [number, number] }[];
+  /** What the program's audit says of the cells of each grid. */
+  audit: {
+    grid: string;
+    words: string;
+    holes: [number, number][];
+    along: { input: "error" | "change"; words: string; exceptions: [[number, number], [number, number]][] }[];
+  }[];
   visits: number[][];
   inputs: Float64Array;
   grades: Record<"error" | "change", Float64Array[]>;

@@ -2,7 +2,7 @@
 // program. Run by `web/test.sh`; FSPID names the program.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { before, test } from "node:test";
@@ -95,6 +95,39 @@ test("a changed number flies as --set flies it", () => {
   const expected = JSON.parse(told("simulate", scenario, "--set", `${path}=${value}`, "--format", "json"));
   const { json } = ask({ verb: "set", text: readFileSync(join(root, scenario), "utf8"), path, value });
   assert.deepEqual(ask({ verb: "fly", text: json.text }).json.simulation, expected);
+});
+
+test("an interval ends where fspid verify begins to refuse, and holds where it does not", () => {
+  const scenario = "scenarios/requirements.toml";
+  // Milder than its sets, which its controllers do not meet.
+  const text = `${readFileSync(join(root, scenario), "utf8").split("[[requirement]]")[0]}[[requirement]]\nmeasure = "phase_margin_deg"\nleast = 35.0\n\n[[requirement]]\nmeasure = "overshoot_pct"\nmost = 45.0\n`;
+  const folder = mkdtempSync(join(tmpdir(), "fspid-bits-"));
+  const file = join(folder, "mild.toml");
+  writeFileSync(file, text);
+  const met = (path, value) => {
+    const { requirements, failed_flights: failed = [] } = JSON.parse(told("verify", file, "--set", `${path}=${value}`, "--format", "json"));
+    return [...requirements.filter((it) => !it.met), ...failed].every((it) => it.controller !== "FSPID");
+  };
+  try {
+    let ends = 0;
+    for (const path of ["controller.FSPID.nominal.kp", "controller.FSPID.nominal.kd", "controller.FSPID.supervisor.change_scale"]) {
+      const { interval } = ask({ verb: "interval", text, path }).json;
+      assert.equal(interval.holds, true, interval.text);
+      assert.match(interval.asked, /^FSPID: 2 requirements/);
+      for (const [end, beyond] of [[interval.least, interval.below], [interval.most, interval.above]]) {
+        assert.ok(met(path, end), `${path}=${end}`);
+        if (beyond?.kind !== "not met") continue;
+        assert.ok(!met(path, beyond.value), `${path}=${beyond.value}: ${interval.text}`);
+        ends += 1;
+      }
+      const inside = interval.values.filter(([value]) => value >= interval.least && value <= interval.most);
+      assert.equal(inside.length, interval.inside);
+      for (const [value, holds] of interval.values.filter((_, at) => at % 9 === 0)) assert.equal(met(path, value), holds, `${path}=${value}`);
+    }
+    assert.ok(ends >= 2, `${ends} ends`);
+  } finally {
+    rmSync(folder, { recursive: true });
+  }
 });
 
 test("what is wrong has its line and column, and does not fly", () => {

@@ -195,6 +195,122 @@ test("Keep: the difference is shown, the command sets what differs, and the file
   await close(page);
 });
 
+test("an interval is shown on its slider, by click and by key, and is of the old text as soon as the text changes", async () => {
+  const page = await opened();
+  const number = page.locator(`[data-path="${KP}"]`);
+  const slider = number.locator("input[type=range]");
+  await number.getByRole("button", { name: /in which interval does kp hold/ }).click();
+  const told = number.locator("[data-test=holds]");
+  await told.locator("summary").waitFor();
+  const [, count, least, most] = (await told.innerText()).match(/✓ holds at all (\d+) values looked at between ([\d.]+) and ([\d.]+)/);
+  assert.ok(Number(count) > 20 && Number(least) < 2 && Number(most) > 2, `${count} between ${least} and ${most}`);
+  await told.locator("summary").click();
+  assert.match(await told.innerText(), /what lies between them was not looked at.*Below: at [\d.]+ FSPID: not settled.*Above: at/s);
+  // The band is where the slider has these values.
+  const [min, max] = await slider.evaluate((it) => [Number(it.min), Number(it.max)]);
+  const box = await number.locator(".band").boundingBox();
+  const inside = await number.locator(".band .inside").boundingBox();
+  assert.ok(Math.abs((inside.x - box.x) / box.width - (Number(least) - min) / (max - min)) < 0.02);
+  assert.ok(Math.abs((inside.x + inside.width - box.x) / box.width - Math.min(1, (Number(most) - min) / (max - min))) < 0.02);
+  await slider.focus();
+  await page.keyboard.press("ArrowRight");
+  await number.locator(".band.old").waitFor();
+  assert.match(await told.innerText(), /before it changed; ask again/);
+  await page.keyboard.press("i");
+  await told.locator("summary").waitFor();
+  assert.equal(await number.locator(".band.old").count(), 0);
+  await close(page);
+});
+
+test("all intervals are looked at one after the other, stop at a word, and a change ends them", async () => {
+  const page = await opened();
+  const answers = page.locator("[data-test=holds] summary, [data-test=holds] .bad");
+  await page.click("[data-test=all-intervals]");
+  await answers.nth(2).waitFor();
+  await page.click("[data-test=stop-intervals]");
+  await page.locator("[data-test=all-intervals]").waitFor();
+  const count = await answers.count();
+  assert.ok(count >= 3 && count < 40, `${count}`);
+  assert.match(await page.locator('[data-path="controller.PC.kp"] [data-test=holds]').innerText(), /✗ does not hold at 3.5287; [\d.]+ does/);
+  await page.click("[data-test=all-intervals]");
+  await page.locator("[data-test=stop-intervals]").waitFor();
+  const field = page.locator(`[data-path="${KP}"] input[type=number]`);
+  await field.fill("2.25");
+  await field.press("Enter");
+  await page.locator("[data-test=all-intervals]").waitFor();
+  await page.locator(".band.old").first().waitFor();
+  await close(page);
+});
+
+test("Shape: a step that goes the wrong way is marked at once, with a sign and in words, and the marks can be hidden", async () => {
+  const page = await opened();
+  await page.click("#tab-shape");
+  const grid = page.getByRole("grid", { name: "rules for Δkp" });
+  const words = page.locator("[data-audit=delta_kp]");
+  await words.waitFor();
+  assert.match(await words.innerText(), /each of the 49 cells has a rule; falls along error without exception/);
+  assert.equal(await grid.locator(".turned").count(), 0);
+  await grid.locator('[data-cell="3-3"]').focus();
+  await page.keyboard.press("n");
+  await page.keyboard.press("n");
+  await grid.locator(".turned").first().waitFor();
+  await page.waitForFunction(() => /but for \d of 42 steps/.test(document.querySelector("[data-audit=delta_kp]").innerText));
+  const marked = grid.locator('td:has(.turned.below) button').first();
+  assert.match(await marked.getAttribute("aria-label"), /to error \w\w it goes the other way than most/);
+  await page.locator("[data-test=marks]").uncheck();
+  assert.equal(await grid.locator(".turned").count(), 0);
+  await close(page);
+});
+
+test("Shape: the surface turns by drag, by arrows and by two numbers, and is drawn anew", async () => {
+  const page = await opened();
+  await page.click("#tab-shape");
+  const seen = (told) => page.locator(`.surface[data-seen="${told}"]`).waitFor();
+  const drawn = () => page.locator("[data-test=turn] img").getAttribute("src");
+  await seen("view-kp -60 26");
+  const before = await drawn();
+  const turn = page.locator("[data-test=turn]");
+  await turn.scrollIntoViewIfNeeded();
+  const box = await turn.boundingBox();
+  const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x + 40, y + 20, { steps: 6 });
+  await page.mouse.up();
+  await seen("view-kp -80 36");
+  assert.notEqual(await drawn(), before);
+  await turn.focus();
+  await page.keyboard.press("ArrowRight");
+  await page.keyboard.press("Shift+ArrowUp");
+  await seen("view-kp -85 37");
+  await page.locator("[data-test=azimuth]").fill("120");
+  await page.keyboard.press("Tab");
+  await page.locator("[data-test=elevation]").fill("95");
+  await page.keyboard.press("Tab");
+  await seen("view-kp 120 90");
+  await turn.focus();
+  await page.keyboard.press("Home");
+  await seen("view-kp -60 26");
+  assert.equal(await drawn(), before);
+  await close(page);
+});
+
+test("Keep: there is a command for every target of an export, with what was changed and not saved", async () => {
+  const page = await opened();
+  const field = page.locator(`[data-path="${KP}"] input[type=number]`);
+  await field.fill("2.25");
+  await field.press("Enter");
+  await page.click("#tab-keep");
+  await page.waitForFunction(() => document.querySelector('[data-export="c"]')?.innerText.includes("kp=2.25"));
+  assert.match(await page.locator("[data-export=c]").innerText(), /^fspid export 747-pitch-step.toml --controller FSPID --to c --out fspid-c --set /);
+  assert.equal(await page.locator("[data-export]").count(), 9);
+  await page.locator("[data-test=export-controller]").selectOption("CPID");
+  assert.equal(await page.locator("[data-export=table]").count(), 0);
+  await page.getByRole("button", { name: "copy the command for fmu3" }).click();
+  await page.getByText(/the command for fmu3 is in the clipboard|by hand/).waitFor();
+  await close(page);
+});
+
 test("a bad text is marked at its lines and does not fly", async () => {
   const page = await opened();
   await page.click("#tab-keep");
@@ -223,6 +339,8 @@ test("axe finds nothing serious in any view, light or dark", async () => {
   for (const colorScheme of ["light", "dark"]) {
     const page = await opened({ colorScheme });
     await page.evaluate(AXE);
+    await page.locator(`[data-path="${KP}"] .ask`).click();
+    await page.locator("[data-test=holds] summary").waitFor();
     for (const view of VIEWS) {
       await page.click(`#tab-${view}`);
       await page.waitForTimeout(800);

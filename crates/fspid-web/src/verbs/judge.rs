@@ -5,6 +5,7 @@ use std::path::Path;
 use fspid_scenario::count::MAP_POINTS;
 use fspid_study::analysis::{Analysis, Columns, Question as Asked};
 use fspid_study::certify::{self, Certification, Effort};
+use fspid_study::verify::interval::{self, IntervalError};
 use fspid_study::verify::{self, verify_text};
 use serde_json::{Value, json};
 
@@ -58,6 +59,17 @@ pub(super) fn verify(question: &Question) -> Answered {
         Err(verify::VerifyError::Load(fspid_scenario::file::LoadError::Problems(found))) => {
             Err(wrong(&found))
         }
+        Err(error) => Err(Answer::refused(error)),
+    }
+}
+
+/// In which interval a number keeps the requirements met.
+pub(super) fn interval(question: &Question) -> Answered {
+    let (text, path) = (question.text("text")?, question.text("path")?);
+    let asked = interval::Question { text, name: NAME, folder: None, path };
+    match interval::interval(&asked) {
+        Ok(found) => Ok(Answer::of(json!({ "interval": found.json() }))),
+        Err(IntervalError::Problems(found)) => Err(wrong(&found)),
         Err(error) => Err(Answer::refused(error)),
     }
 }

@@ -19,13 +19,14 @@ type Answered = Result<Answer, Answer>;
 type Verb = (&'static str, fn(&Question) -> Answered);
 
 /// What can be asked.
-const VERBS: [Verb; 10] = [
+const VERBS: [Verb; 11] = [
     ("shipped", |_| Ok(open::shipped())),
     ("open", open::open),
     ("set", set),
     ("fly", fly::fly),
     ("judge", judge::judge),
     ("verify", judge::verify),
+    ("interval", judge::interval),
     ("certify", judge::certify),
     ("shape", shape::shape),
     ("explain", explain),
