@@ -36,6 +36,7 @@ async function script(entry, name, plugins) {
 }
 
 await script("src/worker.ts", "worker", []);
+await script("src/first.ts", "first", []);
 await script("src/main.ts", "app", [svelte()]);
 copyFileSync("dist/fspid.wasm", `${out}/fspid.wasm`);
 
@@ -53,14 +54,22 @@ writeFileSync(
 
 // Nothing in a script may end the element that it stands in.
 const quiet = (source) => source.replaceAll("</script", "<\\/script").replaceAll("<!--", "<\\!--");
-const wasm = gzipSync(readFileSync("dist/fspid.wasm"), { level: 9 });
+const packed = (id, bytes) => {
+  const zipped = gzipSync(bytes, { level: 9 });
+  return `<script type="text/plain" id="${id}" data-bytes="${zipped.length}">${toLetters(zipped)}</script>`;
+};
 writeFileSync(
   "dist/page.html",
   fill({
     style: `<style>${text("app.css")}</style>`,
-    data:
-      `<script type="text/plain" id="fspid-worker">${quiet(text("worker.js"))}</script>\n` +
-      `<script type="text/plain" id="fspid-wasm" data-bytes="${wasm.length}">${toLetters(wasm)}</script>\n<!-- scenario -->`,
-    script: `<script>${quiet(text("app.js"))}</script>`,
+    data: [
+      `<script type="text/plain" id="fspid-worker">${quiet(text("worker.js"))}</script>`,
+      packed("fspid-app", text("app.js")),
+      packed("fspid-wasm", readFileSync("dist/fspid.wasm")),
+      "<!-- scenario -->",
+    ].join("\n"),
+    script: `<script>${quiet(text("first.js"))}</script>`,
   }),
 );
+// A server has no use for it.
+rmSync(`${out}/first.js`);

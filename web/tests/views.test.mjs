@@ -10,7 +10,7 @@ const path = (name) => fileURLToPath(new URL(name, import.meta.url));
 const PAGE = pathToFileURL(path("../dist/page.html")).href;
 const STEP = readFileSync(path("../../scenarios/747-pitch-step.toml"), "utf8");
 const AXE = readFileSync(path("../node_modules/axe-core/axe.min.js"), "utf8");
-const VIEWS = ["fly", "shape", "judge", "explain", "many", "keep"];
+const VIEWS = ["fly", "shape", "judge", "explain", "many", "watch", "keep"];
 const KP = "controller.FSPID.nominal.kp";
 
 let browser;

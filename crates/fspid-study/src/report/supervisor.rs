@@ -314,11 +314,7 @@ pub fn surfaces(
                 SurfaceKind::View | SurfaceKind::Relief => surface.render(*kind),
             };
             let caption = format!("{plain} in supervisor units over both inputs; {how}.");
-            figures.push(Figure::new(
-                format!("{prefix}-{letter}-{word}"),
-                figure,
-                caption,
-            ));
+            figures.push(Figure::new(format!("{prefix}-{letter}-{word}"), figure, caption));
         }
     }
     figures
