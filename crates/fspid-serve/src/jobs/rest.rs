@@ -14,9 +14,15 @@ pub(super) struct Rest {
     next: Option<Duration>,
 }
 
+impl Default for Rest {
+    fn default() -> Self {
+        Self { begun: Instant::now(), next: None }
+    }
+}
+
 impl Rest {
     pub(super) fn new() -> Self {
-        Self { begun: Instant::now(), next: None }
+        Self::default()
     }
 
     /// Works if it has rested long enough; the first time it has.
