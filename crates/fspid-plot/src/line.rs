@@ -22,7 +22,7 @@ pub struct LineFigure {
 /// One panel of a [`LineFigure`].
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct LinePanel {
-    /// Name and unit of the ordinate, such as "pitch angle [deg]".
+    /// Name and unit of the ordinate, such as `pitch angle [deg]`.
     pub y_label: String,
     /// Name and unit of the abscissa; written under the lowest panel, and where the next one differs.
     pub x_label: String,
