@@ -78,6 +78,11 @@ class Cockpit {
     return this.guest?.flight ?? this.own;
   }
 
+  /** Whether what is shown is of an earlier text, because something is wrong with this one. */
+  get isBehind(): boolean {
+    return this.guest === null && this.own !== null && this.own.of !== this.text && (this.problems.length > 0 || this.refused !== "");
+  }
+
   get isChanged(): boolean {
     return this.text !== this.original;
   }
@@ -176,7 +181,7 @@ class Cockpit {
     this.guest = null;
     const found = await this.engine.latest("fly", "fly", { text });
     if (found === OVERTAKEN) return;
-    this.#draw(found);
+    this.#draw(found, text);
     if (this.text === text) await this.look();
     await new Promise((go) => setTimeout(go, REST_MS));
     if (this.text !== text) return;
@@ -200,7 +205,7 @@ class Cockpit {
     if (summary === OVERTAKEN || !this.#take(summary)) return;
     const flight = await flown;
     if (flight === OVERTAKEN) return;
-    this.#draw(flight);
+    this.#draw(flight, text);
     await this.look();
   }
 
@@ -214,10 +219,10 @@ class Cockpit {
     return true;
   }
 
-  #draw(found: Answer): void {
+  #draw(found: Answer, of: string): void {
     this.tell(found);
     if (!found.json.simulation) return;
-    this.own = flightOf(found);
+    this.own = flightOf(found, of);
     this.flights += 1;
   }
 
@@ -229,7 +234,7 @@ class Cockpit {
     if (found === OVERTAKEN || this.text !== own || !WITH_GUESTS.includes(this.view)) return "";
     const { json } = found;
     if (!json.simulation) return json.refused ?? json.problems?.[0]?.message ?? "it does not fly";
-    this.guest = { title, text, flight: flightOf(found) };
+    this.guest = { title, text, flight: flightOf(found, text) };
     this.flights += 1;
     return "";
   }
@@ -250,8 +255,11 @@ class Cockpit {
     const found = await this.engine.latest("judge", "judge", { text: this.text });
     if (found === OVERTAKEN) return;
     const { json } = found;
-    this.judgeRefused = json.refused ?? "";
-    if (!json.analysis) return;
+    this.judgeRefused = json.refused ?? json.problems?.[0]?.message ?? "";
+    if (!json.analysis) {
+      this.judged = null;
+      return;
+    }
     const curve = (it: any) => ({ name: it.name, columns: named(it.columns, found) });
     this.judged = { analysis: json.analysis, held: json.held, loops: json.loops.map(curve), poles: json.poles.map(curve) };
   }
@@ -322,10 +330,11 @@ class Cockpit {
   }
 }
 
-/** A flight with its columns by their names. */
-function flightOf(found: Answer): Flight {
+/** The flight of a text, with its columns by their names. */
+function flightOf(found: Answer, of: string): Flight {
   const { simulation, met, failed, traces } = found.json;
   return {
+    of,
     controllers: simulation.controllers,
     requirements: simulation.requirements ?? [],
     notes: simulation.notes ?? [],

@@ -69,6 +69,8 @@ export interface Judgement {
 }
 
 export interface Flight {
+  /** The text that flew. */
+  of: string;
   controllers: ControllerAnswer[];
   requirements: Judgement[];
   notes: string[];

@@ -54,6 +54,8 @@ async function freePort() {
 async function opened(view, options = {}) {
   const page = await browser.newPage({ viewport: { width: 1400, height: 900 }, ...options });
   page.wrong = [];
+  page.outside = [];
+  page.on("request", (request) => /^https?:/.test(request.url()) && !request.url().startsWith("http://127.0.0.1") && page.outside.push(request.url()));
   page.on("pageerror", (error) => page.wrong.push(error.message));
   page.on("console", (message) => message.type() === "error" && page.wrong.push(message.text()));
   page.setDefaultTimeout(30_000);
@@ -66,6 +68,7 @@ async function opened(view, options = {}) {
 
 async function closed(page) {
   assert.deepEqual(page.wrong, []);
+  assert.deepEqual(page.outside, [], "it asks nobody but its server");
   await page.close();
 }
 

@@ -4,7 +4,6 @@ import { readFileSync } from "node:fs";
 import { after, before, test } from "node:test";
 import { fileURLToPath, pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
-import { digestOf, start } from "./mock-server.mjs";
 
 const path = (name) => fileURLToPath(new URL(name, import.meta.url));
 const PAGE = pathToFileURL(path("../dist/page.html")).href;
@@ -153,6 +152,12 @@ test("Judge: margins move with a slider, a ready set is judged, and a fixed cont
   await page.locator('[data-path="controller.CPID.kp"] input[type=range]').focus();
   for (let times = 0; times < 20; times += 1) await page.keyboard.press("ArrowRight");
   await page.waitForFunction((before) => ![...document.querySelectorAll("[data-test=margins] tr")].some((it) => it.innerText === before), before);
+  await page.getByRole("button", { name: "map of frozen gains" }).click();
+  assert.match(await page.locator(".frozen figcaption").innerText(), /✓ stable at all 81 points/);
+  await page.locator(`[data-path="${KP}"] input[type=range]`).focus();
+  await page.keyboard.press("ArrowRight");
+  await page.locator("[data-test=old-map]").waitFor();
+  assert.equal(await page.locator(".frozen").count(), 0, "a map of other gains is not shown");
   await page.getByLabel("mil-f-9490d").check();
   await page.locator(".requirements td.good").first().waitFor();
   assert.ok((await page.locator(".requirements td.bad").count()) > 0);
@@ -319,6 +324,10 @@ test("a bad text is marked at its lines and does not fly", async () => {
   await problems.waitFor();
   assert.match(await problems.innerText(), /line 23, column 1.*kpp.*kp/s);
   assert.match(await problems.innerText(), /last text that could fly/);
+  // What stands there as settled is of another text, and says so.
+  assert.match(await page.locator(".verdicts.old").innerText(), /of the last text that could fly.*settled/s);
+  await page.fill("[data-test=text]", STEP);
+  await page.locator(".verdicts:not(.old)").waitFor();
   await close(page);
 });
 
@@ -350,54 +359,6 @@ test("axe finds nothing serious in any view, light or dark", async () => {
       const told = serious.map((it) => `${it.id}: ${it.nodes.map((node) => node.target.join(" ")).join(", ")}`);
       assert.deepEqual(told, [], `${view}, ${colorScheme}`);
     }
-    await close(page);
-  }
-});
-
-test("behind a server the page keeps its policy, saves what it read, and refuses to write over what changed", async () => {
-  const server = await start(path("../dist/site"), STEP);
-  const page = await opened({}, server.address);
-  try {
-    await page.waitForFunction(() => document.querySelector("[data-test=scenario]").value === "file:pitch.toml");
-    await page.waitForTimeout(500);
-    const field = page.locator(`[data-path="${KP}"] input[type=number]`);
-    await field.fill("2.25");
-    await field.press("Enter");
-    await page.click("#tab-keep");
-    await page.locator(".added").waitFor();
-    await page.click("[data-test=save]");
-    await page.getByText("pitch.toml is saved").waitFor();
-    assert.match(server.state.text, /kp = 2\.25/);
-    server.state.text += "# somebody else\n";
-    await page.fill("[data-test=text]", STEP);
-    await page.waitForTimeout(600);
-    page.wrong = [];
-    await page.click("[data-test=save]");
-    await page.getByText("has changed on disk").waitFor();
-    assert.match(server.state.text, /somebody else/);
-    assert.equal(page.wrong.filter((it) => !it.includes("409")).length, 0);
-    page.wrong = [];
-    assert.ok(page.outside.every((it) => it.startsWith("http://127.0.0.1")));
-    assert.equal(digestOf("").length, 64);
-  } finally {
-    server.stop();
-    await close(page);
-  }
-});
-
-test("Tune and fly many: candidates of a job appear as points, and its result at the end", async () => {
-  const server = await start(path("../dist/site"), STEP);
-  const page = await opened({}, server.address);
-  try {
-    await page.waitForFunction(() => document.querySelector("[data-test=scenario]").value === "file:pitch.toml");
-    await page.click("#tab-many");
-    await page.click("[data-test=start]");
-    await page.getByText("✓ done").waitFor();
-    assert.equal(await page.locator(".plane circle.sign").count(), 10);
-    assert.match(await page.locator("#panel").innerText(), /best: 1 at candidate 9/);
-    assert.match(await page.locator("#panel").innerText(), /ten candidates/);
-  } finally {
-    server.stop();
     await close(page);
   }
 });

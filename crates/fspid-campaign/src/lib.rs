@@ -39,5 +39,5 @@ pub use error::CampaignError;
 pub use folder::{Folder, Lock};
 pub use merge::{PLAN_KEY, merge};
 pub use plan::{MOST_RUNS, MOST_SHARD_RUNS, Plan, SHARD_RUNS, SLOW_SHARD_RUNS};
-pub use planning::{Question, Shards, plan};
+pub use planning::{Question, Shards, USUAL_RUNS, USUAL_SEED, plan};
 pub use range::Range;

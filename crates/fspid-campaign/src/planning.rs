@@ -28,6 +28,11 @@ pub struct Question<'a> {
     pub shards: Shards,
 }
 
+/// How many runs there are if nobody says.
+pub const USUAL_RUNS: u64 = 1000;
+/// The seed if nobody says.
+pub const USUAL_SEED: u64 = 1;
+
 /// How a campaign's runs are cut into shards, which changes nothing in its rows.
 ///
 /// Whoever does not ask for a number goes on with the cut of the plan that is in the folder already.

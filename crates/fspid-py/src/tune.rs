@@ -9,7 +9,8 @@ use fspid::study::output;
 use fspid::tune::baseline::Baseline;
 use fspid::tune::rule::{Form, Options, Rule, Verdict};
 use fspid::tune::{
-    Crew, Effort, Kept, Search, Source, Then, TuneError, Tuned, TuningProblem, design, history,
+    AskedEffort, Crew, Effort, Kept, Search, Source, Then, TuneError, Tuned, TuningProblem, design,
+    history,
 };
 use pyo3::prelude::*;
 
@@ -194,13 +195,13 @@ impl Wanted {
     }
 
     fn effort(&self, problem: &TuningProblem) -> Effort {
-        let tuning = problem.tuning();
-        Effort {
-            optimiser: self.optimiser.clone().unwrap_or_else(|| tuning.optimiser.clone()),
-            budget: self.budget.unwrap_or(tuning.budget),
-            seed: self.seed.unwrap_or(tuning.seed),
+        let asked = AskedEffort {
+            optimiser: self.optimiser.clone(),
+            budget: self.budget,
+            seed: self.seed,
             population: self.population,
             anywhere: self.anywhere,
-        }
+        };
+        asked.of(problem.tuning())
     }
 }

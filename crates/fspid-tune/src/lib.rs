@@ -36,7 +36,7 @@ pub use error::TuneError;
 pub use kept::{Beginning, Kept, Then, Unfit};
 pub use problem::{TuningProblem, controllers_with_marks};
 pub use score::{FORBIDDEN, Score};
-pub use search::{Effort, Search, State, Trial, stop_in_words};
+pub use search::{AskedEffort, Effort, Search, State, Trial, stop_in_words};
 pub use source::Source;
 pub use space::Space;
 pub use tuned::{Number, Tuned};

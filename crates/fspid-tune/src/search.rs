@@ -6,6 +6,7 @@ use fspid_optimise::{
 };
 use fspid_scenario::count::{BUDGET, POPULATION};
 use fspid_scenario::file::known_words;
+use fspid_scenario::tuning::Tuning;
 use fspid_study::shell::word;
 use serde::{Deserialize, Serialize};
 
@@ -34,6 +35,35 @@ pub struct Effort {
     pub population: Option<usize>,
     /// Whether the first candidates lie anywhere, and not about the start.
     pub anywhere: bool,
+}
+
+/// What of an [`Effort`] was asked for; the rest is as the scenario says.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct AskedEffort {
+    /// Name of the optimiser.
+    pub optimiser: Option<String>,
+    /// Candidates that are flown, the start not counted.
+    pub budget: Option<usize>,
+    /// Seed of every random number.
+    pub seed: Option<u64>,
+    /// Candidates of a generation.
+    pub population: Option<usize>,
+    /// Whether the first candidates lie anywhere, and not about the start.
+    pub anywhere: bool,
+}
+
+impl AskedEffort {
+    /// With the scenario's own numbers where nothing was asked.
+    #[must_use]
+    pub fn of(&self, tuning: &Tuning) -> Effort {
+        Effort {
+            optimiser: self.optimiser.clone().unwrap_or_else(|| tuning.optimiser.clone()),
+            budget: self.budget.unwrap_or(tuning.budget),
+            seed: self.seed.unwrap_or(tuning.seed),
+            population: self.population,
+            anywhere: self.anywhere,
+        }
+    }
 }
 
 impl Effort {

@@ -18,8 +18,8 @@ use fspid_study::output;
 use fspid_tune::baseline::Baseline;
 use fspid_tune::rule::{Form, Options, Rule, Verdict};
 use fspid_tune::{
-    Beginning, Crew, Effort, Kept, Search, Source, Then, TuneError, Tuned, TuningProblem, design,
-    history,
+    AskedEffort, Beginning, Crew, Effort, Kept, Search, Source, Then, TuneError, Tuned,
+    TuningProblem, design, history,
 };
 
 /// How often the state of a search is saved.
@@ -239,14 +239,14 @@ fn failure(error: TuneError) -> Failure {
 }
 
 fn effort(arguments: &Arguments, problem: &TuningProblem) -> Effort {
-    let tuning = problem.tuning();
-    Effort {
-        optimiser: arguments.optimiser.clone().unwrap_or_else(|| tuning.optimiser.clone()),
-        budget: arguments.budget.unwrap_or(tuning.budget),
-        seed: arguments.seed.unwrap_or(tuning.seed),
+    let asked = AskedEffort {
+        optimiser: arguments.optimiser.clone(),
+        budget: arguments.budget,
+        seed: arguments.seed,
         population: arguments.population,
         anywhere: arguments.anywhere,
-    }
+    };
+    asked.of(problem.tuning())
 }
 
 /// Searches to the end; what was found, and the best point.

@@ -87,27 +87,8 @@ class Answer:
         return _as_html(self._native.text)
 
 
-class _Paged(Answer):
-    """An answer with a page that opens offline."""
-
-    _native: _core.Answer
-
-    @property
-    def figures(self) -> dict[str, str]:
-        """Every drawing of the page as SVG, by its title; a second one of the same title has its number behind it."""
-        import html
-        import re
-
-        found: dict[str, str] = {}
-        for number, drawing in enumerate(re.findall(r"<svg.*?</svg>", self._native.page or "", re.DOTALL)):
-            told = re.search(r"<title[^>]*>(.*?)</title>", drawing, re.DOTALL)
-            title = html.unescape(told.group(1)) if told else "drawing"
-            found[f"{title} ({number})" if title in found else title] = drawing
-        return found
-
-    def _repr_html_(self) -> str:
-        first = list(self.figures.values())[:_SHOWN]
-        return "".join(first) + _as_html(self._native.text)
+class _Saved(Answer):
+    """An answer with a report that can be kept."""
 
     def save(self, path: str | PathLike[str]) -> Path:
         """Write the report, one HTML file that opens offline.
@@ -132,6 +113,29 @@ class _Paged(Answer):
         target = Path(path)
         self._native.save_page(target)
         return target
+
+
+class _Paged(_Saved):
+    """An answer with a page that opens offline."""
+
+    _native: _core.Answer
+
+    @property
+    def figures(self) -> dict[str, str]:
+        """Every drawing of the page as SVG, by its title; a second one of the same title has its number behind it."""
+        import html
+        import re
+
+        found: dict[str, str] = {}
+        for number, drawing in enumerate(re.findall(r"<svg.*?</svg>", self._native.page or "", re.DOTALL)):
+            told = re.search(r"<title[^>]*>(.*?)</title>", drawing, re.DOTALL)
+            title = html.unescape(told.group(1)) if told else "drawing"
+            found[f"{title} ({number})" if title in found else title] = drawing
+        return found
+
+    def _repr_html_(self) -> str:
+        first = list(self.figures.values())[:_SHOWN]
+        return "".join(first) + _as_html(self._native.text)
 
 
 class Columns(Mapping[str, "_core.Column"]):
@@ -215,7 +219,7 @@ class Trace(Columns):
         return f"<Trace {self.name}: {self.verdict}; {rows} samples of {', '.join(self._columns)}>"
 
 
-class Flight(Answer, Mapping[str, Trace]):
+class Flight(_Saved, Mapping[str, Trace]):
     """A scenario that was flown: a :class:`Trace` for each controller."""
 
     _native: _core.Flight
@@ -258,30 +262,6 @@ class Flight(Answer, Mapping[str, Trace]):
     def svg(self) -> str:
         """The time response as a drawing."""
         return self._native.svg()
-
-    def save(self, path: str | PathLike[str]) -> Path:
-        """Write the report, one HTML file that opens offline.
-
-        Parameters
-        ----------
-        path : path-like
-            Where to.
-
-        Returns
-        -------
-        pathlib.Path
-            The file.
-
-        Raises
-        ------
-        FileError
-            It cannot be written; what was there is as it was.
-        InputError
-            It is a file that the answer is made of, such as the scenario.
-        """
-        target = Path(path)
-        self._native.save_page(target)
-        return target
 
     def plot(self, ax: Axes | None = None, column: str = "theta_deg") -> Axes:
         """Draw a column of every controller over time with matplotlib.

@@ -9,7 +9,9 @@ use fspid_campaign::report::{self, Envelope};
 use fspid_campaign::sample::Sampling;
 use fspid_campaign::summary::{self, Summary, SummarySettings};
 use fspid_campaign::table::{Cell, ColumnTable, Reader};
-use fspid_campaign::{CampaignError, Folder, Question, Range, Shards, local, rows};
+use fspid_campaign::{
+    CampaignError, Folder, Question, Range, Shards, USUAL_RUNS, USUAL_SEED, local, rows,
+};
 use fspid_diagnostics::digits::grouped;
 use fspid_scenario::count::RUNS;
 use serde_json::{Value, json};
@@ -21,8 +23,6 @@ use super::task::{Ended, Task};
 use crate::answer::Refusal;
 use crate::request::Fields;
 
-/// Runs and seed where nobody asks for others, as those of `fspid campaign run`.
-const DEFAULTS: (u64, u64) = (1000, 1);
 /// Measures of rows where nobody asks for others.
 const MEASURES: [&str; 4] =
     ["overshoot_pct", "settling_time_s", "iae_deg_s", "largest_command_deg"];
@@ -69,8 +69,8 @@ impl Campaign {
         }
         Ok(Self {
             overrides: options.texts("set")?,
-            runs: counted(options, "runs", RUNS)?.unwrap_or(DEFAULTS.0),
-            seed: options.whole("seed")?.unwrap_or(DEFAULTS.1),
+            runs: counted(options, "runs", RUNS)?.unwrap_or(USUAL_RUNS),
+            seed: options.whole("seed")?.unwrap_or(USUAL_SEED),
             sampling: Sampling::from_name(&sampling)
                 .ok_or_else(|| unknown("sampling", &sampling, &Sampling::NAMES))?,
             measures,
@@ -172,9 +172,10 @@ impl Teller<'_> {
                 );
             }
         }
-        let mut rest = std::mem::take(&mut self.rest);
-        rest.work(|| self.tell_spread());
-        self.rest = rest;
+        if let Some(began) = self.rest.is_over() {
+            self.tell_spread();
+            self.rest.begin(began);
+        }
         Ok(())
     }
 

@@ -6,62 +6,52 @@ use std::time::{Duration, Instant};
 const LEAST: Duration = Duration::from_millis(400);
 const TIMES: u32 = 10;
 
-/// When the next time may be.
+/// When the next time may be. Times are counted from its own beginning.
 #[derive(Debug)]
 pub(super) struct Rest {
     begun: Instant,
-    /// How long after the beginning; none before the first time.
-    next: Option<Duration>,
-}
-
-impl Default for Rest {
-    fn default() -> Self {
-        Self { begun: Instant::now(), next: None }
-    }
+    /// None before the first time.
+    over: Option<Duration>,
 }
 
 impl Rest {
     pub(super) fn new() -> Self {
-        Self::default()
+        Self { begun: Instant::now(), over: None }
     }
 
-    /// Works if it has rested long enough; the first time it has.
-    pub(super) fn work(&mut self, work: impl FnOnce()) {
-        let begun = self.begun;
-        self.work_by(|| begun.elapsed(), work);
+    /// The time, if it has rested long enough; the first time it has.
+    pub(super) fn is_over(&self) -> Option<Duration> {
+        self.is_over_at(self.begun.elapsed())
     }
 
-    /// As `work`, by a clock that says how long ago the beginning was.
-    fn work_by(&mut self, clock: impl Fn() -> Duration, work: impl FnOnce()) {
-        let before = clock();
-        if self.next.is_some_and(|next| before < next) {
-            return;
-        }
-        work();
-        let after = clock();
-        self.next = Some(after + LEAST.max(after.saturating_sub(before) * TIMES));
+    /// Rests from now on, after work that began then.
+    pub(super) fn begin(&mut self, work_began: Duration) {
+        self.begin_at(work_began, self.begun.elapsed());
+    }
+
+    fn is_over_at(&self, now: Duration) -> Option<Duration> {
+        self.over.is_none_or(|over| now >= over).then_some(now)
+    }
+
+    fn begin_at(&mut self, work_began: Duration, now: Duration) {
+        self.over = Some(now + LEAST.max(now.saturating_sub(work_began) * TIMES));
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use std::cell::Cell;
-
     use super::*;
 
     #[test]
     fn work_that_took_long_rests_longer() {
-        let passed = Cell::new(Duration::ZERO);
-        let pass = |ms| passed.set(passed.get() + Duration::from_millis(ms));
+        let ms = Duration::from_millis;
         let mut rest = Rest::new();
-        rest.work_by(|| passed.get(), || pass(60));
-        pass(599);
-        rest.work_by(|| passed.get(), || panic!("it rests for ten times as long"));
-        pass(1);
-        let again = Cell::new(false);
-        rest.work_by(|| passed.get(), || again.set(true));
-        assert!(again.get());
-        pass(399);
-        rest.work_by(|| passed.get(), || panic!("it rests for a moment at least"));
+        assert_eq!(rest.is_over_at(ms(5)), Some(ms(5)), "it has not worked yet");
+        rest.begin_at(ms(5), ms(65));
+        assert_eq!(rest.is_over_at(ms(664)), None, "ten times as long as it took");
+        assert_eq!(rest.is_over_at(ms(665)), Some(ms(665)));
+        rest.begin_at(ms(700), ms(701));
+        assert_eq!(rest.is_over_at(ms(1100)), None, "and for a moment at least");
+        assert_eq!(rest.is_over_at(ms(1101)), Some(ms(1101)));
     }
 }

@@ -4,7 +4,8 @@ use std::time::Duration;
 
 use fspid_scenario::count::{BUDGET, POPULATION};
 use fspid_tune::{
-    Beginning, Crew, Effort, Kept, Search, Then, Trial, Tuned, TuningProblem, Unfit, design,
+    AskedEffort, Beginning, Crew, Effort, Kept, Search, Then, Trial, Tuned, TuningProblem, Unfit,
+    design,
 };
 use serde_json::{Value, json};
 
@@ -24,11 +25,7 @@ const AT_ONCE: usize = 500;
 pub(super) struct Tune {
     pub(super) overrides: Vec<String>,
     controller: Option<String>,
-    optimiser: Option<String>,
-    budget: Option<usize>,
-    seed: Option<u64>,
-    population: Option<usize>,
-    anywhere: bool,
+    effort: AskedEffort,
 }
 
 impl Tune {
@@ -37,28 +34,19 @@ impl Tune {
         Ok(Self {
             overrides: options.texts("set")?,
             controller: options.text("controller")?,
-            optimiser: options.text("optimiser")?,
-            budget: whole(counted(options, "budget", BUDGET)?),
-            seed: options.whole("seed")?,
-            population: whole(counted(options, "population", POPULATION)?),
-            anywhere: options.flag("anywhere")?,
+            effort: AskedEffort {
+                optimiser: options.text("optimiser")?,
+                budget: whole(counted(options, "budget", BUDGET)?),
+                seed: options.whole("seed")?,
+                population: whole(counted(options, "population", POPULATION)?),
+                anywhere: options.flag("anywhere")?,
+            },
         })
-    }
-
-    fn effort(&self, problem: &TuningProblem) -> Effort {
-        let tuning = problem.tuning();
-        Effort {
-            optimiser: self.optimiser.clone().unwrap_or_else(|| tuning.optimiser.clone()),
-            budget: self.budget.unwrap_or(tuning.budget),
-            seed: self.seed.unwrap_or(tuning.seed),
-            population: self.population,
-            anywhere: self.anywhere,
-        }
     }
 
     pub(super) fn work(&self, task: &Task<'_>) -> Result<Value, Ended> {
         let problem = TuningProblem::new(&task.source, self.controller.as_deref())?;
-        let effort = self.effort(&problem);
+        let effort = self.effort.of(problem.tuning());
         let stops = || task.is_stopped();
         let mut place = Kept::at(Some(task.folder.join("state.json")), Unfit::Replaced);
         let (mut search, beginning) = place.begun(&problem, &effort, Crew::Here(&stops))?;
@@ -150,9 +138,10 @@ impl Teller<'_> {
             row["text"] = self.design(&best.point, &heading).into();
             self.task.tell("best", &row);
         }
-        let mut rest = std::mem::take(&mut self.rest);
-        rest.work(|| self.tell_front(search));
-        self.rest = rest;
+        if let Some(began) = self.rest.is_over() {
+            self.tell_front(search);
+            self.rest.begin(began);
+        }
     }
 
     /// Tells the trade-offs that nothing beats, where a front is searched and has changed.

@@ -101,6 +101,9 @@ impl Along {
     #[must_use]
     pub fn words(&self) -> String {
         let way = match self.direction {
+            Direction::Constant if self.steps == 0 => {
+                return format!("is not compared along {}", self.input);
+            }
             Direction::Constant => return format!("stays as it is along {}", self.input),
             Direction::Rising => "rises",
             Direction::Falling => "falls",

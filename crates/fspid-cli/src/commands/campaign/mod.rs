@@ -18,7 +18,7 @@ use super::external_controller::Beside;
 use crate::argument::{self, count};
 use crate::exit::{Failure, note};
 use fspid_campaign::sample::Sampling;
-use fspid_campaign::{Campaign, CampaignError, Folder, Question, Shards};
+use fspid_campaign::{Campaign, CampaignError, Folder, Question, Shards, USUAL_RUNS, USUAL_SEED};
 use fspid_scenario::count as counts;
 
 /// Fly a scenario many times with numbers drawn anew, and say how often it fails.
@@ -149,11 +149,6 @@ struct Planned {
     shard_runs: Option<u64>,
 }
 
-/// How many runs there are if nobody says.
-const RUNS: u64 = 1000;
-/// The seed if nobody says.
-const SEED: u64 = 1;
-
 impl Planned {
     /// An option that says something, if one does.
     fn given(&self) -> Option<&'static str> {
@@ -174,8 +169,8 @@ impl Planned {
         let question = Question {
             scenario,
             overrides: &overrides,
-            runs: self.runs.unwrap_or(RUNS),
-            seed: self.seed.unwrap_or(SEED),
+            runs: self.runs.unwrap_or(USUAL_RUNS),
+            seed: self.seed.unwrap_or(USUAL_SEED),
             sampling: self.sampling.unwrap_or(Spread::Random).into(),
             shards: self.shard_runs.map_or(cut, Shards::Of),
         };

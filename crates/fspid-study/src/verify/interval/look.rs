@@ -58,11 +58,13 @@ impl<'a> Looker<'a> {
 
     fn study(&self, value: f64) -> Result<Study, Problems> {
         let Question { text, name, folder, path } = self.question;
-        let parsed = |text: &str| file::parse(text, name, folder, &[]);
+        let with =
+            |value: String| file::parse(&changed_text(text, path, &value)?, name, folder, &[]);
         // A key that wants a whole number takes no other.
-        let written = [format!("{value:?}"), format!("{value:.0}")];
-        let [number, whole] = written.map(|value| parsed(&changed_text(text, path, &value)?));
-        number.or_else(|problems| if value.fract() == 0.0 { whole } else { Err(problems) })
+        with(format!("{value:?}")).or_else(|problems| match value.fract() == 0.0 {
+            true => with(format!("{value:.0}")),
+            false => Err(problems),
+        })
     }
 
     /// What is not met, a sentence each.
