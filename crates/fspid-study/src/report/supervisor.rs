@@ -226,10 +226,10 @@ fn component(delta: Increments<f64>, output: Output) -> f64 {
     }
 }
 
-/// What the supervisor adds at each pair of inputs, a row for each change.
+/// What the supervisor adds at each pair of inputs, a row for each error, as rule tables have it.
 fn answers(supervisor: &Supervisor<f64>, axis: &[f64]) -> Vec<Vec<Option<Increments<f64>>>> {
-    let row = |change: &f64| {
-        let delta = |error: &f64| supervisor.infer(*error, *change).ok().map(|i| i.delta);
+    let row = |error: &f64| {
+        let delta = |change: &f64| supervisor.infer(*error, *change).ok().map(|i| i.delta);
         axis.iter().map(delta).collect()
     };
     axis.iter().map(row).collect()
@@ -277,8 +277,8 @@ fn surface(
         |delta: &Option<Increments<f64>>| delta.map_or(f64::NAN, |delta| component(delta, output));
     Surface {
         title: format!("{symbol}, {name}"),
-        x_label: "error e".to_owned(),
-        y_label: "change of error ec".to_owned(),
+        x_label: "change of error ec".to_owned(),
+        y_label: "error e".to_owned(),
         z_label: symbol.to_owned(),
         xs: axis.to_vec(),
         ys: axis.to_vec(),
@@ -308,29 +308,15 @@ pub fn surfaces(
                 SurfaceKind::View => ("view", "the same, seen in space"),
                 SurfaceKind::Relief => ("relief", "in space and as a map"),
             };
-            // A map has the error on the side, as the rule tables have.
-            let figure = match kind {
-                SurfaceKind::Map => turned(&surface).render(*kind),
-                SurfaceKind::View | SurfaceKind::Relief => surface.render(*kind),
-            };
             let caption = format!("{plain} in supervisor units over both inputs; {how}.");
-            figures.push(Figure::new(format!("{prefix}-{letter}-{word}"), figure, caption));
+            figures.push(Figure::new(
+                format!("{prefix}-{letter}-{word}"),
+                surface.render(*kind),
+                caption,
+            ));
         }
     }
     figures
-}
-
-/// The same surface with its inputs in each other's place.
-fn turned(surface: &Surface) -> Surface {
-    let column = |at: usize| surface.values.iter().filter_map(|row| row.get(at).copied()).collect();
-    Surface {
-        x_label: surface.y_label.clone(),
-        y_label: surface.x_label.clone(),
-        xs: surface.ys.clone(),
-        ys: surface.xs.clone(),
-        values: (0..surface.xs.len()).map(column).collect(),
-        ..surface.clone()
-    }
 }
 
 /// What a supervisor adds at rest: kp, ki, kd.
