@@ -25,9 +25,26 @@ export interface Interval {
   text: string;
 }
 
-/** An answer, and the text that it is about; a refusal has its reason. */
+/** What an answer is about: the text, and the ready sets that are required too. */
+interface Asked {
+  text: string;
+  sets: string;
+}
+
+/** What would be asked now. */
+function asked(): Asked {
+  return { text: cockpit.text, sets: cockpit.sets.join(" ") };
+}
+
+/** True if it is about something else than what is shown. */
+export function isOld({ text, sets }: Asked): boolean {
+  const now = asked();
+  return text !== now.text || sets !== now.sets;
+}
+
+/** An answer, and what it is about; a refusal has its reason. */
 export interface Told {
-  of: string;
+  of: Asked;
   interval: Interval | null;
   refused: string;
 }
@@ -38,7 +55,7 @@ class Intervals {
   asking = $state("");
   done = $state(0);
   total = $state(0);
-  #of = "";
+  #of: Asked | null = null;
   #engine: Engine | null = null;
   #turn = 0;
 
@@ -46,16 +63,16 @@ class Intervals {
   async ask(paths: string[]): Promise<void> {
     this.stop();
     const turn = ++this.#turn;
-    const { text } = cockpit;
+    const [of, sets] = [asked(), [...cockpit.sets]];
     Object.assign(this, { done: 0, total: paths.length });
-    this.#of = text;
+    this.#of = of;
     for (const path of paths) {
       this.asking = path;
       const engine = (this.#engine ??= new Engine());
-      const { json } = await engine.ask("interval", { text, path });
+      const { json } = await engine.ask("interval", { text: of.text, path, sets });
       if (turn !== this.#turn) return;
       const refused = json.refused ?? json.problems?.[0]?.message ?? "";
-      this.told = { ...this.told, [path]: { of: text, interval: json.interval ?? null, refused } };
+      this.told = { ...this.told, [path]: { of, interval: json.interval ?? null, refused } };
       this.done += 1;
     }
     this.asking = "";
@@ -69,9 +86,9 @@ class Intervals {
     this.#engine = null;
   }
 
-  /** What is looked at is of no use for another text. */
-  follow(text: string): void {
-    if (this.asking && text !== this.#of) this.stop();
+  /** What is looked at is of no use for another text and other sets. */
+  follow(): void {
+    if (this.#of && isOld(this.#of)) this.stop();
   }
 }
 

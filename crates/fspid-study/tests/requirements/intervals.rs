@@ -10,7 +10,7 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use super::JUMBO;
 
 fn around(text: &str, path: &str) -> Interval {
-    let question = Question { text, name: "test.toml", folder: None, path };
+    let question = Question { text, name: "test.toml", folder: None, path, sets: &[] };
     interval(&question).unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -61,16 +61,18 @@ fn the_limits_of_a_key_end_the_interval_and_what_is_no_number_has_none() {
     assert!(matches!(refused, Some(Why::Refused(_) | Why::TooLong { .. })), "{refused:?}");
     assert!((above.holds - 0.4).abs() < 0.4 * TOLERANCE, "{}", found[0].text());
     for path in ["controller.P.name", "controller.Q.kp", "plant.numerator"] {
-        let question = Question { text: &text, name: "test.toml", folder: None, path };
+        let question = Question { text: &text, name: "test.toml", folder: None, path, sets: &[] };
         assert!(interval(&question).is_err(), "{path}");
     }
 }
 
 /// What `fspid verify --set path=value` says of a controller, or of all.
 fn verified(text: &str, path: &str, value: f64, controller: Option<&str>) -> bool {
-    let settings = [format!("{path}={value:?}")];
-    let question =
-        Verify { path: Path::new("test.toml"), settings: &settings, requirement_files: &[] };
+    verified_with(text, &[format!("{path}={value:?}")], controller)
+}
+
+fn verified_with(text: &str, settings: &[String], controller: Option<&str>) -> bool {
+    let question = Verify { path: Path::new("test.toml"), settings, requirement_files: &[] };
     let Ok(found) = verify_text(text.to_owned(), &question, &[]) else { return false };
     let is_asked = |of: &str| controller.is_none_or(|name| name == of);
     found.judgements.iter().filter(|it| is_asked(&it.controller)).all(|it| it.met)
@@ -123,4 +125,20 @@ fn where_nothing_is_required_the_loop_has_to_be_stable_and_settled() {
     let found = around(&kept, "controller.FSPID.nominal.kp");
     let is_known = found.holds() == (found.search.ends[0].holds < found.search.ends[1].holds);
     assert!(is_known, "{}", found.text());
+}
+
+#[test]
+fn ready_sets_are_required_of_every_value_as_verify_requires_them() {
+    let text = JUMBO.replace("duration_s = 20.0", "duration_s = 8.0");
+    let (path, sets) = ("controller.P.kp", ["ctms".to_owned()]);
+    let question = Question { text: &text, name: "test.toml", folder: None, path, sets: &sets };
+    let found = interval(&question).unwrap_or_else(|error| panic!("{error}"));
+    let alone = around(&text, path);
+    assert!(found.asked.requirements > alone.asked.requirements, "{}", found.text());
+    assert!(found.text().contains("with ctms"), "{}", found.text());
+    assert_eq!(found.json()["sets"], serde_json::json!(["ctms"]));
+    for (value, holds) in found.search.looks.iter().step_by(5) {
+        let settings = [sets[0].clone(), format!("{path}={value:?}")];
+        assert_eq!(verified_with(&text, &settings, Some("P")), *holds, "{path}={value}");
+    }
 }

@@ -63,10 +63,11 @@ pub(super) fn verify(question: &Question) -> Answered {
     }
 }
 
-/// In which interval a number keeps the requirements met.
+/// In which interval a number keeps the requirements met, those of ready sets that are ticked among them.
 pub(super) fn interval(question: &Question) -> Answered {
     let (text, path) = (question.text("text")?, question.text("path")?);
-    let asked = interval::Question { text, name: NAME, folder: None, path };
+    let sets = question.texts("sets");
+    let asked = interval::Question { text, name: NAME, folder: None, path, sets: &sets };
     match interval::interval(&asked) {
         Ok(found) => Ok(Answer::of(json!({ "interval": found.json() }))),
         Err(IntervalError::Problems(found)) => Err(wrong(&found)),

@@ -1,6 +1,6 @@
 //! Whether a scenario holds with another value.
 
-use fspid_scenario::file::{self, Problems, Study, changed_text};
+use fspid_scenario::file::{Extra, Problems, Study, changed_text, parse_with};
 use fspid_sim::SimError;
 
 use super::{Question, Why};
@@ -18,6 +18,8 @@ pub struct Asked {
     pub controller: Option<String>,
     /// How many requirements are judged; with none, stability at rest and settled steps are asked.
     pub requirements: usize,
+    /// Ready sets that are required too.
+    pub sets: Vec<String>,
 }
 
 /// Judges a scenario with one number changed.
@@ -33,8 +35,8 @@ impl<'a> Looker<'a> {
         question: &Question<'a>,
         controller: Option<String>,
     ) -> Result<Self, Problems> {
-        let study = file::parse(question.text, question.name, question.folder, &[])?;
-        let asked = Asked { controller, requirements: 0 };
+        let study = study_of(question, question.text)?;
+        let asked = Asked { controller, requirements: 0, sets: question.sets.to_vec() };
         let most_samples = ALWAYS.max(LONGER * study.scenario.timing.rows());
         Ok(Self { question: *question, most_samples, asked })
     }
@@ -57,9 +59,8 @@ impl<'a> Looker<'a> {
     }
 
     fn study(&self, value: f64) -> Result<Study, Problems> {
-        let Question { text, name, folder, path } = self.question;
-        let with =
-            |value: String| file::parse(&changed_text(text, path, &value)?, name, folder, &[]);
+        let Question { text, path, .. } = self.question;
+        let with = |value: String| study_of(&self.question, &changed_text(text, path, &value)?);
         // A key that wants a whole number takes no other.
         with(format!("{value:?}")).or_else(|problems| match value.fract() == 0.0 {
             true => with(format!("{value:.0}")),
@@ -91,6 +92,12 @@ impl<'a> Looker<'a> {
         }
         Ok(found)
     }
+}
+
+/// The study of a text, with the ready sets of the question.
+fn study_of(question: &Question<'_>, text: &str) -> Result<Study, Problems> {
+    let extra = Extra { sets: question.sets, ..Extra::default() };
+    parse_with(text, question.name, question.folder, &extra)
 }
 
 /// A requirement and what was found in its place.

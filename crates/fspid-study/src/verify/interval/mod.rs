@@ -7,7 +7,7 @@
 //! - *Grid*: distances from the present value that grow by $\sqrt 2$ from 1/16 to 8 times its size (1 if it is 0), rounded
 //!   to six digits, whole numbers to whole ones, so that every value that is told is one that was flown.
 //! - *Ends*: halved until they are within [`TOLERANCE`] of that size; whole numbers to neighbours.
-//! - *What has to hold*: every requirement, and no flight that fails by itself, as [`verify`](super::verify()) has it.
+//! - *What has to hold*: every requirement, those of ready sets that are asked for among them, and no flight that fails by itself, as [`verify`](super::verify()) has it.
 //!   Where nothing is required: the loop is stable at rest, and every step settles. Where stability at rest is undecided
 //!   nothing holds, whatever is required.
 //! - *Of whom*: of a number of a controller that controller alone is asked, of any other number all of them.
@@ -40,6 +40,8 @@ pub struct Question<'a> {
     pub folder: Option<&'a Path>,
     /// Where the number is, as [`paths_of`] tells it.
     pub path: &'a str,
+    /// Ready sets that are required too, with their choices, such as `mil-f-8785c:level=2`.
+    pub sets: &'a [String],
 }
 
 /// Why there is no interval.
@@ -136,6 +138,7 @@ impl Interval {
             "asked": self.asked.words(),
             "controller": self.asked.controller,
             "requirements": self.asked.requirements,
+            "sets": self.asked.sets,
             "within": self.within,
             "looked_at": looks.len(),
             "values": values,

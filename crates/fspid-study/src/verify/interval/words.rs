@@ -2,6 +2,7 @@
 
 use super::{Asked, Beyond, End, Interval, Why};
 use fspid_diagnostics::digits::to_digits;
+use fspid_diagnostics::listed;
 
 /// Most sentences that are told of one value.
 const MOST: usize = 3;
@@ -11,10 +12,14 @@ impl Asked {
     #[must_use]
     pub fn words(&self) -> String {
         let of = self.controller.as_deref().map_or("all controllers".to_owned(), str::to_owned);
+        let sets = match self.sets.as_slice() {
+            [] => String::new(),
+            sets => format!(", with {}", listed(sets)),
+        };
         match self.requirements {
             0 => format!("{of}: stable at rest and every step settled, as nothing is required"),
-            1 => format!("{of}: 1 requirement"),
-            many => format!("{of}: {many} requirements"),
+            1 => format!("{of}: 1 requirement{sets}"),
+            many => format!("{of}: {many} requirements{sets}"),
         }
     }
 }
