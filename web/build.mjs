@@ -1,6 +1,6 @@
 // The page in two forms: as files beside each other for a server, and as one file that works from disk.
+import { execFileSync } from "node:child_process";
 import { mkdirSync, readFileSync, rmSync, writeFileSync, copyFileSync } from "node:fs";
-import { gzipSync } from "node:zlib";
 import { build } from "vite";
 import { toLetters } from "./src/letters.mjs";
 import { svelte } from "@sveltejs/vite-plugin-svelte";
@@ -54,8 +54,9 @@ writeFileSync(
 
 // Nothing in a script may end the element that it stands in.
 const quiet = (source) => source.replaceAll("</script", "<\\/script").replaceAll("<!--", "<\\!--");
-const packed = (id, bytes) => {
-  const zipped = gzipSync(bytes, { level: 9 });
+// Zopfli looks longer for what gzip would find: one part in 25 less.
+const packed = (id, file) => {
+  const zipped = execFileSync("zopfli", ["-c", "--i5", file], { maxBuffer: 2 ** 26 });
   return `<script type="text/plain" id="${id}" data-bytes="${zipped.length}">${toLetters(zipped)}</script>`;
 };
 writeFileSync(
@@ -64,8 +65,8 @@ writeFileSync(
     style: `<style>${text("app.css")}</style>`,
     data: [
       `<script type="text/plain" id="fspid-worker">${quiet(text("worker.js"))}</script>`,
-      packed("fspid-app", text("app.js")),
-      packed("fspid-wasm", readFileSync("dist/fspid.wasm")),
+      packed("fspid-app", `${out}/app.js`),
+      packed("fspid-wasm", "dist/fspid.wasm"),
       "<!-- scenario -->",
     ].join("\n"),
     script: `<script>${quiet(text("first.js"))}</script>`,

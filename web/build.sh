@@ -9,7 +9,7 @@ set -euo pipefail
 cd "$(dirname "$0")"
 target=wasm32-unknown-unknown
 
-packages=(rustc-web rust-web-src binaryen)
+packages=(rustc-web rust-web-src binaryen zopfli)
 version() { dpkg-query --show --showformat='${db:Status-Status} ${Version}' "$1" 2>/dev/null || true; }
 for package in "${packages[@]}"; do
     [[ "$(version "$package")" == "installed "* ]] && continue

@@ -1,36 +1,50 @@
-// Bytes as letters that may stand in a page: five for four bytes, where base64 takes four for three.
+// Bytes as letters that may stand in a page: a letter for seven bits, where base64 takes one for six.
+//
+// Most values of seven bits are their own letter, of one byte in UTF-8. A value that may not stand in a page, or that a
+// terminal would obey, makes one letter of two bytes with the seven bits behind it, so that nothing is lost.
 
-/** 85 letters, without those that mean something in HTML or in a script. */
-const LETTERS = Array.from({ length: 94 }, (_, at) => String.fromCharCode(33 + at)).filter((it) => !"<&\\\"'`".includes(it)).slice(0, 85);
+/** Nothing, bell, back, tabulator, page, return, end of a file, escape, `&`, `<`, `>`, delete. */
+const KEPT_OUT = [0x00, 0x07, 0x08, 0x0b, 0x0c, 0x0d, 0x1a, 0x1b, 0x26, 0x3c, 0x3e, 0x7f];
+/** Behind the letters of one byte and their controls. */
+const FIRST_PAIR = 0xa0;
 
-/** Bytes as letters; zeros fill the last four bytes. */
+/** Bytes as letters; zeros fill the last seven bits. */
 export function toLetters(/** @type {Uint8Array} */ bytes) {
-  const padded = new Uint8Array(Math.ceil(bytes.length / 4) * 4);
-  padded.set(bytes);
-  const view = new DataView(padded.buffer);
-  let out = "";
-  for (let at = 0; at < padded.length; at += 4) {
-    let rest = view.getUint32(at);
-    let five = "";
-    for (let times = 0; times < 5; times += 1) {
-      five = LETTERS[rest % 85] + five;
-      rest = Math.floor(rest / 85);
-    }
-    out += five;
+  const values = new Uint8Array(Math.ceil((bytes.length * 8) / 7));
+  let [rest, bits, at] = [0, 0, 0];
+  for (const byte of bytes) {
+    rest = (rest << 8) | byte;
+    for (bits += 8; bits >= 7; bits -= 7) values[at++] = (rest >> (bits - 7)) & 0x7f;
+    rest &= 0x7f;
   }
-  return out;
+  if (bits > 0) values[at] = (rest << (7 - bits)) & 0x7f;
+  const out = [];
+  for (let at = 0; at < values.length; at += 1) {
+    const which = KEPT_OUT.indexOf(values[at] ?? 0);
+    out.push(String.fromCharCode(which < 0 ? (values[at] ?? 0) : FIRST_PAIR + 128 * which + (values[++at] ?? 0)));
+  }
+  return out.join("");
 }
 
 /** As many of the bytes as there were. */
 export function fromLetters(/** @type {string} */ text, /** @type {number} */ count) {
-  const values = new Uint8Array(128);
-  LETTERS.forEach((letter, value) => (values[letter.charCodeAt(0)] = value));
-  const padded = new Uint8Array((text.length / 5) * 4);
-  const view = new DataView(padded.buffer);
-  for (let at = 0; at < text.length; at += 5) {
-    let four = 0;
-    for (let times = 0; times < 5; times += 1) four = four * 85 + (values[text.charCodeAt(at + times)] ?? 0);
-    view.setUint32((at / 5) * 4, four);
+  const bytes = new Uint8Array(count);
+  let [rest, bits, to] = [0, 0, 0];
+  const take = (/** @type {number} */ value) => {
+    rest = ((rest << 7) | value) & 0x7fff;
+    bits += 7;
+    if (bits < 8) return;
+    bits -= 8;
+    // What lies beyond the end is left out.
+    bytes[to++] = rest >> bits;
+  };
+  for (let at = 0; at < text.length; at += 1) {
+    const pair = text.charCodeAt(at) - FIRST_PAIR;
+    if (pair < 0) take(pair + FIRST_PAIR);
+    else {
+      take(KEPT_OUT[pair >> 7] ?? 0);
+      take(pair & 0x7f);
+    }
   }
-  return padded.subarray(0, count);
+  return bytes;
 }

@@ -8,6 +8,11 @@ export function saved(name: string, content: string | Blob, type = "text/plain")
   setTimeout(() => URL.revokeObjectURL(url), 10_000);
 }
 
+/** Bytes that lie in a column, eight in each number. */
+export function bytesOf(column: Float64Array, count: number): Blob {
+  return new Blob([new Uint8Array(column.buffer as ArrayBuffer, column.byteOffset, count)], { type: "application/zip" });
+}
+
 /** A figure as pixels, twice as fine as it is drawn, on white. */
 export async function savedPng(name: string, svg: string): Promise<void> {
   const image = new Image();

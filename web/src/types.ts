@@ -25,6 +25,8 @@ export interface Summary {
   duration_s: number;
   requirements: { id: string; measure: string; controller: string | null; limits: string }[];
   paths: Place[];
+  /** What the page writes a controller as. */
+  targets: string[];
 }
 
 export interface Problem {

@@ -73,3 +73,8 @@ export const colour = (number: number): string => `--series-${number % 6}`;
 export function css(name: string): string {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim() || "#888";
 }
+
+/** As a shell takes it. */
+export function quoted(text: string): string {
+  return /^[\w.=+-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`;
+}

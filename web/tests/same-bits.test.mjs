@@ -2,11 +2,13 @@
 // program. Run by `web/test.sh`; FSPID names the program.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { mkdtempSync, readFileSync, readdirSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { before, test } from "node:test";
 import { fileURLToPath } from "node:url";
+import { inflateRawSync } from "node:zlib";
+import { fromLetters, toLetters } from "../src/letters.mjs";
 
 const root = fileURLToPath(new URL("../..", import.meta.url));
 const program = process.env.FSPID ?? join(root, "target/debug/fspid");
@@ -158,4 +160,64 @@ test("memory stands still, however often a scenario is flown", () => {
   const before = exports.memory.buffer.byteLength;
   for (let times = 0; times < 100; times += 1) ask({ verb: "fly", text });
   assert.equal(exports.memory.buffer.byteLength, before);
+});
+
+test("bytes come back from letters, of which none means something in a page", () => {
+  for (const count of [0, 1, 6, 7, 8, 255, 4096]) {
+    const bytes = Uint8Array.from({ length: count }, (_, at) => (at * 167 + (at >> 3)) & 0xff);
+    const letters = toLetters(bytes);
+    assert.doesNotMatch(letters, /[\0\r<>&\x1b\x7f]/);
+    assert.equal(Buffer.from(letters, "utf8").toString("utf8"), letters);
+    assert.deepEqual(fromLetters(letters, count), bytes);
+  }
+  // Every pair of values stands somewhere in them.
+  const all = Uint8Array.from({ length: 1 << 17 }, (_, at) => (at & 1 ? at >> 1 : at >> 9) & 0xff);
+  assert.deepEqual(fromLetters(toLetters(all), all.length), all);
+});
+
+/** The files of an archive. */
+function unpacked(archive) {
+  const files = new Map();
+  const bytes = Buffer.from(archive);
+  let at = 0;
+  while (bytes.readUInt32LE(at) === 0x04034b50) {
+    const [packed, name] = [bytes.readUInt32LE(at + 18), bytes.readUInt16LE(at + 26)];
+    const from = at + 30 + name + bytes.readUInt16LE(at + 28);
+    files.set(bytes.toString("utf8", at + 30, at + 30 + name), inflateRawSync(bytes.subarray(from, from + packed)));
+    at = from + packed;
+  }
+  return files;
+}
+
+/** Every file of a folder and of the folders in it. */
+function filesOf(folder) {
+  const all = readdirSync(folder, { recursive: true }).filter((name) => statSync(join(folder, name)).isFile());
+  return all.sort();
+}
+
+const exported = readFileSync(join(root, SCENARIOS[0]), "utf8");
+for (const target of ["c", "lua", "st", "rust", "simulink", "fmu2", "fmu3"]) {
+  test(`what the page writes as ${target} is what fspid export writes, byte for byte`, () => {
+    const folder = mkdtempSync(join(tmpdir(), "fspid-export-"));
+    try {
+      // A page has no compiler, so that its mock-up unit has no library.
+      execFileSync(program, ["export", SCENARIOS[0], "--controller", "FSPID", "--to", target, "--out", folder], { cwd: root, stdio: "ignore", env: { ...process.env, CC: "false" } });
+      const { json, columns } = ask({ verb: "export", text: exported, controller: "FSPID", target });
+      const files = unpacked(new Uint8Array(columns[json.archive.at].buffer, 0, json.archive.bytes));
+      assert.deepEqual([...files.keys()].sort(), filesOf(folder));
+      for (const [name, bytes] of files) assert.ok(bytes.equals(readFileSync(join(folder, name))), name);
+    } finally {
+      rmSync(folder, { recursive: true });
+    }
+  });
+}
+
+test("the page says itself what it writes, and refuses the rest with a way out", () => {
+  const { json } = ask({ verb: "open", text: exported });
+  assert.deepEqual(json.targets, ["c", "lua", "st", "rust", "simulink", "fmu2", "fmu3"]);
+  for (const target of ["matlab", "table"]) {
+    assert.match(ask({ verb: "export", text: exported, controller: "FSPID", target }).json.refused, /`fspid export` does/);
+  }
+  assert.match(ask({ verb: "export", text: exported, controller: "FSPID", target: "cobol" }).json.refused, /known are c, lua/);
+  assert.match(ask({ verb: "export", text: exported, controller: "Nobody", target: "c" }).json.refused, /no controller `Nobody`/);
 });

@@ -224,6 +224,13 @@ test("an interval is shown on its slider, by click and by key, and is of the old
   await page.keyboard.press("i");
   await told.locator("summary").waitFor();
   assert.equal(await number.locator(".band.old").count(), 0);
+  // Ready sets that are ticked are asked too.
+  await page.click("#tab-judge");
+  await page.getByRole("checkbox", { name: "ctms" }).check();
+  await number.locator(".band.old").waitFor();
+  await number.getByRole("button", { name: /in which interval does kp hold/ }).click();
+  await told.locator("summary").waitFor();
+  assert.match(await told.locator("p").textContent(), /requirements?, with ctms/);
   await close(page);
 });
 
@@ -309,6 +316,17 @@ test("Keep: there is a command for every target of an export, with what was chan
   await page.waitForFunction(() => document.querySelector('[data-export="c"]')?.innerText.includes("kp=2.25"));
   assert.match(await page.locator("[data-export=c]").innerText(), /^fspid export 747-pitch-step.toml --controller FSPID --to c --out fspid-c --set /);
   assert.equal(await page.locator("[data-export]").count(), 9);
+  const [code] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "save c", exact: true }).click()]);
+  assert.equal(code.suggestedFilename(), "fspid-c.zip");
+  const archive = readFileSync(await code.path());
+  assert.equal(archive.readUInt32LE(0), 0x04034b50);
+  assert.ok(archive.includes("fspid_selftest.c"));
+  await page.getByText(/fspid-c.zip is in the downloads: .*fspid.c, /).waitFor();
+  const mockup = page.getByRole("button", { name: "save fmu3" });
+  await mockup.focus();
+  const [unit] = await Promise.all([page.waitForEvent("download"), page.keyboard.press("Enter")]);
+  assert.equal(unit.suggestedFilename(), "fspid-fmu3.zip");
+  await page.getByText(/sources only: a page has no compiler/).waitFor();
   await page.locator("[data-test=export-controller]").selectOption("CPID");
   assert.equal(await page.locator("[data-export=table]").count(), 0);
   await page.getByRole("button", { name: "copy the command for fmu3" }).click();

@@ -151,7 +151,9 @@ fn exported<R: Real>(
         vectors: &vectors,
         code: &files,
     };
-    let has_evidence = request.evidence && request.target == Target::C;
+    // Nobody asks a page for it, which would be a quarter of what writes the code.
+    let is_there = !cfg!(target_family = "wasm");
+    let has_evidence = is_there && request.evidence && request.target == Target::C;
     let evidence = if has_evidence { evidence::files(&subject) } else { Vec::new() };
     Ok(Export { prefix: prefix.to_owned(), files, evidence, notes })
 }
@@ -162,13 +164,22 @@ pub(crate) fn written<R: Real>(target: Target, source: &Source<'_, R>) -> Result
     if target == Target::Table {
         return target.files(source);
     }
-    // The digits of a hundred thousand numbers take as long as all else.
+    let (written, csv) =
+        both(|| target.files(source), || write::csv(source.program, source.vectors));
+    let mut written = written?;
+    written.files.push(File::text("vectors.csv", csv));
+    Ok(written)
+}
+
+/// Two answers at once: the digits of a hundred thousand numbers take as long as all else.
+fn both<A, B: Send>(one: impl FnOnce() -> A, other: impl FnOnce() -> B + Send) -> (A, B) {
+    // A page has no threads.
+    if cfg!(target_family = "wasm") {
+        return (one(), other());
+    }
     thread::scope(|scope| {
-        let csv = scope.spawn(|| write::csv(source.program, source.vectors));
-        let mut written = target.files(source)?;
-        let csv = csv.join().unwrap_or_else(|panic| resume_unwind(panic));
-        written.files.push(File::text("vectors.csv", csv));
-        Ok(written)
+        let other = scope.spawn(other);
+        (one(), other.join().unwrap_or_else(|panic| resume_unwind(panic)))
     })
 }
 

@@ -27,3 +27,4 @@ pub use systems::{
     source_code, system_program, system_vectors,
 };
 pub use targets::{File, Target};
+pub use zip::archive;

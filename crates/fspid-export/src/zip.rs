@@ -15,8 +15,9 @@ const FLAGS: u16 = 1 << 11;
 /// Of deflate, as slow as it gets; an archive has some tens of kilobytes.
 const LEVEL: u8 = 10;
 
-/// The archive of these files, in this order.
-pub(crate) fn archive(files: &[File]) -> Vec<u8> {
+/// The archive of these files, in this order: the same bytes each time, every file dated 1980-01-01.
+#[must_use]
+pub fn archive(files: &[File]) -> Vec<u8> {
     let (mut bytes, mut directory) = (Vec::new(), Vec::new());
     for file in files {
         let packed = miniz_oxide::deflate::compress_to_vec(&file.bytes, LEVEL);

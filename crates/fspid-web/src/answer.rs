@@ -30,6 +30,16 @@ impl Answer {
         self.columns.len() - 1
     }
 
+    /// Keeps bytes as a column, eight in each number in the order in which they lie in memory, zeros behind the last.
+    pub(crate) fn keep_bytes(&mut self, bytes: &[u8]) -> usize {
+        let number = |eight: &[u8]| {
+            let mut all = [0; 8];
+            all[..eight.len()].copy_from_slice(eight);
+            f64::from_le_bytes(all)
+        };
+        self.keep(bytes.chunks(8).map(number).collect())
+    }
+
     /// As it lies in memory, all numbers little endian: the bytes of the JSON and the number of columns as two `u32`, the
     /// length of each column as `u32`, the JSON in UTF-8, zeros up to a multiple of eight, the columns as `f64`.
     #[must_use]
@@ -74,5 +84,15 @@ mod tests {
             [number(24).to_bits(), number(32).to_bits()],
             [1.5_f64.to_bits(), (-0.0_f64).to_bits()]
         );
+    }
+
+    #[test]
+    fn bytes_lie_in_a_column_as_they_were_with_zeros_behind_the_last() {
+        let mut answer = Answer::of(Value::Null);
+        let bytes: Vec<u8> = (0..=255).rev().chain([7]).collect();
+        let at = answer.keep_bytes(&bytes);
+        let back: Vec<u8> = answer.columns[at].iter().flat_map(|it| it.to_le_bytes()).collect();
+        assert_eq!(back.len(), 264);
+        assert_eq!((&back[..257], &back[257..]), (&bytes[..], &[0; 7][..]));
     }
 }

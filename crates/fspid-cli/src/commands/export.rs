@@ -12,15 +12,13 @@ use super::external_controller::leave_out;
 use super::{Format, json_text};
 use crate::argument::{Folder, InFile, count};
 use crate::exit::{Failure, note, print};
-use fspid_diagnostics::listed;
 use fspid_export::program::Precision;
 use fspid_export::table::is_sampled;
-use fspid_export::{Angles, Export, File, Request, Target, export_called, prefix, prefixes};
+use fspid_export::{Angles, Export, File, Target, prefix};
 use fspid_scenario::count as counts;
-use fspid_scenario::file::{self, Study};
+use fspid_scenario::file;
 use fspid_scenario::fuzzy_system;
-use fspid_scenario::tuning::TunableParameter;
-use fspid_sim::NamedController;
+use fspid_study::export::{Question, chosen, export};
 
 /// Write a controller or a fuzzy system in another language: the same bits as the simulator, with vectors that show it.
 ///
@@ -57,7 +55,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_enum, default_value_t = Unit::Radians)]
     angles: Unit,
     /// How many samples the vectors have.
-    #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = count::<u32>(&counts::SAMPLES))]
+    #[arg(long, value_name = "N", default_value_t = Question::SAMPLES, value_parser = count::<u32>(&counts::SAMPLES))]
     samples: u32,
     /// How many points a table has along each input: 6m + 1, so that the centres of the sets are among them; 49 if left
     /// out.
@@ -126,15 +124,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         note(format_args!("warning: {warning}"));
     }
     leave_out(&study.scenario, arguments.controller.as_deref())?;
-    let named = chosen(&study, arguments.controller.as_deref())?;
-    tuned(&study, &named.name)?;
-    let request = Request {
-        name: &named.name,
+    let named = chosen(&study, arguments.controller.as_deref()).map_err(Failure::input)?;
+    let asked = Question {
+        controller: Some(&named.name),
         target: arguments.to,
         precision: match arguments.numbers {
-            Some(Numbers::Single) => Precision::Single,
-            Some(Numbers::Double) => Precision::Double,
-            None => arguments.to.usual_precision(),
+            Some(Numbers::Single) => Some(Precision::Single),
+            Some(Numbers::Double) => Some(Precision::Double),
+            None => None,
         },
         angles: match arguments.angles {
             Unit::Radians => Angles::Radians,
@@ -142,17 +139,16 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         },
         samples: arguments.samples as usize,
         points: points(arguments)?,
-        digest: &study.digest,
+        prefix: arguments.prefix.as_deref(),
         evidence: evidence(arguments)?,
     };
     folders::check(arguments)?;
-    if request.target == Target::Table && is_sampled(&named.controller) {
+    if asked.target == Target::Table && is_sampled(&named.controller) {
         note(
             "the bound of a table with a sampled centre of gravity is proved in minutes, not seconds",
         );
     }
-    let called = called(arguments, &study, &named.name);
-    let exported = export_called(&named.controller, &request, &called).map_err(Failure::input)?;
+    let exported = export(&study, &asked).map_err(Failure::input)?;
     answer(arguments, ["controller", &named.name], &exported)
 }
 
@@ -181,43 +177,6 @@ fn answer(arguments: &Arguments, what: [&str; 2], exported: &Export) -> Result<(
 /// The file's name without its ending.
 fn file_stem(path: &Path) -> String {
     path.file_stem().map_or_else(|| "system".to_owned(), |stem| stem.to_string_lossy().into_owned())
-}
-
-/// What its code is called, which no other controller of the scenario is.
-fn called(arguments: &Arguments, study: &Study, name: &str) -> String {
-    let names: Vec<&str> = study.scenario.controllers.iter().map(|it| it.name.as_str()).collect();
-    let mut all = names.iter().zip(prefixes(&names)).filter(|(it, _)| **it == name);
-    let own = arguments.prefix.clone().or_else(|| all.next().map(|(_, prefix)| prefix));
-    own.unwrap_or_else(|| prefix(name))
-}
-
-/// The controller that is meant.
-fn chosen<'a>(study: &'a Study, name: Option<&str>) -> Result<&'a NamedController, Failure> {
-    let controllers = &study.scenario.controllers;
-    let names: Vec<&str> = controllers.iter().map(|named| named.name.as_str()).collect();
-    match (name, controllers.as_slice()) {
-        (None, [only]) => Ok(only),
-        (None, _) => Err(Failure::input(format_args!(
-            "--controller NAME is missing; the scenario flies {}",
-            listed(&names)
-        ))),
-        (Some(name), all) => all.iter().find(|named| named.name == name).ok_or_else(|| {
-            let known = file::known_words(name, &names);
-            Failure::input(format_args!("there is no controller `{name}`{known}"))
-        }),
-    }
-}
-
-/// Refuses a controller that is not tuned yet.
-fn tuned(study: &Study, name: &str) -> Result<(), Failure> {
-    let free = |mark: &&TunableParameter| mark.controller().is_none_or(|it| it == name);
-    match study.tunable_parameters.iter().find(free) {
-        None => Ok(()),
-        Some(mark) => Err(Failure::input(format_args!(
-            "{} is marked for tuning; `fspid tune FILE --out design.toml` writes a design, which can be exported",
-            mark.path.text()
-        ))),
-    }
 }
 
 /// The points of a table along an input; a table has no other digits and no other unit.

@@ -39,6 +39,9 @@ pub enum Refusal {
     /// A fuzzy system of its own, where a target is of controllers alone.
     #[error("this target is written of controllers alone; --to c writes a fuzzy system")]
     NoController,
+    /// What would make a page too large.
+    #[error("a page does not write this target; `fspid export` does")]
+    NotInPages,
     /// Nothing that a table could be of.
     #[error(
         "it has no supervisor, so that there is no surface to write as a table; allowed is a self-tuning controller"

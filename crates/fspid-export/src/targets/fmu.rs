@@ -36,6 +36,9 @@ fn library(
     sources: &[String],
     version: Version,
 ) -> Result<(String, Vec<u8>), String> {
+    if cfg!(target_family = "wasm") {
+        return Err("a page has no compiler".to_owned());
+    }
     let platform = version.platform().ok_or("FMI has no name for this machine")?;
     Ok((platform, shared_library(files, sources)?))
 }

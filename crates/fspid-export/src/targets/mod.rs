@@ -84,6 +84,13 @@ impl Target {
         }
     }
 
+    /// True if a page writes it too: what proves the bound of a table and what reads a `.fis` back would make the one file
+    /// too large.
+    #[must_use]
+    pub const fn is_in_pages(self) -> bool {
+        !matches!(self, Self::Matlab | Self::Table)
+    }
+
     /// True if its vectors hold more than steps.
     pub(crate) const fn has_events(self) -> bool {
         matches!(self, Self::C | Self::Lua)
@@ -97,6 +104,9 @@ impl Target {
             Self::StructuredText => return Ok(structured_text::files(source)),
             Self::Rust => rust::files(source)?,
             Self::Simulink => simulink::files(source)?,
+            _ if !self.is_in_pages() && cfg!(target_family = "wasm") => {
+                return Err(Refusal::NotInPages);
+            }
             Self::Matlab => return matlab::files(source),
             Self::Table => return table::files(source),
             Self::Fmu2 => return fmu::files(source, Version::Two),

@@ -1,5 +1,6 @@
 //! The verbs: one function each, one row in the list.
 
+mod export;
 mod figure;
 mod fly;
 mod judge;
@@ -19,7 +20,7 @@ type Answered = Result<Answer, Answer>;
 type Verb = (&'static str, fn(&Question) -> Answered);
 
 /// What can be asked.
-const VERBS: [Verb; 11] = [
+const VERBS: [Verb; 12] = [
     ("shipped", |_| Ok(open::shipped())),
     ("open", open::open),
     ("set", set),
@@ -31,6 +32,7 @@ const VERBS: [Verb; 11] = [
     ("shape", shape::shape),
     ("explain", explain),
     ("figure", figure::figure),
+    ("export", export::export),
 ];
 
 pub(crate) fn answer(question: &Question) -> Answer {

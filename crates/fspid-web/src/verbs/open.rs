@@ -1,5 +1,6 @@
 //! What there is to begin with, and what a scenario holds.
 
+use fspid_export::Target;
 use fspid_scenario::file::{self, STARTERS, Study, paths_json, paths_of};
 use fspid_sim::{Controller, Flyer};
 use serde_json::{Value, json};
@@ -42,6 +43,7 @@ pub(super) fn open(question: &Question) -> Answered {
         "duration_s": timing.end_s(),
         "requirements": requirements(&study),
         "paths": places["paths"],
+        "targets": Target::ALL.into_iter().filter(|it| it.is_in_pages()).map(Target::name).collect::<Vec<_>>(),
     })))
 }
 
