@@ -19,11 +19,15 @@ RUSTFLAGS="--cfg fuzzing -Cdebug-assertions -Cpasses=sancov-module -Cllvm-args=-
 tests="$PWD/../crates"
 made="$CARGO_TARGET_DIR/seeds" found="$CARGO_TARGET_DIR/found"
 rm -rf "$made" "$found"
-mkdir -p "$made"/{formula,toml,certificate,plan,state,csv} "$found"
+mkdir -p "$made"/{formula,toml,certificate,plan,state,csv,mavlink} "$found"
 echo 'max(0.5*x, error^2) - exp(-change)' >"$made/formula/one"
 cp "$tests"/fspid-scenario/src/file/templates/fuzzy-system.toml "$made/toml"
 printf 'a,b\n1,2\n-0.5,1e-3\n' >"$made/csv/one"
 printf 'a,b,"c,d"\n1,2,3\n-0.5,1e-3,"x"\n' >"$made/csv/two"
+packets="$tests/fspid-mavlink/tests/data/packets.jsonl" at=0
+for digits in $(grep -o '"packets": \[[^]]*' "$packets" | grep -o '[0-9a-f]\{16,\}' | sort -u); do
+    printf "$(sed 's/../\\x&/g' <<<"$digits")" >"$made/mavlink/$((at += 1))"
+done
 scenarios="$PWD/../scenarios"
 "$fspid" certify "$scenarios/747-pitch-step.toml" --out "$made/certificate" >/dev/null || true
 "$fspid" campaign plan "$scenarios/campaign.toml" --runs 50 --out "$made/plan" >/dev/null

@@ -10,6 +10,7 @@ mod fis;
 mod fll;
 mod fml;
 mod formula;
+mod mavlink;
 mod plan;
 mod scenario;
 mod state;
@@ -21,7 +22,7 @@ use std::sync::OnceLock;
 type Reader = fn(&[u8]) -> Option<()>;
 
 /// A module for each file in this folder but this one, by its name.
-const READERS: [(&str, Reader); 12] = [
+const READERS: [(&str, Reader); 13] = [
     ("certificate", certificate::read),
     ("csv", csv::read),
     ("daveml", daveml::read),
@@ -30,6 +31,7 @@ const READERS: [(&str, Reader); 12] = [
     ("fll", fll::read),
     ("fml", fml::read),
     ("formula", formula::read),
+    ("mavlink", mavlink::read),
     ("plan", plan::read),
     ("scenario", scenario::read),
     ("state", state::read),

@@ -22,6 +22,6 @@ pub(crate) fn health(app: &App) -> Value {
         "most_streams": limits.streams,
         "jobs": app.jobs.counts(),
         "panics": app.panics.load(Ordering::Relaxed),
-        "telemetry": app.telemetry.as_ref().map(|telemetry| telemetry.counts()),
+        "telemetry": app.telemetry.as_ref().map(|telemetry| telemetry.told()),
     })
 }

@@ -3,11 +3,12 @@
 //! ```text
 //! page ─HTTP on loopback▶ seats ▶ guard ▶ routes ─▶ scenarios of the folder (read, saved)
 //!                        64     403 401          ├▶ jobs on threads ─events▶ page
-//!                                                └▶ telemetry by UDP ─events▶ page
+//!                                                └▶ telemetry by UDP (JSON, MAVLink) ─events▶ page
 //! ```
 //!
 //! No features. Not here: any number of a flight (a job calls what the program's own commands call), the page itself
-//! (`web`), and sentences for a terminal (`fspid-cli`).
+//! (`web`), what messages of MAVLink mean
+//! (`fspid-mavlink`), and sentences for a terminal (`fspid-cli`).
 
 #![cfg_attr(
     test,

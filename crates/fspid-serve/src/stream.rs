@@ -78,7 +78,7 @@ impl Streams {
         let mut lines = telemetry.follow();
         Ok(streamed(|pieces| async move {
             let _open = open;
-            let begun = Event::new("begun", &lines.counts());
+            let begun = Event::new("begun", &lines.told());
             if pieces.send(begun.piece()).await.is_err() {
                 return;
             }

@@ -1,8 +1,11 @@
-//! Telemetry: lines of JSON that come by UDP to this machine, read and passed on. Nothing is ever sent back.
+//! Telemetry: lines of JSON, or MAVLink, that come by UDP to this machine, read and passed on. Nothing is ever sent back.
+//!
+//! The first byte of a packet says which: no line of JSON begins with those of MAVLink.
 
 use std::net::{Ipv4Addr, SocketAddr};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use fspid_mavlink::{Line, Listener, is_frame};
 use serde_json::{Map, Value, json};
 use tokio::net::UdpSocket;
 use tokio::sync::broadcast::error::{RecvError, TryRecvError};
@@ -35,6 +38,10 @@ struct Counts {
     bad: u64,
     /// What is wrong with the last bad one.
     last_bad: Option<String>,
+    /// What the last packet was.
+    form: Option<&'static str>,
+    /// What MAVLink has told.
+    mavlink: Option<fspid_mavlink::Counts>,
 }
 
 /// What is heard on a port.
@@ -52,19 +59,41 @@ impl Telemetry {
 
     /// Hears until it is dropped.
     pub(crate) async fn hear(self, socket: UdpSocket) {
-        let mut packet = vec![0; MOST_BYTES];
+        let (mut packet, mut mavlink) = (vec![0; MOST_BYTES], Listener::default());
         loop {
             // An answer of the system that nobody listens somewhere else is none about this socket.
             let Ok((length, _)) = socket.recv_from(&mut packet).await else { continue };
             let packet = packet.get(..length).unwrap_or_default();
-            let lines = packet.split(|byte| *byte == b'\n').map(<[u8]>::trim_ascii);
-            lines.filter(|line| !line.is_empty()).for_each(|line| self.take(line));
+            match is_frame(packet) {
+                true => self.take_frames(packet, &mut mavlink),
+                false => self.take_lines(packet),
+            }
         }
     }
 
-    fn take(&self, line: &[u8]) {
-        let read = checked(line);
-        let mut counts = self.counts.lock().unwrap_or_else(PoisonError::into_inner);
+    fn take_lines(&self, packet: &[u8]) {
+        self.counts().form = Some("json");
+        let lines = packet.split(|byte| *byte == b'\n').map(<[u8]>::trim_ascii);
+        lines.filter(|line| !line.is_empty()).for_each(|line| self.take(checked(line)));
+    }
+
+    fn take_frames(&self, packet: &[u8], mavlink: &mut Listener) {
+        let heard = mavlink.hear(packet);
+        {
+            let mut counts = self.counts();
+            (counts.form, counts.mavlink) = (Some("mavlink"), Some(mavlink.counts()));
+        }
+        heard.into_iter().for_each(|told| {
+            self.take(told.map(|line| as_json(&line)).map_err(|damage| damage.to_string()));
+        });
+    }
+
+    fn counts(&self) -> MutexGuard<'_, Counts> {
+        self.counts.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn take(&self, read: Result<Value, String>) {
+        let mut counts = self.counts();
         match read {
             Ok(line) => {
                 counts.lines += 1;
@@ -81,9 +110,12 @@ impl Telemetry {
     }
 
     /// What came so far, and where it comes to.
-    pub(crate) fn counts(&self) -> Value {
-        let counts = self.counts.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        json!({ "port": self.port, "lines": counts.lines, "bad": counts.bad, "last_bad": counts.last_bad })
+    pub(crate) fn told(&self) -> Value {
+        let counts = self.counts().clone();
+        json!({
+            "port": self.port, "lines": counts.lines, "bad": counts.bad, "last_bad": counts.last_bad,
+            "form": counts.form, "mavlink": counts.mavlink.as_ref().map(of_mavlink),
+        })
     }
 
     /// What comes from now on.
@@ -100,8 +132,8 @@ pub(crate) struct Following {
 }
 
 impl Following {
-    pub(crate) fn counts(&self) -> Value {
-        self.telemetry.counts()
+    pub(crate) fn told(&self) -> Value {
+        self.telemetry.told()
     }
 
     /// The lines that came since the last call, at least one, a bad one or one that was lost; none at the end.
@@ -119,13 +151,29 @@ impl Following {
                 Err(TryRecvError::Empty | TryRecvError::Closed) => break,
             }
         }
-        let mut told = self.counts();
+        let mut told = self.told();
         // They were read once already; a bad one stands there as an empty text.
         let read = |line: &Arc<str>| serde_json::from_str::<Value>(line).ok();
         told["lines"] = lines.iter().filter_map(read).collect::<Vec<_>>().into();
         told["lost"] = lost.into();
         Some(Event::new("telemetry", &told))
     }
+}
+
+/// `{frames, unused, others, system, component}`: who is followed, if somebody is.
+fn of_mavlink(counts: &fspid_mavlink::Counts) -> Value {
+    let followed = counts.followed;
+    json!({
+        "frames": counts.frames, "unused": counts.unused, "others": counts.others,
+        "system": followed.map(|it| it.system), "component": followed.map(|it| it.component),
+    })
+}
+
+fn as_json(line: &Line) -> Value {
+    line.iter()
+        .map(|(name, value)| ((*name).to_owned(), json!(value)))
+        .collect::<Map<_, _>>()
+        .into()
 }
 
 /// A line as it is passed on, or what is wrong with it.

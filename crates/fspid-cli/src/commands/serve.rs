@@ -36,7 +36,7 @@ mod present {
     /// and starts no program that a scenario names. Ctrl-C ends it, and its jobs with it; that is its good end, with code 0.
     #[derive(Debug, Args)]
     #[command(
-        after_help = "Examples:\n  fspid serve                                # the scenarios in and below this folder\n  fspid serve pitch.toml --port 0            # one scenario, on any port that is free\n  fspid serve --telemetry udp:14600          # with telemetry, a line of JSON a sample\n  fspid serve pitch.toml --export page.html  # the page with a scenario, in one file that needs no server"
+        after_help = "Examples:\n  fspid serve                                # the scenarios in and below this folder\n  fspid serve pitch.toml --port 0            # one scenario, on any port that is free\n  fspid serve --telemetry udp:14600          # with telemetry, JSON or MAVLink\n  fspid serve pitch.toml --export page.html  # the page with a scenario, in one file that needs no server"
     )]
     pub(crate) struct Arguments {
         /// A scenario, or a folder with some; this folder if left out.
@@ -49,7 +49,7 @@ mod present {
         /// reads along has the token.
         #[arg(long, value_name = "ADDRESS", default_value_t = IpAddr::V4(Ipv4Addr::LOCALHOST))]
         host: IpAddr,
-        /// Hear telemetry on this port of this machine: lines of JSON by UDP, such as {"time_s": 0.1, "measurement_deg": 1.2}.
+        /// Hear telemetry on this port of this machine: MAVLink, or lines of JSON by UDP such as {"time_s": 0.1, "measurement_deg": 1.2}.
         #[arg(long, value_name = "udp:PORT", value_parser = udp)]
         telemetry: Option<Udp>,
         /// Keep in this folder what jobs write, so that they go on with another server; without it, it goes with this one.
