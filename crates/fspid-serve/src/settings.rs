@@ -71,6 +71,8 @@ pub struct Limits {
     pub queue: usize,
     /// How long a job may run.
     pub job: Duration,
+    /// Memory that a job may take, in bytes.
+    pub job_bytes: u64,
 }
 
 impl Default for Limits {
@@ -86,6 +88,7 @@ impl Default for Limits {
             jobs: cores().saturating_sub(1).max(1),
             queue: 8,
             job: Duration::from_secs(12 * 3600),
+            job_bytes: 2 * 1024 * 1024 * 1024,
         }
     }
 }

@@ -269,6 +269,43 @@ fn a_job_that_may_not_take_so_long_is_ended_and_says_so() {
     assert!(end["reason"].as_str().is_some_and(|it| it.contains("a job may take")), "{end}");
 }
 
+/// Ten million samples are what a scenario may have at most.
+#[test]
+fn a_job_that_would_take_too_much_memory_is_refused_and_the_server_goes_on() {
+    let served = Served::new();
+    let long = json!(["loop.duration_s=99999.0"]);
+    for (kind, options) in [
+        ("tune", json!({ "budget": 8, "set": long })),
+        ("campaign", json!({ "runs": 8, "set": long })),
+        ("contest", json!({ "budget": 8, "seeds": 1, "set": long })),
+        (
+            "tune",
+            json!({ "budget": 8, "population": 1_000_000, "set": ["loop.duration_s=40000.0"] }),
+        ),
+    ] {
+        let events = served.followed(&served.begin(kind, options));
+        let (state, end) = ended(&events);
+        assert_eq!(state, "failed", "{kind}: {events:?}");
+        let reason = end["reason"].as_str().expect("a sentence");
+        assert!(reason.contains("would take some ") && reason.contains("2 048 MiB"), "{reason}");
+    }
+    let events = served.followed(&served.begin("tune", json!({ "budget": 4 })));
+    assert_eq!(ended(&events).0, "done", "{events:?}");
+}
+
+/// Other tests of this process take memory too, so that the limit is one that any growth reaches.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_job_whose_memory_grows_beyond_what_it_may_take_is_ended_and_the_server_goes_on() {
+    let served = Served::with(|settings| settings.limits.job_bytes = 8 << 20);
+    let events = served.followed(&served.begin("tune", endless()));
+    let (state, end) = ended(&events);
+    assert_eq!(state, "failed");
+    let reason = end["reason"].as_str().expect("a sentence");
+    assert!(reason.contains("grown by more than 8 MiB"), "{reason}");
+    assert_eq!(served.json("/api/health")["jobs"]["running"], json!(0));
+}
+
 #[test]
 fn what_is_no_job_is_refused_with_the_words_of_the_command_line() {
     let served = Served::new();

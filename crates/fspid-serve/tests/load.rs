@@ -48,6 +48,7 @@ fn the_deadlines_and_limits_that_nobody_changes_are_those_that_are_promised() {
     let limits = fspid_serve::Limits::default();
     assert_eq!((limits.head, limits.body), (Duration::from_secs(5), Duration::from_secs(30)));
     assert_eq!((limits.body_bytes, limits.connections, limits.streams), (1 << 20, 64, 16));
+    assert_eq!((limits.job, limits.job_bytes), (Duration::from_secs(12 * 3600), 2 << 30));
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     assert_eq!((limits.jobs, limits.queue), (cores.saturating_sub(1).max(1), 8));
 }

@@ -77,6 +77,11 @@ impl Campaign {
         })
     }
 
+    /// Runs that are held in memory together.
+    pub(super) fn runs_of_shard(&self) -> u64 {
+        self.runs.div_ceil(SHARDS).clamp(1, MOST_OF_SHARD)
+    }
+
     pub(super) fn work(&self, task: &Task<'_>) -> Result<Value, Ended> {
         let folder = Folder::new(&task.folder);
         let question = Question {
@@ -85,7 +90,7 @@ impl Campaign {
             runs: self.runs,
             seed: self.seed,
             sampling: self.sampling,
-            shards: Shards::Of(self.runs.div_ceil(SHARDS).clamp(1, MOST_OF_SHARD)),
+            shards: Shards::Of(self.runs_of_shard()),
         };
         let campaign = fspid_campaign::plan(&question, &folder)?;
         folder.put_plan(campaign.plan())?;

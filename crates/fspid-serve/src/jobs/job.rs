@@ -66,6 +66,7 @@ pub(crate) struct Job {
     log: Mutex<Log>,
     news: watch::Sender<()>,
     cancelled: AtomicBool,
+    outgrown: AtomicBool,
     /// How far a campaign is; it is stopped by this.
     pub(super) campaign: Progress,
 }
@@ -91,6 +92,7 @@ impl Job {
             log: Mutex::new(log),
             news: watch::Sender::new(()),
             cancelled: AtomicBool::new(false),
+            outgrown: AtomicBool::new(false),
             campaign: Progress::default(),
         }
     }
@@ -157,6 +159,16 @@ impl Job {
 
     pub(super) fn is_cancelled(&self) -> bool {
         self.cancelled.load(Ordering::Relaxed)
+    }
+
+    /// Has it stop, for it takes more memory than it may.
+    pub(super) fn outgrow(&self) {
+        self.outgrown.store(true, Ordering::Relaxed);
+        self.campaign.stop();
+    }
+
+    pub(super) fn is_outgrown(&self) -> bool {
+        self.outgrown.load(Ordering::Relaxed)
     }
 
     pub(super) fn is_over(&self) -> bool {

@@ -5,6 +5,7 @@ mod campaign;
 mod certify;
 mod contest;
 mod job;
+mod memory;
 mod place;
 mod rest;
 mod run;
@@ -16,7 +17,6 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
-use std::time::Duration;
 
 use serde_json::{Value, json};
 
@@ -27,7 +27,7 @@ pub(crate) use asked::Asked;
 pub(crate) use job::{Event, Job};
 pub(crate) use place::Place;
 pub(crate) use run::{report, run};
-use task::{Ended, Task};
+use task::{Bounds, Ended, Task};
 
 /// Jobs that have ended and can still be asked for.
 const REMEMBERED: usize = 32;
@@ -42,7 +42,7 @@ pub(crate) struct Jobs {
     place: Place,
     most: usize,
     queue: usize,
-    longest: Duration,
+    bounds: Bounds,
 }
 
 #[derive(Debug, Default)]
@@ -58,8 +58,9 @@ struct State {
 impl Jobs {
     pub(crate) fn new(place: Place, limits: &Limits) -> Arc<Self> {
         let (state, ended) = (Mutex::default(), Condvar::new());
-        let Limits { jobs: most, queue, job: longest, .. } = *limits;
-        Arc::new(Self { state, ended, place, most, queue, longest })
+        let Limits { jobs: most, queue, job: longest, job_bytes: bytes, .. } = *limits;
+        let bounds = Bounds { longest, bytes };
+        Arc::new(Self { state, ended, place, most, queue, bounds })
     }
 
     /// Begins a job on the scenario at a path, or puts it behind those that wait; its id.
@@ -108,7 +109,7 @@ impl Jobs {
             let place = self.place.path();
             let place =
                 place.map_err(|reason| Ended::failed(format_args!("no place: {reason}")))?;
-            Task::begin(job, asked, path, (&place, self.longest))?.work(&asked.work)
+            Task::begin(job, asked, path, (&place, self.bounds))?.work(&asked.work)
         };
         // What a job has seen in between is not looked at again.
         let ended = catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| {

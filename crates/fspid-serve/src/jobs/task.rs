@@ -12,6 +12,7 @@ use serde_json::{Value, json};
 
 use super::asked::{Asked, Work};
 use super::job::Job;
+use super::memory;
 use crate::scenarios::digest;
 
 /// How often progress is told.
@@ -85,17 +86,28 @@ impl From<OutputError> for Ended {
     }
 }
 
+/// What a job may take.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bounds {
+    /// Time.
+    pub(super) longest: Duration,
+    /// Memory.
+    pub(super) bytes: u64,
+}
+
 /// When a job shall stop.
 #[derive(Clone, Debug)]
 pub(super) struct Stopping {
     job: Arc<Job>,
     begun: Instant,
-    longest: Duration,
+    bounds: Bounds,
 }
 
 impl Stopping {
     pub(super) fn is_asked(&self) -> bool {
-        self.job.is_cancelled() || self.begun.elapsed() >= self.longest
+        self.job.is_cancelled()
+            || self.job.is_outgrown()
+            || self.begun.elapsed() >= self.bounds.longest
     }
 }
 
@@ -117,11 +129,12 @@ impl<'a> Task<'a> {
         job: &'a Arc<Job>,
         asked: &Asked,
         path: PathBuf,
-        (place, longest): (&Path, Duration),
+        (place, bounds): (&Path, Bounds),
     ) -> Result<Self, Ended> {
         let seen = text_digest(&path)?;
         let source = Source { path, overrides: asked.work.overrides().to_vec() };
         let study = file::load(&source.path, &source.overrides)?;
+        memory::check(&asked.work, &study, bounds.bytes)?;
         let all = format!("{:?} {}", asked.work, study.digest);
         let mut name = digest(all.as_bytes());
         name.truncate(16);
@@ -129,25 +142,28 @@ impl<'a> Task<'a> {
         output::make_folder(&folder)?;
         job.keeps_in(&folder);
         study.warnings.iter().for_each(|warning| job.tell("warning", &json!({ "text": warning })));
-        let stopping = Stopping { job: Arc::clone(job), begun: Instant::now(), longest };
+        let stopping = Stopping { job: Arc::clone(job), begun: Instant::now(), bounds };
         Ok(Self { job, source, study, folder, stopping, seen })
     }
 
     pub(super) fn work(&self, work: &Work) -> Result<Value, Ended> {
-        let done = match work {
+        let bytes = self.stopping.bounds.bytes;
+        let done = memory::watched(self.job, bytes, || match work {
             Work::Tune(tune) => tune.work(self),
             Work::Campaign(campaign) => campaign.work(self),
             Work::Contest(contest) => contest.work(self),
             Work::Certify(certify) => certify.work(self),
-        };
+        });
         match done {
-            Err(Ended::Cancelled) if !self.job.is_cancelled() => Err(self.too_long()),
+            Err(Ended::Cancelled) if self.job.is_cancelled() => Err(Ended::Cancelled),
+            Err(Ended::Cancelled) if self.job.is_outgrown() => Err(memory::too_large(bytes)),
+            Err(Ended::Cancelled) => Err(self.too_long()),
             done => done,
         }
     }
 
     fn too_long(&self) -> Ended {
-        let hours = self.stopping.longest.as_secs_f64() / 3600.0;
+        let hours = self.stopping.bounds.longest.as_secs_f64() / 3600.0;
         Ended::failed(format_args!("a job may take {hours} h here; the command line has no limit"))
     }
 

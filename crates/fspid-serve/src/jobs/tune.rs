@@ -44,6 +44,11 @@ impl Tune {
         })
     }
 
+    /// Candidates of a generation, where somebody has said how many.
+    pub(super) fn population(&self) -> u64 {
+        self.effort.population.map_or(0, |candidates| candidates as u64)
+    }
+
     pub(super) fn work(&self, task: &Task<'_>) -> Result<Value, Ended> {
         let problem = TuningProblem::new(&task.source, self.controller.as_deref())?;
         let effort = self.effort.of(problem.tuning());
