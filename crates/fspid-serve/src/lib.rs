@@ -23,6 +23,8 @@ mod guard;
 mod health;
 mod jobs;
 mod listen;
+#[doc(hidden)]
+pub mod offline;
 mod page;
 mod request;
 mod routes;

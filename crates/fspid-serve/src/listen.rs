@@ -10,10 +10,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use axum::Router;
+use hyper::rt::{Read, Write};
 use hyper::server::conn::http1;
 use hyper::service::service_fn;
 use hyper_util::rt::{TokioIo, TokioTimer};
-use tokio::net::{TcpListener, TcpStream};
+use tokio::net::TcpListener;
 use tokio::sync::Notify;
 
 use crate::app::App;
@@ -78,7 +79,7 @@ impl Seats {
 
     /// A place for a new connection. Where all are taken, that which is worth least has to go, of several the one that came
     /// first; none where all have shown the token.
-    fn take(&self) -> Option<Arc<Seat>> {
+    pub(crate) fn take(&self) -> Option<Arc<Seat>> {
         let mut taken = self.taken.lock().unwrap_or_else(PoisonError::into_inner);
         if taken.len() >= self.most {
             let least = taken.iter().enumerate().min_by_key(|(_, seat)| seat.worth());
@@ -107,12 +108,20 @@ pub(crate) async fn listen(listener: TcpListener, app: Arc<App>) {
         };
         // Who finds no place finds a closed connection.
         if let Some(seat) = app.seats.take() {
-            tokio::spawn(serve(stream, seat, (Arc::clone(&app), router.clone())));
+            tokio::spawn(serve(TokioIo::new(stream), seat, (Arc::clone(&app), router.clone())));
         }
+        // What it has sent already is read before the next one is let in: of many that come at once, the first would have
+        // to go for the last, unread.
+        tokio::task::yield_now().await;
     }
 }
 
-async fn serve(stream: TcpStream, seat: Arc<Seat>, (app, router): (Arc<App>, Router)) {
+/// Serves a connection until it is closed.
+pub(crate) async fn serve<S: Read + Write + Unpin>(
+    stream: S,
+    seat: Arc<Seat>,
+    (app, router): (Arc<App>, Router),
+) {
     let answer = |request| {
         let (app, seat, router) = (Arc::clone(&app), Arc::clone(&seat), router.clone());
         async move { Ok::<_, Infallible>(app.answer(request, seat, router).await) }
@@ -122,7 +131,7 @@ async fn serve(stream: TcpStream, seat: Arc<Seat>, (app, router): (Arc<App>, Rou
         .header_read_timeout(app.limits.head)
         .max_headers(MOST_HEADERS)
         .max_buf_size(MOST_HEAD)
-        .serve_connection(TokioIo::new(stream), service_fn(answer));
+        .serve_connection(stream, service_fn(answer));
     // How a client leaves is its own affair.
     let _ = first(connection, seat.leave.notified()).await;
     app.seats.free(&seat);

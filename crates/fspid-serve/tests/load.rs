@@ -104,6 +104,30 @@ fn with_five_hundred_slow_clients_a_person_is_answered() {
     served.until(|health| health["connections"] == json!(1));
 }
 
+/// While the server was at a large body, many came; all places then went to the last of them, and the first, whose question lay
+/// there unread, was closed without an answer.
+#[test]
+fn whoever_has_asked_is_answered_however_many_come_behind() {
+    let served = Served::new();
+    let body = format!("[{}0]", "0,".repeat(500_000));
+    let more = format!(
+        "Content-Type: application/json\r\nContent-Length: {}\r\nConnection: close\r\n\r\n{body}",
+        body.len()
+    );
+    let large = served.head("POST", "/api/jobs", &more);
+    for _ in 0..10 {
+        let mut busy = served.connect();
+        busy.write_all(large.as_bytes()).expect("sent");
+        let mut person = served.connect();
+        let asked = served.head("GET", "/api/health", "Connection: close\r\n\r\n");
+        person.write_all(asked.as_bytes()).expect("sent");
+        let behind: Vec<TcpStream> = (0..90).map(|_| served.connect()).collect();
+        assert_eq!(Answer::read(person).status, 200);
+        drop(behind);
+        assert_eq!(Answer::read(busy).status, 400);
+    }
+}
+
 #[test]
 fn clients_that_read_nothing_keep_nobody_away() {
     let page = vec![b'x'; 4 << 20];
