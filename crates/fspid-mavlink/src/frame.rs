@@ -108,7 +108,7 @@ impl<'a> Iterator for Frames<'a> {
 type Parts<'a> = (Frame<'a>, &'a [u8], u16);
 
 fn v1(packet: &[u8]) -> Result<(Parts<'_>, &[u8]), Damage> {
-    let (head, payload, rest) = parted(packet, HEAD_V1, 0)?;
+    let [head, payload, rest] = parted(packet, HEAD_V1, 0)?;
     let (system, component, id) = match head {
         [.., system, component, id] => (*system, *component, u32::from(*id)),
         _ => return Err(cut_off(HEAD_V1, packet)),
@@ -122,7 +122,7 @@ fn v2(packet: &[u8]) -> Result<(Parts<'_>, &[u8]), Damage> {
         return Err(Damage::Flags { flags });
     }
     let signature = if flags == SIGNED { SIGNATURE } else { 0 };
-    let (head, payload, rest) = parted(packet, HEAD_V2, signature)?;
+    let [head, payload, rest] = parted(packet, HEAD_V2, signature)?;
     let (system, component, id) = match head {
         [.., system, component, low, middle, high] => {
             (*system, *component, u32::from_le_bytes([*low, *middle, *high, 0]))
@@ -134,7 +134,7 @@ fn v2(packet: &[u8]) -> Result<(Parts<'_>, &[u8]), Damage> {
 }
 
 /// Head, payload, and what follows the payload; the whole frame is there.
-fn parted(packet: &[u8], head: usize, signature: usize) -> Result<(&[u8], &[u8], &[u8]), Damage> {
+fn parted(packet: &[u8], head: usize, signature: usize) -> Result<[&[u8]; 3], Damage> {
     let length = packet.get(1).copied().map_or(0, usize::from);
     let needed = head + length + CHECKSUM + signature;
     if packet.len() < needed {
@@ -142,7 +142,7 @@ fn parted(packet: &[u8], head: usize, signature: usize) -> Result<(&[u8], &[u8],
     }
     let (head, behind) = packet.split_at(head);
     let (payload, rest) = behind.split_at(length);
-    Ok((head, payload, rest))
+    Ok([head, payload, rest])
 }
 
 fn cut_off(needed: usize, packet: &[u8]) -> Damage {
