@@ -19,7 +19,7 @@ RUSTFLAGS="--cfg fuzzing -Cdebug-assertions -Cpasses=sancov-module -Cllvm-args=-
 tests="$PWD/../crates"
 made="$CARGO_TARGET_DIR/seeds" found="$CARGO_TARGET_DIR/found"
 rm -rf "$made" "$found"
-mkdir -p "$made"/{formula,toml,certificate,plan,state,csv,mavlink} "$found"
+mkdir -p "$made"/{formula,toml,certificate,plan,state,csv,mavlink,server} "$found"
 echo 'max(0.5*x, error^2) - exp(-change)' >"$made/formula/one"
 cp "$tests"/fspid-scenario/src/file/templates/fuzzy-system.toml "$made/toml"
 printf 'a,b\n1,2\n-0.5,1e-3\n' >"$made/csv/one"
@@ -28,6 +28,28 @@ packets="$tests/fspid-mavlink/tests/data/packets.jsonl" at=0
 for digits in $(grep -o '"packets": \[[^]]*' "$packets" | grep -o '[0-9a-f]\{16,\}' | sort -u); do
     printf "$(sed 's/../\\x&/g' <<<"$digits")" >"$made/mavlink/$((at += 1))"
 done
+# What the page asks, of the one scenario that the target's server has; its id is that of its name.
+token=0123456789abcdef0123456789abcdef
+id="$(printf mine.toml | sha256sum | cut -c1-32)"
+digest="$(printf 'schema = 1\nname = "KEPT-TO-ITSELF"\n' | sha256sum | cut -c1-64)"
+asks() {
+    printf '%s HTTP/1.1\r\nHost: 127.0.0.1:8000\r\nX-Fspid-Token: %s\r\nContent-Type: application/json\r\nContent-Length: %d\r\n\r\n%s' \
+        "$1" "$token" "${#2}" "$2"
+}
+printf 'GET / HTTP/1.1\r\nHost: localhost:8000\r\n\r\n' >"$made/server/page"
+for path in health scenarios "scenarios/$id" jobs jobs/1/events jobs/1/runs/0 jobs/1/report telemetry/events; do
+    asks "GET /api/$path" "" >"$made/server/${path//\//-}"
+done
+job="{\"kind\":\"tune\",\"id\":\"$id\",\"options\":{\"budget\":8,\"seed\":3,\"set\":[\"loop.duration_s=4.0\"]}}"
+campaign="{\"kind\":\"campaign\",\"id\":\"$id\",\"options\":{\"runs\":8,\"measures\":[\"iae_deg_s\"],\"sampling\":\"random\"}}"
+asks "PUT /api/scenarios/$id" "{\"text\":\"schema = 1\",\"digest\":\"$digest\"}" >"$made/server/save"
+{
+    asks "POST /api/jobs" "$job"
+    asks "POST /api/jobs" "$campaign"
+    asks "GET /api/jobs" ""
+    asks "DELETE /api/jobs/1" ""
+    asks "GET /api/jobs/1/events" ""
+} >"$made/server/jobs-of-a-person"
 scenarios="$PWD/../scenarios"
 "$fspid" certify "$scenarios/747-pitch-step.toml" --out "$made/certificate" >/dev/null || true
 "$fspid" campaign plan "$scenarios/campaign.toml" --runs 50 --out "$made/plan" >/dev/null

@@ -13,6 +13,7 @@ mod formula;
 mod mavlink;
 mod plan;
 mod scenario;
+mod server;
 mod state;
 mod toml;
 
@@ -22,7 +23,7 @@ use std::sync::OnceLock;
 type Reader = fn(&[u8]) -> Option<()>;
 
 /// A module for each file in this folder but this one, by its name.
-const READERS: [(&str, Reader); 13] = [
+const READERS: [(&str, Reader); 14] = [
     ("certificate", certificate::read),
     ("csv", csv::read),
     ("daveml", daveml::read),
@@ -34,6 +35,7 @@ const READERS: [(&str, Reader); 13] = [
     ("mavlink", mavlink::read),
     ("plan", plan::read),
     ("scenario", scenario::read),
+    ("server", server::read),
     ("state", state::read),
     ("toml", toml::read),
 ];
