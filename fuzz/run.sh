@@ -31,7 +31,7 @@ done
 # What the page asks, of the one scenario that the target's server has; its id is that of its name.
 token=0123456789abcdef0123456789abcdef
 id="$(printf mine.toml | sha256sum | cut -c1-32)"
-digest="$(printf 'schema = 1\nname = "KEPT-TO-ITSELF"\n' | sha256sum | cut -c1-64)"
+digest="$(printf 'schema = 1\nname = "KEPT-TO-ITSELF"\n[[controller]]\nname = "PID"\n' | sha256sum | cut -c1-64)"
 asks() {
     printf '%s HTTP/1.1\r\nHost: 127.0.0.1:8000\r\nX-Fspid-Token: %s\r\nContent-Type: application/json\r\nContent-Length: %d\r\n\r\n%s' \
         "$1" "$token" "${#2}" "$2"

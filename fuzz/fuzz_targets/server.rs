@@ -10,7 +10,7 @@ use tokio::runtime::{Builder, Runtime};
 
 /// The token, and what stands in the scenario of the folder: seeds know both, and answers may tell what they hold.
 const TOKEN: &str = "0123456789abcdef0123456789abcdef";
-const TEXT: &str = "schema = 1\nname = \"KEPT-TO-ITSELF\"\n";
+const TEXT: &str = "schema = 1\nname = \"KEPT-TO-ITSELF\"\n[[controller]]\nname = \"PID\"\n";
 
 /// Longer than every deadline of the server, and shorter than a stream: time goes on by itself where nobody works.
 const PATIENCE: Duration = Duration::from_secs(120);
