@@ -152,7 +152,7 @@ test("an entry of the legend switches its curve by mouse and by keys, and paper 
   await close(page);
 });
 
-test("a curve that runs to and fro is read at its nearest point, and its picture is enlarged", async () => {
+test("a curve that runs to and fro is read at its nearest point", async () => {
   const page = await opened("loop.html");
   const figure = page.locator("#nyquist");
   const at = await figure.locator('[data-curve="0"] path').first().evaluate((line) => {
@@ -162,10 +162,98 @@ test("a curve that runs to and fro is read at its nearest point, and its picture
   });
   await page.mouse.move(at.x, at.y);
   assert.match(await figure.locator(".reading").innerText(), /imaginary part PC \(.+, .+\)/);
-  const before = await figure.locator("svg").getAttribute("viewBox");
-  await figure.getByRole("button", { name: /^Enlarge/ }).click();
-  assert.notEqual(await figure.locator("svg").getAttribute("viewBox"), before);
   await close(page);
+});
+
+/** The numbers that stand at an axis, as they are shown. */
+const ticks = (figure, anchor) =>
+  figure.locator(`[data-panel] text[text-anchor="${anchor}"]`).evaluateAll((all) => all.filter((text) => !text.closest("[style*=none]")).map((text) => text.textContent));
+async function dragged(page, figure, from, to) {
+  const [a, b] = [await onScreen(figure, ...from), await onScreen(figure, ...to)];
+  await page.mouse.move(a.x, a.y);
+  await page.mouse.down();
+  await page.mouse.move(b.x, b.y, { steps: 5 });
+  await page.mouse.up();
+}
+
+test("Bode, Nyquist and Nichols figures that are enlarged have round ticks, words that can be read, and say what they show", async () => {
+  const page = await opened("loop.html");
+  const isRound = (text) => /^\u2212?(0|0?\.?0*[1-9]\d?0*|\d+\.\d+|\d+)$/.test(text);
+  for (const [id, from, to] of [["bode", [0.3, 0.2], [0.6, 0.9]], ["nyquist", [0.3, 0.3], [0.6, 0.6]], ["nichols", [0.3, 0.3], [0.7, 0.8]]]) {
+    const figure = page.locator(`#${id}`);
+    const before = [await ticks(figure, "middle"), await ticks(figure, "end")];
+    const size = () => figure.locator("[data-of] text").first().evaluate((text) => text.getBoundingClientRect().height);
+    const wordsBefore = await size();
+    await dragged(page, figure, from, to);
+    const after = [await ticks(figure, "middle"), await ticks(figure, "end")];
+    assert.notDeepEqual(after, before, id);
+    assert.ok(after.every((all) => all.length >= 3 && all.every(isRound)), `${id}: ${after.join(" | ")}`);
+    assert.ok(Math.abs((await size()) - wordsBefore) < 1, `${id}: words stay as large as they are`);
+    assert.match(await figure.locator(".tools output").innerText(), /^shows \S.* to .*, \S.* to /);
+    assert.equal(await figure.locator("svg").getAttribute("viewBox"), await figure.locator("svg").evaluate((svg) => `0 0 ${svg.getAttribute("width")} ${svg.getAttribute("height")}`), "no picture is enlarged");
+    await page.keyboard.press("Escape");
+    assert.deepEqual([await ticks(figure, "middle"), await ticks(figure, "end")], before, `${id} after Escape`);
+    assert.equal(await figure.locator(".tools output").innerText(), "");
+    await dragged(page, figure, from, to);
+    const middle = await onScreen(figure, 0.5, 0.5);
+    await page.mouse.dblclick(middle.x, middle.y);
+    assert.deepEqual([await ticks(figure, "middle"), await ticks(figure, "end")], before, `${id} after a double click`);
+  }
+  await close(page);
+});
+
+test("an enlarged curve over a logarithmic axis runs through the values that it is read at", async () => {
+  const page = await opened("loop.html");
+  const figure = page.locator("#bode");
+  await dragged(page, figure, [0.3, 0.2], [0.6, 0.9]);
+  const at = await onScreen(figure, 0.5, 0.5);
+  await page.mouse.move(at.x, at.y);
+  const [mark] = await figure.locator("circle.mark").evaluateAll((all) => all.map((one) => { const box = one.getBoundingClientRect(); return [box.x + box.width / 2, box.y + box.height / 2]; }));
+  const away = await figure.locator("[data-curve] path").evaluateAll((all, [x, y]) => Math.min(...all.map((line) => {
+    let least = Infinity;
+    for (let part = 0; part <= 2000; part += 1) {
+      const point = line.getPointAtLength((line.getTotalLength() * part) / 2000).matrixTransform(line.getScreenCTM());
+      least = Math.min(least, Math.hypot(point.x - x, point.y - y));
+    }
+    return least;
+  })), mark);
+  assert.ok(away < 3, `the mark is ${away} px from every curve`);
+  // Both panels have one frequency.
+  assert.match(await figure.locator(".reading").innerText(), /frequency \[rad\/s\] 0\.5.*open-loop gain \[dB\] PC .*open-loop phase \[deg\] PC/s);
+  await close(page);
+});
+
+test("bins, bands, points and cells are read under the pointer and by arrow keys, with their values and words", async () => {
+  const page = await opened("campaign.html");
+  await page.evaluate(() => document.querySelectorAll("details").forEach((one) => (one.open = true)));
+  const read = async (id, x, y) => {
+    const figure = page.locator(`#${id}`);
+    const at = await onScreen(figure, x, y);
+    await page.mouse.move(at.x, at.y);
+    return (await figure.locator(".reading").innerText()).replace(/\s+/g, " ");
+  };
+  const pressed = async (id, key) => {
+    await page.locator(`#${id} .drawing`).focus();
+    await page.keyboard.press(key);
+    return (await page.locator(`#${id} .reading`).innerText()).replace(/\s+/g, " ");
+  };
+  assert.match(await read("overshoot-pct", 0.3, 0.5), /^overshoot \[%\] [\d.]+ CPID: runs \d+ of 60, [\d.]+ % \([\d.]+ to [\d.]+\) FSPID: runs \d+ of 60/);
+  const [first, second] = [await pressed("overshoot-pct", "ArrowRight"), await pressed("overshoot-pct", "ArrowRight")];
+  assert.notEqual(first, second, "an arrow leads to the next bin");
+  assert.match(await read("responses-pitch", 0.2, 0.5), /^time \[s\] 10\.0 CPID: pitch angle \[deg\] all [\d.]+ to [\d.]+ · 5 to 95 % [\d.]+ to .* median [\d.]+ .*FSPID: pitch angle/);
+  assert.match(await pressed("runs-0", "ArrowRight"), /^short_period_stiffness [\d.]+ short_period_damping [\d.]+ run \d+ \S/);
+  const [stiffness, damping, run] = numbers(await pressed("runs-0", "ArrowRight"));
+  const { parameters } = JSON.parse(execFileSync(FSPID, ["campaign", "replay", "run", "--run", String(run), "--format", "json"], { cwd: folder, encoding: "utf8" }));
+  assert.ok(Math.abs(parameters.short_period_stiffness - stiffness) < 0.002 && Math.abs(parameters.short_period_damping - damping) < 0.003, `run ${run} is read at ${stiffness}, ${damping}`);
+  assert.match(await read("map-0-0", 0.3, 0.3), /^short_period_stiffness [\d.]+ to [\d.]+ short_period_damping [\d.]+ to [\d.]+ .* \d+ of \d+, [\d.]+ %$/);
+  assert.equal(await page.locator("#map-0-0 .tools button").count(), 0, "what is not enlarged has no buttons for it");
+  await close(page);
+  const loop = await opened("loop.html");
+  const map = loop.locator("#frozen-fspid-phase-margin");
+  const at = await onScreen(map, 0.4, 0.4);
+  await loop.mouse.move(at.x, at.y);
+  assert.match((await map.locator(".reading").innerText()).replace(/\s+/g, " "), /^change of error \[supervisor units\] \u22121\.25 error \[supervisor units\] \u22121\.25 phase margin \[deg\] \d+, less than required$/);
+  await close(loop);
 });
 
 test("without scripts a report is complete, and has no buttons that do nothing", async () => {

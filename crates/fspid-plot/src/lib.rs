@@ -11,6 +11,7 @@ mod axis;
 mod campaign;
 mod conclusion;
 mod contour;
+mod cursor;
 pub mod diagrams;
 mod gaps;
 mod line;

@@ -1,9 +1,9 @@
 //! A plot area with its axes: grid, ticks, tolerance bands, lines of reference, curves and markers.
 
 use super::axis::Axis;
+use super::cursor;
 use super::style::{Role, SeriesStyle};
 use super::svg::{Anchor, Canvas, Font, Paint, Rect};
-use super::text::num;
 use super::thin;
 
 /// Marks grid lines, ticks and their numbers: what a script puts others in place of.
@@ -117,14 +117,8 @@ pub(super) fn draw(canvas: &mut Canvas, frame: &Frame, content: &Content) {
 
 /// Where the panel is and what its axes span: what a script needs to read values off the drawing.
 fn data(frame: &Frame, is_all: bool) -> String {
-    let Rect { x, y, width, height } = frame.area;
-    let place = [x, y, width, height].map(num).join(" ");
     let all = if is_all { " data-all=\"\"" } else { "" };
-    format!(
-        "data-panel=\"{place}\" data-x=\"{}\" data-y=\"{}\"{all}",
-        frame.x.data(),
-        frame.y.data()
-    )
+    cursor::panel(frame.area, &frame.x, &frame.y) + all
 }
 
 /// Whole tick units within a range.

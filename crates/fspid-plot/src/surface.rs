@@ -2,6 +2,7 @@
 
 use super::axis::{Axis, extent, short_number};
 use super::contour::Grid;
+use super::cursor::{self, Cells};
 use super::gaps;
 use super::page::{self, EDGE, LABEL_PX};
 use super::plot::TICK_PX;
@@ -212,6 +213,7 @@ impl Surface {
         self.paint_map(canvas, &grid, &z);
         canvas.end();
         map_axes(canvas, area, &x, &y);
+        self.read(canvas, &cursor::panel(area, &x, &y));
         if hatched {
             gaps::crosses(canvas, &grid);
         }
@@ -228,6 +230,18 @@ impl Surface {
             let y = bar.y + (1.0 - z.fraction(level)) * bar.height;
             canvas.line((bar.x, y), (bar.x + bar.width, y), &level_line(level, z.step()));
         }
+    }
+
+    /// What a cursor reads of each node.
+    fn read(&self, canvas: &mut Canvas, panel: &str) {
+        let Some((lo, hi)) = self.extent() else { return };
+        let (columns, rows) = (&self.xs, &self.ys);
+        let value = |i: usize, j: usize| {
+            self.values.get(i).and_then(|row| row.get(j)).copied().unwrap_or(f64::NAN)
+        };
+        let all = (0..rows.len()).flat_map(|i| (0..columns.len()).map(move |j| value(i, j)));
+        let cells = Cells { name: "", quantity: &self.z_label, columns, rows };
+        cells.graded(canvas, panel, (lo, hi), all);
     }
 
     fn paint_map(&self, canvas: &mut Canvas, grid: &Grid, z: &Axis) {

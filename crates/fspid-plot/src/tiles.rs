@@ -1,6 +1,7 @@
 //! A map of classes: one tile a node, such as levels of flying qualities or stable and unstable.
 
 use super::axis::{Axis, extent};
+use super::cursor::{self, Cells};
 use super::gaps;
 use super::page::{self, EDGE, LABEL_PX};
 use super::style::{Role, sequential, wants_dark_text};
@@ -51,6 +52,7 @@ impl Tiles {
         self.tiles(&mut canvas, area, [&x, &y], &axes);
         canvas.end();
         map_axes(&mut canvas, area, &axes[0], &axes[1]);
+        self.read(&mut canvas, &cursor::panel(area, &axes[0], &axes[1]));
         self.labels(&mut canvas, area);
         self.legend(&mut canvas, (left, top + MAP + 50.0));
         canvas.finish(&self.title, &self.describe())
@@ -69,6 +71,20 @@ impl Tiles {
                 self.tile(canvas, Rect { x: across[0], y: down[0], width, height }, class);
             }
         }
+    }
+
+    /// What a cursor reads of each tile: the name of its class.
+    fn read(&self, canvas: &mut Canvas, panel: &str) {
+        let (columns, rows) = (&self.xs, &self.ys);
+        let class = |i: usize, j: usize| self.classes.get(i).and_then(|row| *row.get(j)?);
+        let words = |class: Option<usize>| {
+            let known = class.and_then(|class| self.names.get(class));
+            known
+                .map_or(&self.missing, |(sign, name)| if name.is_empty() { sign } else { name })
+                .clone()
+        };
+        let all = (0..rows.len()).flat_map(|i| (0..columns.len()).map(move |j| words(class(i, j))));
+        Cells { name: "", quantity: "", columns, rows }.worded(canvas, panel, all);
     }
 
     fn tile(&self, canvas: &mut Canvas, r: Rect, class: usize) {

@@ -1,6 +1,6 @@
 //! Which flights failed, over the parameters of their runs: read from the file in two passes.
 
-use crate::rows::{FAILED, PARAMETER};
+use crate::rows::{FAILED, PARAMETER, RUN};
 use crate::summary::{Files, SummaryError};
 use crate::table::{ColumnTable, Values};
 
@@ -28,6 +28,8 @@ pub(super) struct ByParameter {
     /// Runs over the first two parameters: those that did not fail, and those that did.
     pub(super) passed: Vec<(f64, f64)>,
     pub(super) failed: Vec<(f64, f64)>,
+    /// Numbers of the runs of both.
+    pub(super) runs: [Vec<u64>; 2],
 }
 
 /// Most points of each kind that are kept.
@@ -110,11 +112,12 @@ pub(super) fn counted(
     };
     let mut of = vec![empty; controllers.max(1)];
     let mut names: Vec<&str> = columns.iter().map(String::as_str).collect();
-    names.push(event.column());
+    names.extend([event.column(), RUN]);
     let mut row = 0_usize;
     for table in files.columns(&names)? {
         let table = table?;
         let failed = event.happened(&table, row, controllers);
+        let runs = floats(&table, RUN);
         let numbers: Vec<Vec<f64>> = columns.iter().map(|name| floats(&table, name)).collect();
         for (at, failed) in failed.into_iter().enumerate() {
             let place = row % controllers.max(1);
@@ -123,7 +126,7 @@ pub(super) fn counted(
             let values: Vec<f64> =
                 (0..columns.len()).map(|n| value(n).unwrap_or(f64::NAN)).collect();
             if values.iter().all(|value| value.is_finite()) {
-                of[place].add(&values, &axes, failed);
+                of[place].add(&values, &axes, (failed, runs[at] as u64));
             }
         }
     }
@@ -137,7 +140,7 @@ struct Axes {
 }
 
 impl ByParameter {
-    fn add(&mut self, values: &[f64], axes: &Axes, failed: bool) {
+    fn add(&mut self, values: &[f64], axes: &Axes, (failed, run): (bool, u64)) {
         let bins = self.alone.first().map_or(1, Vec::len);
         let bin = |n: usize| place(values[n], axes.ends[n], bins);
         for (n, counts) in self.alone.iter_mut().enumerate() {
@@ -153,6 +156,7 @@ impl ByParameter {
             };
             if list.len() < most {
                 list.push((x, y));
+                self.runs[usize::from(failed)].push(run);
             }
         }
     }

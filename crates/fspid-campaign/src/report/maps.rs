@@ -309,7 +309,10 @@ impl Maps<'_> {
             true => format!("{} {what}", count(of)),
             false => format!("{} {what}, the first {}", count(of), count(points as u64)),
         };
+        let mut runs = of.runs.clone();
+        runs[0].truncate(passed.len());
         let figure = RunScatter {
+            runs,
             title: format!("Runs of {name}"),
             x_label: self.label(0),
             y_label: self.label(1),

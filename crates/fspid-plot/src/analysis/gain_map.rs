@@ -5,6 +5,7 @@ use super::clip::Point;
 use super::map_cells::{Grading, coarse};
 use super::notes::Notes;
 use crate::axis::{Axis, extent, short_number};
+use crate::cursor::{self, Cells};
 use crate::gaps;
 use crate::page::{self, EDGE, Entry, LABEL_PX, Swatch};
 use crate::plot::TICK_PX;
@@ -196,11 +197,33 @@ impl Drawing<'_> {
             tiles.iter().map(|tile| tile.place.width.min(tile.place.height)).reduce(f64::min);
         self.points(canvas, room.unwrap_or(0.0).min(60.0));
         map_axes(canvas, self.area, &self.axes[0], &self.axes[1]);
+        self.read(canvas);
         self.labels(canvas);
         let a = self.area;
         let bar = Rect { x: a.x + a.width + 18.0, y: a.y, width: BAR, height: a.height };
         let required = self.map.required.as_ref().map(|required| required.0);
         self.grading.bar(canvas, bar, &self.map.quantity, required);
+    }
+
+    /// What a cursor reads of each node: its margin, and whether that is as required.
+    fn read(&self, canvas: &mut Canvas) {
+        let required = self.map.required.as_ref().map(|required| required.0);
+        let words = |cell: MapCell| {
+            let found = match cell {
+                MapCell::Value(value) => self.grading.number(value),
+                MapCell::Unbounded => "without limit".to_owned(),
+                MapCell::Unstable => return "UNSTABLE".to_owned(),
+                MapCell::Unknown => return "not computed".to_owned(),
+            };
+            match required.and_then(|required| cell.meets(required)) {
+                Some(false) => format!("{found}, less than required"),
+                _ => found,
+            }
+        };
+        let (columns, rows) = (&self.map.xs, &self.map.ys);
+        let panel = cursor::panel(self.area, &self.axes[0], &self.axes[1]);
+        let cells = Cells { name: "", quantity: &self.map.quantity, columns, rows };
+        cells.worded(canvas, &panel, self.map.all().map(words));
     }
 
     /// Place and cell of each node.

@@ -4,7 +4,7 @@ use super::clip::Point;
 use crate::plot::TICK_PX;
 use crate::style::Role;
 use crate::svg::{Anchor, Canvas, Font, Paint, Rect};
-use crate::text::text_width;
+use crate::text::{num, text_width};
 
 /// What labels of one plot area must keep clear of.
 #[derive(Debug, Clone)]
@@ -86,6 +86,9 @@ impl Labels {
         let Some((_, (at, gap), place)) = places.min_by(|a, b| a.0.total_cmp(&b.0)) else {
             return false;
         };
+        let [x, y] = [at.0, at.1].map(num);
+        // A script that enlarges the figure keeps the words this near to their point.
+        begin(canvas, role, &format!(" data-anchor=\"{x} {y}\""));
         if gap > LEADER_PX {
             canvas.line(at, nearest(place, at), &Paint::line(Role::Muted, 0.7));
         }
@@ -105,6 +108,7 @@ impl Labels {
         let place = Rect { x: x - width / 2.0, y: y - height / 2.0, width, height };
         let free = self.is_free(place) && self.crossed(place) == 0;
         if free {
+            begin(canvas, role, "");
             self.write(canvas, place, text, role);
         }
         free
@@ -115,9 +119,8 @@ impl Labels {
         let _ = places.iter().any(|at| self.put_here(canvas, *at, text, Role::Muted));
     }
 
+    /// Writes into the group that was begun, and ends it.
     fn write(&mut self, canvas: &mut Canvas, place: Rect, text: &str, role: Role) {
-        let of = role.variable().unwrap_or_default();
-        canvas.begin_marked(&format!("data-of=\"{of}\""));
         // Grid lines behind the words would make them hard to read.
         let ground = Rect { x: place.x - 1.5, width: place.width + 3.0, ..place };
         canvas.rounded(ground, 2.0, &Paint::face(Role::Face).opacity(0.8));
@@ -144,6 +147,12 @@ impl Labels {
     fn crossed(&self, place: Rect) -> usize {
         self.lines.iter().filter(|line| crosses(line, place)).count()
     }
+}
+
+/// Opens the group of a label: whose it is, and what else a script has to know.
+fn begin(canvas: &mut Canvas, role: Role, more: &str) {
+    let of = role.variable().unwrap_or_default();
+    canvas.begin_marked(&format!("data-of=\"{of}\"{more}"));
 }
 
 /// Room for the bar in the colour of a line (px).

@@ -2,6 +2,7 @@
 
 use super::areas::{self, abscissa, fitted, name_abscissa};
 use crate::axis::{Axis, extent, short_number};
+use crate::cursor::{self, Cells};
 use crate::page::{self, EDGE, LABEL_PX};
 use crate::plot::TICK_PX;
 use crate::style::{Role, SeriesStyle};
@@ -85,6 +86,7 @@ impl DistributionFigure {
             let y = top + n as f64 * (NAME + BINS + STRIP);
             let bins = Rect { x: left, y: y + NAME, width: plot, height: BINS };
             row.draw(&mut canvas, bins, &axis);
+            row.read(&mut canvas, bins, &axis);
         }
         self.limits(&mut canvas, area, &axis);
         for (n, row) in self.rows.iter().enumerate() {
@@ -206,6 +208,20 @@ impl DistributionRow {
         }
         canvas.line((area.x, area.y), (area.x, bottom), &Paint::line(Role::Ink, 1.0));
         self.strip(canvas, area, bottom + STRIP / 2.0 - 1.0, axis);
+    }
+
+    /// What a cursor reads: how many runs each bin has, and their share.
+    fn read(&self, canvas: &mut Canvas, area: Rect, axis: &Axis) {
+        if self.edges.len() != self.counts.len() + 1 || self.counts.is_empty() {
+            return;
+        }
+        let words = self.counts.iter().map(|count| {
+            let share = 100.0 * *count as f64 / self.of.max(1) as f64;
+            format!("{count} of {}, {} %", self.of, short_number(share))
+        });
+        let height = Axis::linear(Some((0.0, 1.0)), 0.0, 2);
+        let cells = Cells { name: &self.name, quantity: "runs", columns: &self.edges, rows: &[] };
+        cells.worded(canvas, &cursor::panel(area, axis, &height), words);
     }
 
     /// The upper edge of the bins, from the floor to the floor.

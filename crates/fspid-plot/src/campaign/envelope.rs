@@ -2,11 +2,12 @@
 
 use super::areas::{self, abscissa, fitted, name_abscissa, ordinate};
 use crate::axis::{Axis, extent, short_number};
+use crate::cursor;
 use crate::page::{self, EDGE, LABEL_PX};
 use crate::plot::TICK_PX;
 use crate::style::{Role, SeriesStyle};
 use crate::svg::{Anchor, Canvas, Font, Paint, Rect, Svg, polyline_data};
-use crate::text::text_width;
+use crate::text::{escape, text_width, unmarked};
 use crate::thin;
 
 /// Bands of responses, one panel below the other on the same abscissa.
@@ -92,7 +93,11 @@ impl EnvelopeFigure {
             let last = n + 1 == self.panels.len();
             abscissa(&mut canvas, area, &x, last);
             ordinate(&mut canvas, area, y);
+            let name = escape(&unmarked(&panel.name));
+            let place = cursor::panel(area, &x, y);
+            canvas.begin_marked(&format!("{place} data-name=\"{name}\""));
             Drawing { area, x: &x, y }.panel(&mut canvas, panel);
+            canvas.end();
             let font = Font::new(LABEL_PX, Anchor::Start).bold();
             canvas.rect(left, y_top + 3.0, 3.0, 14.0, &Paint::face(panel.style.role()));
             canvas.text(left + 7.0, y_top + 14.2, &fitted(&panel.name, LABEL_PX, plot - 8.0), font);
@@ -157,15 +162,18 @@ impl Drawing<'_> {
             let opacity = SHADES.get(n).copied().unwrap_or(SHADES[SHADES.len() - 1]);
             let d = self.band(&panel.x, band);
             if !d.is_empty() {
+                canvas.begin_curve("band", &band.name);
                 canvas.path(&d, &Paint::face(role).opacity(opacity));
+                canvas.end();
             }
         }
-        self.line(canvas, (&panel.x, &panel.setpoint), &setpoint_paint());
+        self.line(canvas, (&panel.x, &panel.setpoint), ("set-point", &setpoint_paint()));
         for worst in &panel.worst {
-            self.line(canvas, (&panel.x, worst), &worst_paint());
+            self.line(canvas, (&panel.x, worst), ("worst", &worst_paint()));
         }
-        self.line(canvas, (&panel.x, &panel.median), &Paint::line(role, 2.2));
-        self.line(canvas, (&panel.x, &panel.nominal), &nominal_paint());
+        let median = Paint::line(role, 2.2);
+        self.line(canvas, (&panel.x, &panel.median), ("median", &median));
+        self.line(canvas, (&panel.x, &panel.nominal), ("nominal", &nominal_paint()));
         canvas.end();
     }
 
@@ -191,11 +199,17 @@ impl Drawing<'_> {
         thin::runs(placed, (1.0, 1.0), false).concat()
     }
 
-    fn line(&self, canvas: &mut Canvas, (x, y): (&[f64], &[f64]), paint: &Paint) {
+    fn line(&self, canvas: &mut Canvas, (x, y): (&[f64], &[f64]), (name, paint): (&str, &Paint)) {
         let placed = x.iter().zip(y).map(|(x, y)| self.place(*x, *y));
-        for run in thin::runs(placed, (1.0, 1.0), false) {
+        let runs = thin::runs(placed, (1.0, 1.0), false);
+        if runs.is_empty() {
+            return;
+        }
+        canvas.begin_curve("line", name);
+        for run in runs {
             canvas.polyline(&run, false, paint);
         }
+        canvas.end();
     }
 
     /// Far outside is as good as outside, and keeps numbers short.

@@ -2,10 +2,12 @@
 
 use super::areas::{self, abscissa, fitted, name_abscissa, ordinate};
 use crate::axis::{Axis, extent};
+use crate::cursor;
 use crate::page::{self, EDGE, Entry, LABEL_PX, Legend, Swatch};
 use crate::sign::Sign;
 use crate::style::Role;
 use crate::svg::{Canvas, Paint, Rect, Svg, polyline_data};
+use crate::text::{escape, unmarked};
 
 /// Runs over two parameters.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,6 +26,8 @@ pub struct RunScatter {
     pub failed: Vec<(f64, f64)>,
     /// What is said of both in the legend: passed, failed.
     pub names: [String; 2],
+    /// Numbers of the runs of both, in the order of their points; empty where they are not known.
+    pub runs: [Vec<u64>; 2],
 }
 
 /// Side of the plot area (px).
@@ -58,20 +62,34 @@ impl RunScatter {
         let area = Rect { x: left, y: top, width: SIDE, height: SIDE };
         abscissa(&mut canvas, area, &x, true);
         ordinate(&mut canvas, area, &y);
+        canvas.begin_marked(&cursor::panel(area, &x, &y));
         canvas.begin_clip(area);
         let place = |(px, py): &(f64, f64)| {
             let at = (area.x + x.fraction(*px) * SIDE, area.y + (1.0 - y.fraction(*py)) * SIDE);
             let near = |v: f64, from: f64| v >= from - 9.0 && v <= from + SIDE + 9.0;
             (near(at.0, area.x) && near(at.1, area.y)).then_some(at)
         };
-        let rings: String = self.passed.iter().filter_map(place).map(ring).collect();
-        let crosses: String = self.failed.iter().filter_map(place).map(cross).collect();
-        if !rings.is_empty() {
-            canvas.path(&rings, &Paint::line(Role::Series(0), 0.9).opacity(0.7));
+        let [rings, crosses] = [(&self.passed, 0), (&self.failed, 1)].map(|(points, n)| {
+            let seen =
+                points.iter().enumerate().filter_map(|(at, point)| Some((at, place(point)?)));
+            let numbers = seen.clone().filter_map(|(at, _)| self.runs[n].get(at).copied());
+            let sign = if n == 0 { ring } else { cross };
+            (
+                seen.clone().map(|(_, at)| sign(at)).collect::<String>(),
+                numbers.collect::<Vec<u64>>(),
+            )
+        });
+        let passed = (rings, Paint::line(Role::Series(0), 0.9).opacity(0.7), RING_MARK);
+        let failed = (crosses, Paint::line(Role::Series(1), 1.5), CROSS_MARK);
+        for (((d, runs), paint, mark), name) in [passed, failed].into_iter().zip(&self.names) {
+            if !d.is_empty() {
+                let name = escape(&unmarked(name));
+                canvas.begin_marked(&format!("{mark} data-name=\"{name}\"{}", numbered(&runs)));
+                canvas.path(&d, &paint);
+                canvas.end();
+            }
         }
-        if !crosses.is_empty() {
-            canvas.path(&crosses, &Paint::line(Role::Series(1), 1.5));
-        }
+        canvas.end();
         canvas.end();
         name_abscissa(&mut canvas, area, &self.x_label);
         let label = [fitted(&self.y_label, LABEL_PX, SIDE)];
@@ -90,6 +108,23 @@ impl RunScatter {
             self.names[1]
         )
     }
+}
+
+/// Where the point of a sign is from its first corner (px), and how many strokes a sign has.
+const RING_MARK: &str = "data-points=\"-2.4 1 1\"";
+const CROSS_MARK: &str = "data-points=\"3.2 3.2 2\"";
+
+/// The numbers of the runs, each less the one before: those that follow are short.
+fn numbered(runs: &[u64]) -> String {
+    if runs.is_empty() {
+        return String::new();
+    }
+    let before = std::iter::once(0).chain(runs.iter().copied());
+    let steps = runs
+        .iter()
+        .zip(before)
+        .map(|(run, before)| (i128::from(*run) - i128::from(before)).to_string());
+    format!(" data-runs=\"{}\"", steps.collect::<Vec<_>>().join(" "))
 }
 
 /// One path for all of a kind keeps the file small; a ring of eight corners looks round at this size.

@@ -3,6 +3,7 @@
 use super::areas::{self, fitted, name_abscissa};
 use super::scatter::SIDE;
 use crate::axis::{Axis, extent, short_number};
+use crate::cursor::{self, Cells};
 use crate::gaps;
 use crate::page::{self, EDGE, LABEL_PX};
 use crate::plot::TICK_PX;
@@ -75,6 +76,7 @@ impl ShareMap {
         }
         canvas.end();
         map_axes(&mut canvas, area, &x, &y);
+        self.read(&mut canvas, &cursor::panel(area, &x, &y));
         self.bar(&mut canvas, Rect { x: left + SIDE + 18.0, width: BAR, ..area });
         if self.cells.iter().flatten().any(|cell| cell.runs == 0) {
             hatch_key(&mut canvas, (left, top - 18.0));
@@ -83,6 +85,25 @@ impl ShareMap {
         let label = [fitted(&self.y_label, LABEL_PX, SIDE)];
         page::upright_label(&mut canvas, EDGE + LABEL_PX, top + SIDE / 2.0, &label);
         canvas.finish(&self.title, &self.describe())
+    }
+
+    /// What a cursor reads of each box, where every box has its ends.
+    fn read(&self, canvas: &mut Canvas, panel: &str) {
+        let (columns, rows) = (&self.x_edges, &self.y_edges);
+        if columns.len() < 2 || rows.len() < 2 {
+            return;
+        }
+        let cell = |i: usize, j: usize| self.cells.get(i).and_then(|row| row.get(j)).copied();
+        let words = |cell: Option<ShareCell>| {
+            let share = cell.and_then(|cell| Some((cell, cell.share_pct()?)));
+            share.map_or_else(
+                || "no runs".to_owned(),
+                |(cell, share)| format!("{} of {}, {} %", cell.counted, cell.runs, percent(share)),
+            )
+        };
+        let all = (0..rows.len() - 1)
+            .flat_map(|i| (0..columns.len() - 1).map(move |j| words(cell(i, j))));
+        Cells { name: "", quantity: &self.quantity, columns, rows }.worded(canvas, panel, all);
     }
 
     /// Place and content of every box with runs.

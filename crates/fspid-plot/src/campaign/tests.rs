@@ -103,6 +103,7 @@ fn scatter(points: usize) -> RunScatter {
         passed: (0..points).map(|n| at(n, 0.37)).collect(),
         failed: (0..points / 3).map(|n| at(n, 0.91)).collect(),
         names: [format!("{points} runs that did not fail"), "runs that failed".to_owned()],
+        runs: [(0..points as u64).collect(), Vec::new()],
     }
 }
 
@@ -208,6 +209,64 @@ pub(crate) fn odd(draw: &mut Draw) -> Vec<Svg> {
     figure.series.iter_mut().for_each(|series| series.points = pairs(draw));
     found.push(figure.render());
     found
+}
+
+/// The values of an attribute, in their order.
+fn attributes<'a>(svg: &'a str, name: &str) -> Vec<&'a str> {
+    let begin = format!(" {name}=\"");
+    svg.split(begin.as_str()).skip(1).filter_map(|rest| rest.split('"').next()).collect()
+}
+
+#[test]
+fn every_run_of_a_scatter_that_is_drawn_has_its_number() {
+    let mut figure = scatter(30);
+    figure.runs = [(0..30).map(|n| 3 * n).collect(), vec![7, 9]];
+    figure.ranges = [Some((0.0, 1.0)), None];
+    let svg = figure.render().into_string();
+    let told = attributes(&svg, "data-runs");
+    let drawn = figure.passed.iter().filter(|at| at.0 < 1.02).count();
+    assert!(drawn < 30 && told[0].split(' ').count() == drawn, "{drawn}: {told:?}");
+    // Each is told as its distance from the one before.
+    let runs: Vec<i64> = told[0]
+        .split(' ')
+        .scan(0, |run, step| {
+            *run += step.parse::<i64>().unwrap();
+            Some(*run)
+        })
+        .collect();
+    let expected = figure.passed.iter().zip(0_i64..).filter(|(at, _)| at.0 < 1.02);
+    assert_eq!(runs, expected.map(|(_, n)| 3 * n).collect::<Vec<_>>());
+    let nameless = RunScatter { runs: [Vec::new(), Vec::new()], ..figure }.render().into_string();
+    assert!(attributes(&nameless, "data-runs").is_empty());
+}
+
+#[test]
+fn every_box_and_every_bin_can_be_read() {
+    let share = map(4);
+    let svg = share.render().into_string();
+    let cells = attributes(&svg, "data-cells");
+    assert_eq!(cells[0].split(';').count(), 16);
+    assert!(cells[0].starts_with("no runs;10 of 50, 20 %;20 of 100, 20 %"), "{}", cells[0]);
+    assert_eq!(attributes(&svg, "data-columns"), ["0.05 0.06 0.07 0.08 0.09"]);
+    for svg in ordinary() {
+        let text = svg.as_str();
+        let columns = attributes(text, "data-columns");
+        let cells = attributes(text, "data-cells");
+        assert_eq!(columns.len(), cells.len());
+        if attributes(text, "data-rows").is_empty() {
+            for (ends, cells) in columns.iter().zip(cells) {
+                assert_eq!(ends.split(' ').count(), cells.split(';').count() + 1);
+            }
+        }
+    }
+}
+
+#[test]
+fn bands_and_lines_of_an_envelope_have_the_names_that_are_read() {
+    let found = ordinary().into_iter().map(|svg| svg.into_string());
+    let svg = found.filter(|svg| svg.contains("data-curve=\"band\"")).last().unwrap();
+    let names = attributes(&svg, "data-name");
+    assert!(names.contains(&"median"), "{names:?}");
 }
 
 #[test]

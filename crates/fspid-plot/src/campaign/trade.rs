@@ -3,10 +3,12 @@
 use super::areas::{self, abscissa, fitted, name_abscissa, ordinate, sign};
 use super::scatter::SIDE;
 use crate::axis::{Axis, extent, short_number};
+use crate::cursor;
 use crate::page::{self, EDGE, Entry, LABEL_PX, Legend, Swatch};
 use crate::sign::Sign;
 use crate::style::SeriesStyle;
 use crate::svg::{Canvas, Paint, Rect, Svg};
+use crate::text::{escape, num, unmarked};
 
 /// Two quantities against each other.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,11 +61,18 @@ impl TradeFigure {
         let area = Rect { x: left, y: top, width: WIDTH, height: SIDE };
         abscissa(&mut canvas, area, &x, true);
         ordinate(&mut canvas, area, &y);
+        canvas.begin_marked(&cursor::panel(area, &x, &y));
         for series in &self.series {
             let finite = series.points.iter().filter(|(x, y)| x.is_finite() && y.is_finite());
-            for (px, py) in finite {
-                let at =
-                    (area.x + x.fraction(*px) * WIDTH, area.y + (1.0 - y.fraction(*py)) * SIDE);
+            let place = |(px, py): &(f64, f64)| {
+                (area.x + x.fraction(*px) * WIDTH, area.y + (1.0 - y.fraction(*py)) * SIDE)
+            };
+            let places: Vec<(f64, f64)> = finite.map(place).collect();
+            let told: Vec<String> =
+                places.iter().map(|at| format!("{} {}", num(at.0), num(at.1))).collect();
+            let name = escape(&unmarked(&series.name));
+            canvas.begin_marked(&format!("data-at=\"{}\" data-name=\"{name}\"", told.join(" ")));
+            for at in places {
                 let role = series.style.role();
                 match sign(series.style) {
                     // A dot is for lines; alone it would be the smallest of all signs.
@@ -71,7 +80,9 @@ impl TradeFigure {
                     other => other.draw(&mut canvas, at, role),
                 }
             }
+            canvas.end();
         }
+        canvas.end();
         name_abscissa(&mut canvas, area, &self.x_label);
         let label = [fitted(&self.y_label, LABEL_PX, SIDE)];
         page::upright_label(&mut canvas, EDGE + LABEL_PX, area.y + SIDE / 2.0, &label);

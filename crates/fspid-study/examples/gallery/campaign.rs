@@ -166,6 +166,7 @@ fn runs() -> RunScatter {
         names: [format!("{} did not fail", passed.len()), format!("{} failed", failed.len())],
         passed,
         failed,
+        runs: [Vec::new(), Vec::new()],
     }
 }
 
