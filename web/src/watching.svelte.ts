@@ -78,6 +78,9 @@ class Watching {
   #flown = 0;
   #drawing: ReturnType<typeof setInterval> | undefined;
   #isDirty = false;
+  #isDrawing = false;
+  /** How often everything was forgotten: what was asked before is of no use then. */
+  #forgotten = 0;
   #isFlying = false;
 
   get names(): string[] {
@@ -93,7 +96,7 @@ class Watching {
         this.state = "none";
         return;
       }
-      this.#drawing ??= setInterval(() => this.#draw(), PICTURE_MS);
+      this.#drawing ??= setInterval(() => void this.#draw(), PICTURE_MS);
       await this.#hear();
     } catch (error) {
       this.told = error instanceof Refused ? error.message : "the server does not answer";
@@ -164,6 +167,7 @@ class Watching {
   }
 
   #forget(): void {
+    this.#forgotten += 1;
     this.#time = [];
     this.#values.clear();
     this.#changes = [];
@@ -212,13 +216,20 @@ class Watching {
     }
   }
 
-  #draw(): void {
+  async #draw(): Promise<void> {
     void this.#fly();
-    if (this.paused || !this.#isDirty || !this.#time.length) return;
-    this.#isDirty = false;
+    if (this.paused || !this.#isDirty || this.#isDrawing || !this.#time.length) return;
+    [this.#isDirty, this.#isDrawing] = [false, true];
     const names = this.#model?.controllers ?? [];
     if (names.length && !names.includes(this.controller)) this.controller = names.includes(cockpit.controller) ? cockpit.controller : names[0]!;
-    this.picture = this.#pictured();
+    const of = this.#forgotten;
+    try {
+      const picture = await this.#pictured();
+      // What was cleared or paused meanwhile stays so.
+      if (of === this.#forgotten && !this.paused) this.picture = picture;
+    } finally {
+      this.#isDrawing = false;
+    }
   }
 
   /** What changes the picture beside new lines: another controller, another window. */
@@ -226,18 +237,29 @@ class Watching {
     this.#isDirty = true;
   }
 
-  #pictured(): Picture {
+  /** The lines of the window, and beside them what the program says of the model there. */
+  async #pictured(): Promise<Picture> {
     const last = this.#time.at(-1)!;
     const first = this.window_s ? this.#time.findIndex((at) => at >= last - this.window_s) : 0;
     const cut = (values: number[]) => Float64Array.from(values.slice(first));
     const time_s = cut(this.#time);
     const values = Object.fromEntries([...this.#values].map(([name, list]) => [name, cut(list)]));
+    const model = this.#model?.time_s ?? new Float64Array();
     const columns = this.#model?.columns[this.controller];
-    const at = (column: Float64Array | undefined) => time_s.map((time) => between(this.#model?.time_s, column, time - this.#begin_s));
-    const model_deg = at(columns?.["theta_deg"]);
-    const measured = values["measurement_deg"];
-    const difference_deg = time_s.map((_, at) => (measured ? measured[at]! - model_deg[at]! : NaN));
-    return { time_s, values, model_deg, command_deg: at(columns?.["command_deg"]), difference_deg, difference: differing(time_s, difference_deg) };
+    // Of the model the samples around the window alone: the question is no longer than the picture.
+    const from = Math.max(0, model.findLastIndex((at) => at <= time_s[0]! - this.#begin_s));
+    const end = model.findIndex((at) => at >= last - this.#begin_s);
+    const part = (column: Float64Array | undefined) => Array.from(column?.slice(from, end < 0 ? undefined : end + 1) ?? []);
+    const { json, columns: found } = await cockpit.engine.ask("compare", {
+      time_s: Array.from(time_s),
+      measured_deg: Array.from(values["measurement_deg"] ?? []),
+      begin_s: this.#begin_s,
+      model_s: part(model),
+      theta_deg: part(columns?.["theta_deg"]),
+      command_deg: part(columns?.["command_deg"]),
+    });
+    const at = (key: string) => found[json[key]] ?? new Float64Array();
+    return { time_s, values, model_deg: at("model_deg"), command_deg: at("command_deg"), difference_deg: at("difference_deg"), difference: json.difference ?? null };
   }
 }
 
@@ -262,30 +284,5 @@ async function flown(text: string, changes: [number, number][], end_s: number): 
 
 const float = (value: number) => (Number.isInteger(value) ? `${value}.0` : String(value));
 const sentence = (json: any) => `The model cannot be flown: ${json.refused ?? json.problems?.[0]?.message ?? "the scenario is not good"}.`;
-
-/** The value of a curve between its two samples around a time; none outside of it. */
-function between(times: Float64Array | undefined, values: Float64Array | undefined, time_s: number): number {
-  if (!times?.length || !values?.length || time_s < times[0]! || time_s > times[values.length - 1]!) return NaN;
-  let [low, high] = [0, values.length - 1];
-  while (high - low > 1) {
-    const middle = (low + high) >> 1;
-    if (times[middle]! <= time_s) low = middle;
-    else high = middle;
-  }
-  const part = high === low ? 0 : (time_s - times[low]!) / (times[high]! - times[low]!);
-  return values[low]! + part * (values[high]! - values[low]!);
-}
-
-/** How far two curves are apart where both are known; nothing where that is nowhere. */
-function differing(time_s: Float64Array, difference_deg: Float64Array): Difference | null {
-  let [largest, at_s, squares, lines] = [0, NaN, 0, 0];
-  difference_deg.forEach((value, at) => {
-    if (!Number.isFinite(value)) return;
-    lines += 1;
-    squares += value * value;
-    if (Math.abs(value) >= Math.abs(largest)) [largest, at_s] = [value, time_s[at]!];
-  });
-  return lines ? { largest, at_s, rms: Math.sqrt(squares / lines), lines } : null;
-}
 
 export const watching = new Watching();

@@ -14,6 +14,7 @@
 pub mod aircraft;
 pub mod analysis;
 pub mod certify;
+pub mod difference;
 pub mod export;
 pub mod fly;
 pub mod fuzzy_system;

@@ -47,6 +47,12 @@ impl Question {
         found.filter_map(|text| text.as_str().map(str::to_owned)).collect()
     }
 
+    /// Numbers, NaN where there is none, as JSON has it; no numbers if they are left out.
+    pub(crate) fn numbers(&self, key: &str) -> Vec<f64> {
+        let found = self.asked.get(key).and_then(Value::as_array).into_iter().flatten();
+        found.map(|number| number.as_f64().unwrap_or(f64::NAN)).collect()
+    }
+
     /// The study of the scenario's text; a text without a folder can name no file.
     pub(crate) fn study(&self) -> Result<Study, Answer> {
         file::parse(self.text("text")?, NAME, None, &[]).map_err(|found| wrong(&found))

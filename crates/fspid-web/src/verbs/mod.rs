@@ -1,5 +1,6 @@
 //! The verbs: one function each, one row in the list.
 
+mod compare;
 mod export;
 mod figure;
 mod fly;
@@ -20,7 +21,7 @@ type Answered = Result<Answer, Answer>;
 type Verb = (&'static str, fn(&Question) -> Answered);
 
 /// What can be asked.
-const VERBS: [Verb; 12] = [
+const VERBS: [Verb; 13] = [
     ("shipped", |_| Ok(open::shipped())),
     ("open", open::open),
     ("set", set),
@@ -32,6 +33,7 @@ const VERBS: [Verb; 12] = [
     ("shape", shape::shape),
     ("explain", explain),
     ("figure", figure::figure),
+    ("compare", compare::compare),
     ("export", export::export),
 ];
 
