@@ -13,4 +13,4 @@ export CHROMIUM FSPID="${FSPID:-$PWD/../target/debug/fspid}"
 npm run --silent check
 # One after the other: each has a browser of its own.
 node --test --test-concurrency=1 tests/same-bits.test.mjs tests/views.test.mjs tests/served.test.mjs \
-    tests/reports.test.mjs tests/pictures.test.mjs
+    tests/reports.test.mjs tests/spoken.test.mjs tests/pictures.test.mjs

@@ -65,6 +65,9 @@ export function standing(good: boolean, failed: boolean): "good" | "fair" | "bad
 /** A sign for what colour says too. */
 export const SIGN = { good: "✓", fair: "!", bad: "✗" } as const;
 
+/** The same as a word, for whoever hears it: signs are spoken in many ways, or not at all. */
+export const STANDING = { good: "good", fair: "to be looked at", bad: "bad" } as const;
+
 /** The dash pattern and the colour of the series of this number: told apart without colour. */
 export const DASHES: number[][] = [[], [8, 4], [2, 3], [10, 3, 2, 3], [5, 2], [1, 2]];
 export const colour = (number: number): string => `--series-${number % 6}`;

@@ -111,6 +111,10 @@ test("a tuning shows its candidates, its best one flies as a guest, and is the p
   await ended(page, "done");
   assert.match(await page.locator("[data-test=job]").innerText(), /✓ done/);
   assert.equal(await page.locator(".plane").first().locator("circle.sign").count(), 61);
+  const costs = page.locator(".plane").first();
+  await costs.locator(".reader").focus();
+  await page.keyboard.press("Home");
+  assert.match(await costs.locator(".reading").innerText(), /^candidate \d+: candidate \d+, cost [\d.]+$/);
   assert.match(await page.locator("[data-test=best]").innerText(), /best: [\d.]+ at candidate \d+: controller\.PID\.kp = /);
   assert.match(await page.locator("[data-test=answer]").innerText(), /PID/);
   await assertGoodEverywhere(page, "tune");
@@ -179,11 +183,23 @@ test("a campaign fills histograms and an envelope, and its worst run flies in th
   await ended(page, "done");
   assert.match(await page.locator("[data-test=runs]").innerText(), /All 300 of 300 runs/);
   const bars = page.locator("[data-distribution=iae_deg_s] rect.bar-0");
-  const told = await bars.locator("title").evaluateAll((all) => all.map((it) => Number(/^(\d+)/.exec(it.textContent)[1])));
+  // Bin by bin with the arrow keys; each says its ends and how many flights it has.
+  const histogram = page.locator("[data-distribution=iae_deg_s]");
+  await histogram.locator(".reader").focus();
+  const told = [];
+  for (let bin = 0; bin < (await bars.count()); bin += 1) {
+    await page.keyboard.press(bin ? "ArrowRight" : "Home");
+    const [, from, to, count] = /^\S+: ([\d.]+) to ([\d.]+) deg s: (\d+) of 300 flights \([\d.]+ %\)$/.exec(await histogram.locator(".reading").innerText());
+    assert.ok(Number(from) < Number(to) && Number(from) >= (told.at(-1)?.to ?? 0));
+    told.push({ to: Number(to), count: Number(count) });
+  }
   const words = await page.locator("[data-distribution=iae_deg_s] .words li").first().innerText();
   const beyond = Number(/(\d+) beyond the bars/.exec(words)?.[1] ?? 0);
-  assert.equal(told.reduce((a, b) => a + b, 0) + beyond, 300, "every flight is in a bar or told");
+  assert.equal(told.reduce((sum, { count }) => sum + count, 0) + beyond, 300, "every flight is in a bar or told");
   assert.equal(await page.locator("[data-envelope]").count(), 2);
+  const bands = page.locator("[data-envelope]").first();
+  await bands.locator(".reader").hover();
+  assert.match(await bands.locator(".reading").innerText(), /^[\d.]+ s: pitch angle \[deg\] all \S+ to \S+, 5 to 95 % \S+ to \S+, .*median \S+, set-point \S+, run \d+ \S+/);
   assert.match(await page.locator("[data-test=envelope]").innerText(), /first 300 runs, flown again/);
   await assertGoodEverywhere(page, "campaign");
   const worst = page.locator("[data-test=worst] tr", { hasText: "highest iae" }).first();

@@ -83,7 +83,7 @@ test("Fly: by keys alone a slider moves, a field takes a number, and a curve tel
   const plot = page.locator(".plot").first();
   await plot.focus();
   await page.keyboard.press("End");
-  assert.match(await page.locator(".readout").first().innerText(), /^20: .*FSPID/);
+  assert.match(await page.locator(".readout").first().innerText(), /^time \[s\]\s+20\s.*pitch angle \[deg\]\s*: .*FSPID \S/s);
   assert.match(await text(page), /nominal = \{ kp = 2\.5, ki = 0\.5, kd = 1\.0 \}/);
   await close(page);
 });
@@ -304,6 +304,48 @@ test("Shape: the surface turns by drag, by arrows and by two numbers, and is dra
   await page.keyboard.press("Home");
   await seen("view-kp -60 26");
   assert.equal(await drawn(), before);
+  await close(page);
+});
+
+/** Puts the pointer on a part of a box. */
+async function hovered(page, locator, x, y) {
+  await locator.scrollIntoViewIfNeeded();
+  const box = await locator.boundingBox();
+  await page.mouse.move(box.x + x * box.width, box.y + y * box.height);
+}
+
+test("planes, maps and surfaces are read under the pointer and by arrow keys", async () => {
+  const page = await opened();
+  await page.click("#tab-judge");
+  await page.getByRole("button", { name: "map of frozen gains" }).click();
+  const map = page.getByRole("grid", { name: "frozen gains of FSPID" });
+  await map.waitFor();
+  await map.locator("td[data-told]").nth(40).hover();
+  const told = page.locator(".frozen .reading");
+  assert.match(await told.innerText(), /^error 0, change 0: stable, phase margin \d+ deg; kp [\d.]+, ki [\d.]+, kd [\d.]+$/);
+  await map.locator("td[data-told]").first().focus();
+  await page.keyboard.press("ArrowDown");
+  await page.keyboard.press("ArrowRight");
+  assert.match(await told.innerText(), /^error 3\.75, change \u22123\.75: stable/);
+  const nichols = page.locator(".plane", { hasText: "Nichols" });
+  const [x, y] = await nichols.locator("path.curve").first().evaluate((line) => {
+    line.scrollIntoView({ block: "center" });
+    const at = line.getPointAtLength(line.getTotalLength() / 2).matrixTransform(line.getScreenCTM());
+    return [at.x, at.y];
+  });
+  await page.mouse.move(x, y);
+  assert.match(await nichols.locator(".reading").innerText(), /^PC at [\d.]+ rad\/s: phase \[deg\] \u2212[\d.]+, gain \[dB\] \S+$/);
+  await page.click("#tab-shape");
+  const surface = page.locator(".surface .reader");
+  await surface.waitFor();
+  await hovered(page, surface, 0.35, 0.5);
+  const value = await page.locator(".surface .reading").innerText();
+  assert.match(value, /^error .* \S+, change of error .* \S+: Δkp \S+$/);
+  await surface.focus();
+  await page.keyboard.press("Home");
+  assert.match(await page.locator(".surface .reading").innerText(), /^error \S+ \u22125, change of error \S+ \u22125: Δkp [\d.]+$/);
+  await page.keyboard.press("ArrowUp");
+  assert.match(await page.locator(".surface .reading").innerText(), /^error \S+ \u22124\.\d+, change of error \S+ \u22125:/);
   await close(page);
 });
 
