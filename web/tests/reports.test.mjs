@@ -218,6 +218,17 @@ test("an enlarged curve over a logarithmic axis runs through the values that it 
     return least;
   })), mark);
   assert.ok(away < 3, `the mark is ${away} px from every curve`);
+  // A tick stands where its number is read, and its first digit is 1, 2 or 5.
+  const below = await figure.locator('[data-panel] text[text-anchor="middle"]').evaluateAll((all) =>
+    all.filter((text) => !text.closest("[style*=none]")).map((text) => { const box = text.getBoundingClientRect(); return [text.textContent, box.x + box.width / 2]; }));
+  assert.ok(below.length >= 3, below.join());
+  for (const [text, x] of below) {
+    assert.match(text, /^0?\.?0*[125]0*$/);
+    await page.mouse.move(x, at.y);
+    const [read] = numbers(await figure.locator(".reading p").first().innerText());
+    assert.ok(Math.abs(read / Number(text) - 1) < 0.03, `${read} is read at the tick ${text}`);
+  }
+  await page.mouse.move(at.x, at.y);
   // Both panels have one frequency.
   assert.match(await figure.locator(".reading").innerText(), /frequency \[rad\/s\] 0\.5.*open-loop gain \[dB\] PC .*open-loop phase \[deg\] PC/s);
   await close(page);
