@@ -263,8 +263,8 @@ fn every_box_and_every_bin_can_be_read() {
 
 #[test]
 fn bands_and_lines_of_an_envelope_have_the_names_that_are_read() {
-    let found = ordinary().into_iter().map(|svg| svg.into_string());
-    let svg = found.filter(|svg| svg.contains("data-curve=\"band\"")).next_back().unwrap();
+    let mut found = ordinary().into_iter().map(|svg| svg.into_string());
+    let svg = found.rfind(|svg| svg.contains("data-curve=\"band\"")).unwrap();
     let names = attributes(&svg, "data-name");
     assert!(names.contains(&"median"), "{names:?}");
 }
