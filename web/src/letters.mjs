@@ -30,21 +30,18 @@ export function toLetters(/** @type {Uint8Array} */ bytes) {
 export function fromLetters(/** @type {string} */ text, /** @type {number} */ count) {
   const bytes = new Uint8Array(count);
   let [rest, bits, to] = [0, 0, 0];
-  const take = (/** @type {number} */ value) => {
-    rest = ((rest << 7) | value) & 0x7fff;
-    bits += 7;
-    if (bits < 8) return;
-    bits -= 8;
-    // What lies beyond the end is left out.
-    bytes[to++] = rest >> bits;
-  };
   for (let at = 0; at < text.length; at += 1) {
-    const pair = text.charCodeAt(at) - FIRST_PAIR;
-    if (pair < 0) take(pair + FIRST_PAIR);
-    else {
-      take(KEPT_OUT[pair >> 7] ?? 0);
-      take(pair & 0x7f);
+    let value = text.charCodeAt(at);
+    let more = 7;
+    if (value >= FIRST_PAIR) {
+      const pair = value - FIRST_PAIR;
+      value = ((KEPT_OUT[pair >> 7] ?? 0) << 7) | (pair & 0x7f);
+      more = 14;
     }
+    rest = (rest << more) | value;
+    // A place of the array takes the lowest eight bits; what lies beyond its end is left out.
+    for (bits += more; bits >= 8; ) bytes[to++] = rest >> (bits -= 8);
+    rest &= 0xff;
   }
   return bytes;
 }

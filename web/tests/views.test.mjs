@@ -413,7 +413,9 @@ test("axe finds nothing serious in any view, light or dark", async () => {
     for (const view of VIEWS) {
       await page.click(`#tab-${view}`);
       await page.waitForTimeout(800);
-      const found = await page.evaluate(() => axe.run(document, { resultTypes: ["violations"] }));
+      // Between light and dark nothing but colours differs.
+      const rules = colorScheme === "dark" ? { runOnly: ["color-contrast"] } : {};
+      const found = await page.evaluate((rules) => axe.run(document, { resultTypes: ["violations"], ...rules }), rules);
       assert.equal(found.testEngine.name, "axe-core");
       const serious = found.violations.filter((it) => ["serious", "critical"].includes(it.impact));
       const told = serious.map((it) => `${it.id}: ${it.nodes.map((node) => node.target.join(" ")).join(", ")}`);
