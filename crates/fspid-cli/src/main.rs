@@ -11,7 +11,7 @@ mod stream;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 use exit::Failure;
 
@@ -52,6 +52,8 @@ enum Command {
     Bench(commands::bench::Arguments),
     Schema(commands::schema::Arguments),
     Serve(commands::serve::Arguments),
+    Completions(commands::completions::Arguments),
+    Manual(commands::manual::Arguments),
     #[command(hide = true)]
     ExternalController(commands::external_controller::Arguments),
 }
@@ -99,6 +101,10 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Bench(arguments) => commands::bench::run(&arguments),
         Command::Schema(arguments) => commands::schema::run(&arguments),
         Command::Serve(arguments) => commands::serve::run(&arguments),
+        Command::Completions(arguments) => {
+            commands::completions::run(&arguments, Arguments::command())
+        }
+        Command::Manual(arguments) => commands::manual::run(&arguments, Arguments::command()),
         Command::ExternalController(arguments) => commands::external_controller::run(&arguments),
     }
 }

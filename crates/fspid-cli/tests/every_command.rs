@@ -30,7 +30,7 @@ fn commands(folder: &Path) -> Vec<Vec<String>> {
 }
 
 /// A command that answers, the exit codes that are well, and a key of its answer. They run in this order in one folder.
-const ANSWERS: [(&str, &[i32], &str); 45] = [
+const ANSWERS: [(&str, &[i32], &str); 47] = [
     ("init pitch.toml", &[0], "file"),
     ("init --list", &[0], "templates"),
     ("init --template tuning tuning.toml", &[0], "next"),
@@ -79,6 +79,8 @@ const ANSWERS: [(&str, &[i32], &str); 45] = [
     ("aircraft derive navion", &[0], "derivatives"),
     ("bench --quick --threads 1", &[0], "details"),
     ("schema", &[0], "properties"),
+    ("completions bash", &[0], "script"),
+    ("manual --out man", &[0], "files"),
     ("reproduce --out paper", &[0], "claims"),
 ];
 
@@ -105,6 +107,30 @@ fn every_command_answers_with_one_json_object() {
         assert!(!answer[key].is_null(), "{words} has no {key}: {answer}");
         // A schema itself is the only answer without the version of its shape.
         assert!(answer["schema"].is_u64() || words == "schema", "{words}: {answer}");
+    }
+}
+
+#[test]
+fn the_manual_has_a_page_for_every_command_and_shells_complete_each() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    let output = fspid(&["manual", "--out", "man"], folder);
+    assert_eq!(code(&output), 0, "{}", text(&output.stderr));
+    for command in commands(folder) {
+        let name = format!("man/fspid-{}.1", command.join("-"));
+        let page = std::fs::read_to_string(folder.join(&name)).expect(&name);
+        assert!(page.contains(".SH SYNOPSIS") && page.contains("--help"), "{name}");
+    }
+    assert!(!text(&output.stdout).contains("external-controller"), "it is for the program alone");
+    // The same program writes the same pages: no date, and what stood there is written anew.
+    let before = std::fs::read(folder.join("man/fspid-simulate.1")).expect("a page");
+    assert_eq!(code(&fspid(&["manual", "--out", "man"], folder)), 0);
+    assert_eq!(std::fs::read(folder.join("man/fspid-simulate.1")).expect("a page"), before);
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let script = text(&fspid(&["completions", shell], folder).stdout);
+        for command in commands(folder) {
+            assert!(script.contains(command.last().expect("a name")), "{shell}: {command:?}");
+        }
     }
 }
 

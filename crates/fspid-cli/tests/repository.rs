@@ -91,3 +91,29 @@ fn the_summary_of_the_guide_names_each_page_once() {
     pages.sort();
     assert_eq!(named, pages);
 }
+
+/// Names in a document that look like tests: words joined by underscores, between backticks.
+fn named_tests(document: &str) -> Vec<String> {
+    let text = std::fs::read_to_string(repository().join(document)).expect("a text");
+    let words = text.split('`').skip(1).step_by(2);
+    let is_test = |it: &&str| {
+        it.matches('_').count() >= 3
+            && it.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_')
+    };
+    words.filter(is_test).map(str::to_owned).collect()
+}
+
+#[test]
+fn every_test_that_holds_an_erratum_or_the_cockpits_security_is_there() {
+    let mut sources = String::new();
+    for file in files(&repository().join("crates"), "rs") {
+        sources += &std::fs::read_to_string(file).expect("a source");
+    }
+    for document in ["docs/errata.md", "docs/guide/cockpit.md"] {
+        let named = named_tests(document);
+        assert!(named.len() > 10, "{document}: {named:?}");
+        for name in named {
+            assert!(sources.contains(&format!("fn {name}()")), "{document}: no test {name}");
+        }
+    }
+}
