@@ -119,7 +119,7 @@ fn the_manual_has_a_page_for_every_command_and_shells_complete_each() {
     for command in commands(folder) {
         let name = format!("man/fspid-{}.1", command.join("-"));
         let page = std::fs::read_to_string(folder.join(&name)).expect(&name);
-        assert!(page.contains(".SH SYNOPSIS") && page.contains("--help"), "{name}");
+        assert!(page.contains(".SH SYNOPSIS") && page.contains(r"\-\-help"), "{name}");
     }
     assert!(!text(&output.stdout).contains("external-controller"), "it is for the program alone");
     // The same program writes the same pages: no date, and what stood there is written anew.

@@ -208,3 +208,43 @@ fn a_flight_into_the_ground_fails_whatever_is_required() {
 fn text_of(output: &Output) -> String {
     format!("{}{}", text(&output.stdout), text(&output.stderr))
 }
+
+#[test]
+fn an_interval_is_told_with_what_holds_on_both_sides_and_the_file_is_judged_alike_there() {
+    let folder = folder();
+    let folder = folder.path();
+    let starter = std::fs::read_to_string(folder.join("pitch.toml")).expect("the starter");
+    std::fs::write(folder.join("pitch.toml"), starter + "\n" + OURS).expect("written");
+    let path = "controller.FSPID.nominal.kp";
+    let strict = fspid(&["verify", "pitch.toml", "--set", "ctms", "--interval", path], folder);
+    assert!(text(&strict.stdout).contains("requirements, with ctms."), "{}", text(&strict.stdout));
+    let asked = ["verify", "pitch.toml", "--interval", path];
+    let told = fspid(&asked, folder);
+    let words = text(&told.stdout);
+    assert!(words.starts_with(&format!("{path}: Holds at all ")), "{words}");
+    let answer = fspid(&[&asked[..], &["--format", "json"]].concat(), folder);
+    let answer: Value = serde_json::from_slice(&answer.stdout).expect("JSON");
+    let found = &answer["intervals"][0];
+    assert_eq!(code(&told), i32::from(!found["holds"].as_bool().expect("a verdict")));
+    let values = found["values"].as_array().expect("values");
+    for it in values.iter().step_by(values.len() / 4) {
+        let value = format!("{path}={}", it[0]);
+        let judged = fspid(&["verify", "pitch.toml", "--set", &value, "--format", "json"], folder);
+        let judged: Value = serde_json::from_slice(&judged.stdout).expect("JSON");
+        // What the scenario may not be is no value that holds.
+        let own = judged["requirements"].as_array();
+        let is_met = own.is_some_and(|all| {
+            all.iter().all(|it| it["controller"] != "FSPID" || it["met"] == true)
+        });
+        assert_eq!(it[1], is_met, "{value}");
+    }
+    for wrong in ["controller.FSPID.nominal.kq", "controller.FSPID.name"] {
+        let refused = fspid(&["verify", "pitch.toml", "--interval", wrong], folder);
+        assert_eq!(code(&refused), 2);
+        assert!(text(&refused.stderr).contains(wrong), "{}", text(&refused.stderr));
+    }
+    let mixed = [&asked[..], &["--set", "loop.sample_period_s=0.02"]].concat();
+    let refused = fspid(&mixed, folder);
+    assert_eq!(code(&refused), 2);
+    assert!(text(&refused.stderr).contains("allowed beside it are ready sets"));
+}

@@ -8,8 +8,11 @@ use super::external_controller::Beside;
 use super::{Format, json_text};
 use crate::argument::{Folder, InFile, OutFile, written};
 use crate::exit::{Failure, note, print};
+use fspid_scenario::file;
 use fspid_study::output;
-use fspid_study::verify::{Question, Verification, verify};
+use fspid_study::verify::interval::{Question as Interval, interval};
+use fspid_study::verify::{Question, Verification, names_a_set, verify};
+use serde_json::json;
 
 /// Judge the requirements of a scenario: pass or fail with the number, the worst case, and a file that replays it.
 ///
@@ -31,6 +34,11 @@ pub(crate) struct Arguments {
     /// Add the requirements of a file with `[[requirement]]` entries.
     #[arg(long = "requirements", value_name = "FILE.toml")]
     requirement_files: Vec<InFile>,
+    /// Tell between which values a number of the file keeps the requirements met, in place of judging the file as it is
+    /// written: `--interval controller.FSPID.nominal.kp`, as `fspid check --paths` calls it. Once for each. What lies between
+    /// the values that are looked at is not looked at.
+    #[arg(long = "interval", value_name = "PATH", conflicts_with_all = ["requirement_files", "junit", "replay", "libraries", "fmus"])]
+    intervals: Vec<String>,
     /// How the answer is written.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
@@ -46,6 +54,7 @@ const HELP: &str = "Examples:
   fspid verify pitch.toml --set ctms
   fspid verify pitch.toml --set mil-f-9490d --set mil-f-8785c:level=1,category=C --junit out.xml
   fspid verify pitch.toml --replay again; fspid simulate again/01-overshoot_pct-FSPID.toml
+  fspid verify pitch.toml --set ctms --interval controller.FSPID.nominal.kp
 Exit codes: 0 all met; 1 one is not met, or a flight failed by itself; 2 the input is wrong; 4 the output could not be written.
 More, with every measure and set: fspid verify --help";
 
@@ -91,6 +100,9 @@ Examples:
 Exit codes: 0 all met; 1 one is not met, or a flight failed by itself; 2 the input is wrong; 4 the output could not be written.";
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if !arguments.intervals.is_empty() {
+        return tell_intervals(arguments);
+    }
     let requirement_files: Vec<&Path> =
         arguments.requirement_files.iter().map(AsRef::as_ref).collect();
     let settings = arguments.beside.overrides(&arguments.settings)?;
@@ -118,6 +130,40 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     match (verification.unmet(), verification.failed_flights.len()) {
         (0, 0) => Ok(()),
         (unmet, flights) => Err(Failure::not_met_of(unmet, verification.judgements.len(), flights)),
+    }
+}
+
+/// Between which values each number holds.
+fn tell_intervals(arguments: &Arguments) -> Result<(), Failure> {
+    if let Some(change) = arguments.settings.iter().find(|it| !names_a_set(it)) {
+        return Err(Failure::input(format_args!(
+            "--set {change}: --interval looks around the values of the file as it is written; allowed beside it are ready sets"
+        )));
+    }
+    let text = file::read_text(&arguments.file).map_err(Failure::load)?;
+    let (name, folder) = (arguments.file.display().to_string(), arguments.file.parent());
+    let folder = Some(folder.unwrap_or(Path::new("")));
+    let look = |path: &String| {
+        let sets = &arguments.settings;
+        interval(&Interval { text: &text, name: &name, folder, path, sets }).map_err(Failure::input)
+    };
+    let found = arguments.intervals.iter().map(look).collect::<Result<Vec<_>, _>>()?;
+    match arguments.format {
+        Format::Text => {
+            let lines = found.iter().map(|it| format!("{}: {}\n", it.path, it.text()));
+            print(&lines.collect::<String>())?;
+        }
+        Format::Json => {
+            let list: Vec<_> = found.iter().map(|it| it.json()).collect();
+            print(&json_text(&json!({ "schema": 1, "intervals": list })))?;
+        }
+    }
+    match found.iter().filter(|it| !it.holds()).count() {
+        0 => Ok(()),
+        count => Err(Failure::not_met(format_args!(
+            "{count} of {} numbers do not hold at their values",
+            found.len()
+        ))),
     }
 }
 

@@ -128,8 +128,9 @@ fn at_rest(result: &ControllerResult) -> Vec<String> {
     words.map(|words| sentence(&format!("{}: {words}", result.name))).collect()
 }
 
-/// True for `NAME` and `NAME:key=value`, false for `path=value`; names in quotes do not count.
-fn names_a_set(text: &str) -> bool {
+/// True for a ready set, `NAME` and `NAME:key=value`, false for a change, `path=value`; names in quotes do not count.
+#[must_use]
+pub fn names_a_set(text: &str) -> bool {
     let mut in_quotes = false;
     for c in text.chars() {
         match c {
