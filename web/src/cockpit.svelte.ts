@@ -198,14 +198,14 @@ class Cockpit {
   async refresh(): Promise<void> {
     const { text } = this;
     this.guest = null;
-    // Both are asked for at once, so that the worker does not wait for the page in between.
-    const opened = this.engine.latest("open", "open", { text });
+    // Both are asked for at once, so that the worker does not wait for the page in between, which draws the flight while the
+    // worker reads what the scenario holds.
     const flown = this.engine.latest("fly", "fly", { text });
-    const summary = await opened;
-    if (summary === OVERTAKEN || !this.#take(summary)) return;
+    const opened = this.engine.latest("open", "open", { text });
     const flight = await flown;
-    if (flight === OVERTAKEN) return;
-    this.#draw(flight, text);
+    if (flight !== OVERTAKEN) this.#draw(flight, text);
+    const summary = await opened;
+    if (summary === OVERTAKEN || !this.#take(summary) || flight === OVERTAKEN) return;
     await this.look();
   }
 
