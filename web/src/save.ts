@@ -8,9 +8,9 @@ export function saved(name: string, content: string | Blob, type = "text/plain")
   setTimeout(() => URL.revokeObjectURL(url), 10_000);
 }
 
-/** Bytes that lie in a column, eight in each number. */
-export function bytesOf(column: Float64Array, count: number): Blob {
-  return new Blob([new Uint8Array(column.buffer as ArrayBuffer, column.byteOffset, count)], { type: "application/zip" });
+/** An archive that lies in a column, eight bytes in each number. */
+export function archiveOf(column: Float64Array, bytes: number): Blob {
+  return new Blob([new Uint8Array(column.buffer as ArrayBuffer, column.byteOffset, bytes)], { type: "application/zip" });
 }
 
 /** A figure as pixels, twice as fine as it is drawn, on white. */

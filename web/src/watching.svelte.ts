@@ -31,9 +31,9 @@ interface Model {
 }
 
 export interface Difference {
-  largest: number;
+  largest_deg: number;
   at_s: number;
-  rms: number;
+  rms_deg: number;
   lines: number;
 }
 

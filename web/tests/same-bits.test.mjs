@@ -163,15 +163,15 @@ test("the difference between a loop and its model is of the model that fspid sim
     const [time_s, theta, command] = ["time_s", "FSPID.theta_deg", "FSPID.command_deg"].map((name) => table.get(name));
     const asked = { verb: "compare", time_s: time_s.map((at) => at + 100), measured_deg: theta, begin_s: 100, model_s: time_s, theta_deg: theta, command_deg: command };
     const alike = ask({ ...asked, time_s, begin_s: 0 });
-    assert.deepEqual(alike.json.difference, { largest: 0, at_s: time_s.at(-1), rms: 0, lines: time_s.length });
+    assert.deepEqual(alike.json.difference, { largest_deg: 0, at_s: time_s.at(-1), rms_deg: 0, lines: time_s.length });
     same(alike.columns[alike.json.model_deg], theta, "theta");
     same(alike.columns[alike.json.command_deg], command, "command");
     // Off by three and four degrees at two lines, and at one line nothing is known.
     const measured_deg = theta.map((value, at) => (at === 5 ? value + 3 : at === 9 ? value - 4 : at === 11 ? null : value));
     const { json, columns } = ask({ ...asked, time_s, begin_s: 0, measured_deg });
     assert.equal(json.difference.lines, time_s.length - 1);
-    assert.ok(Math.abs(json.difference.largest + 4) < 1e-12 && json.difference.at_s === time_s[9]);
-    assert.ok(Math.abs(json.difference.rms - Math.sqrt(25 / (time_s.length - 1))) < 1e-12);
+    assert.ok(Math.abs(json.difference.largest_deg + 4) < 1e-12 && json.difference.at_s === time_s[9]);
+    assert.ok(Math.abs(json.difference.rms_deg - Math.sqrt(25 / (time_s.length - 1))) < 1e-12);
     assert.ok(Number.isNaN(columns[json.difference_deg][11]));
     assert.equal(ask({ ...asked, model_s: [], theta_deg: [], command_deg: [] }).json.difference, null);
   } finally {

@@ -369,6 +369,10 @@ test("Keep: there is a command for every target of an export, with what was chan
   const [unit] = await Promise.all([page.waitForEvent("download"), page.keyboard.press("Enter")]);
   assert.equal(unit.suggestedFilename(), "fspid-fmu3.zip");
   await page.getByText(/sources only: a page has no compiler/).waitFor();
+  // Of another text it says nothing.
+  await field.fill("2.5");
+  await field.press("Enter");
+  await page.getByText(/sources only/).waitFor({ state: "detached" });
   await page.locator("[data-test=export-controller]").selectOption("CPID");
   assert.equal(await page.locator("[data-export=table]").count(), 0);
   await page.getByRole("button", { name: "copy the command for fmu3" }).click();

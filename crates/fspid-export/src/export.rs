@@ -151,10 +151,12 @@ fn exported<R: Real>(
         vectors: &vectors,
         code: &files,
     };
-    // Nobody asks a page for it, which would be a quarter of what writes the code.
-    let is_there = !cfg!(target_family = "wasm");
-    let has_evidence = is_there && request.evidence && request.target == Target::C;
-    let evidence = if has_evidence { evidence::files(&subject) } else { Vec::new() };
+    let has_evidence = request.evidence && request.target == Target::C;
+    let evidence = match has_evidence {
+        true if cfg!(target_family = "wasm") => return Err(refused(Refusal::NotInPages)),
+        true => evidence::files(&subject),
+        false => Vec::new(),
+    };
     Ok(Export { prefix: prefix.to_owned(), files, evidence, notes })
 }
 

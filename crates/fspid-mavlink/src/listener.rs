@@ -8,6 +8,9 @@ pub type Line = Vec<(&'static str, f64)>;
 
 /// Times that go back by more than this, in milliseconds, are those of another flight.
 const BACK_MS: u32 = 500;
+/// How long a value stands that is not told again, in milliseconds: three messages of a stream of one a second, the slowest
+/// that autopilots are asked for. A set-point of a mode that has ended would else stand beside every attitude that follows.
+const STANDS_MS: u32 = 3000;
 /// So many attitudes of another sender, and none of the one that is followed, and the other one is followed.
 const MISSED: u32 = 100;
 /// Component of an autopilot. Gimbals and the like tell attitudes of their own.
@@ -42,9 +45,17 @@ pub struct Listener {
     /// Attitudes of others since the last of the one that is followed.
     missed: u32,
     time_ms: u32,
-    held: Values,
+    held: Vec<Held>,
     /// Whether the set-point is one that was told for the attitude.
     is_target: bool,
+}
+
+/// The latest of a value, and the time of the attitude before it.
+#[derive(Clone, Copy, Debug)]
+struct Held {
+    name: &'static str,
+    value: Option<f64>,
+    told_ms: u32,
 }
 
 impl Listener {
@@ -110,9 +121,10 @@ impl Listener {
     }
 
     fn hold(&mut self, (name, value): (&'static str, Option<f64>)) {
-        match self.held.iter_mut().find(|(held, _)| *held == name) {
-            Some((_, held)) => *held = value,
-            None => self.held.push((name, value)),
+        let new = Held { name, value, told_ms: self.time_ms };
+        match self.held.iter_mut().find(|held| held.name == name) {
+            Some(held) => *held = new,
+            None => self.held.push(new),
         }
     }
 
@@ -120,11 +132,36 @@ impl Listener {
         // An autopilot that has begun anew: what it said before is not what it says now.
         if time_ms.saturating_add(BACK_MS) < self.time_ms {
             self.held.clear();
-            self.is_target = false;
         }
+        self.held.retain(|held| time_ms.saturating_sub(held.told_ms) <= STANDS_MS);
+        // Without a target a desired pitch counts again.
+        self.is_target &= self.held.iter().any(|held| held.name == SETPOINT);
         self.time_ms = time_ms;
         let time = ("time_s", Some(f64::from(time_ms) / 1000.0));
-        let all = [time].into_iter().chain(values).chain(self.held.iter().copied());
+        let held = self.held.iter().map(|held| (held.name, held.value));
+        let all = [time].into_iter().chain(values).chain(held);
         all.filter_map(|(name, value)| value.map(|value| (name, value))).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn setpoint_at(listener: &mut Listener, time_ms: u32) -> Option<f64> {
+        let line = listener.joined(Told::Attitude { time_ms, values: Vec::new() });
+        line.expect("a line").into_iter().find(|(name, _)| *name == SETPOINT).map(|(_, it)| it)
+    }
+
+    #[test]
+    fn a_set_point_that_is_not_told_any_more_is_none_and_a_desired_pitch_counts_again() {
+        let mut listener = Listener::default();
+        assert_eq!(setpoint_at(&mut listener, 10_000), None);
+        listener.joined(Told::Target(Some(2.0)));
+        listener.joined(Told::Desired(7.0));
+        assert_eq!(setpoint_at(&mut listener, 10_000 + STANDS_MS), Some(2.0));
+        assert_eq!(setpoint_at(&mut listener, 10_001 + STANDS_MS), None);
+        listener.joined(Told::Desired(7.0));
+        assert_eq!(setpoint_at(&mut listener, 10_100 + STANDS_MS), Some(7.0));
     }
 }

@@ -1,10 +1,10 @@
 //! What a message says of a pitch loop, in the units of lines.
 
-use mavlink::Message as _;
 use mavlink::dialects::common::{
     ATTITUDE_DATA, ATTITUDE_TARGET_DATA, AttitudeTargetTypemask, MavMessage,
     NAV_CONTROLLER_OUTPUT_DATA, SERVO_OUTPUT_RAW_DATA, VFR_HUD_DATA,
 };
+use mavlink::{Message as _, MessageData as _};
 
 use crate::frame::{Damage, Frame};
 
@@ -22,7 +22,7 @@ const NO_PULSE: [u16; 2] = [0, u16::MAX];
 pub(crate) enum Told {
     /// An attitude at a time, in milliseconds since the autopilot's start.
     Attitude { time_ms: u32, values: Values },
-    /// Something that is held until it is told anew.
+    /// Something that stands for a while.
     Held(Values),
     /// A set-point for the attitude.
     Target(Option<f64>),
@@ -51,7 +51,13 @@ pub(crate) fn told(frame: &Frame<'_>) -> Result<Told, Damage> {
 }
 
 /// Numbers of the messages that are read; all others are not even taken apart.
-const USED: [u32; 5] = [30, 36, 62, 74, 83];
+const USED: [u32; 5] = [
+    ATTITUDE_DATA::ID,
+    SERVO_OUTPUT_RAW_DATA::ID,
+    NAV_CONTROLLER_OUTPUT_DATA::ID,
+    VFR_HUD_DATA::ID,
+    ATTITUDE_TARGET_DATA::ID,
+];
 
 fn attitude(data: &ATTITUDE_DATA) -> Result<Told, Damage> {
     let values = finite(

@@ -57,7 +57,9 @@ impl Cells<'_> {
         (lo, hi): (f64, f64),
         values: impl Iterator<Item = f64>,
     ) {
-        let told: String = values.map(|value| letters((value - lo) / (hi - lo))).collect();
+        // A surface that is level has one value, and that is its lower end.
+        let span = if hi > lo { hi - lo } else { 1.0 };
+        let told: String = values.map(|value| letters((value - lo) / span)).collect();
         let data = format!("data-levels=\"{lo:e} {hi:e}\" data-cells=\"{told}\"");
         self.mark(canvas, panel, &data);
     }
@@ -127,6 +129,15 @@ mod tests {
         assert_eq!([0.0, 1.0, 0.5].map(letters), ["00", "zz", "i0"]);
         assert_eq!(letters(f64::NAN), NO_LEVEL);
         assert_eq!(letters(7.0), "zz");
+    }
+
+    #[test]
+    fn a_level_surface_has_its_value_everywhere() {
+        let mut canvas = Canvas::new(10.0, 10.0);
+        let cells = Cells { name: "", quantity: "", columns: &[0.0, 1.0], rows: &[0.0] };
+        cells.graded(&mut canvas, "", (3.0, 3.0), [3.0, f64::NAN].into_iter());
+        let svg = canvas.finish("", "").into_string();
+        assert!(svg.contains("data-levels=\"3e0 3e0\"") && svg.contains("data-cells=\"00..\""));
     }
 
     #[test]

@@ -8,7 +8,7 @@ use super::page::{self, EDGE, LABEL_PX};
 use super::plot::TICK_PX;
 use super::style::{Rgb, Role, diverging, sequential};
 use super::svg::{Anchor, Canvas, Font, Paint, Rect, Svg, polyline_data};
-use super::text::text_width;
+use super::text::{text_width, unmarked};
 use super::view::{Light, Observer, View};
 
 /// How a [`Surface`] is shown.
@@ -78,6 +78,12 @@ impl Surface {
             SurfaceKind::Map => self.map(),
             SurfaceKind::Relief => self.relief(),
         }
+    }
+
+    /// Names of the abscissa, the ordinate and the values as they are read, without marks for the drawing.
+    #[must_use]
+    pub fn spoken_labels(&self) -> [String; 3] {
+        [&self.x_label, &self.y_label, &self.z_label].map(|label| unmarked(label))
     }
 
     fn extent(&self) -> Option<(f64, f64)> {

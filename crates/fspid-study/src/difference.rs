@@ -26,7 +26,7 @@ impl Curve<'_> {
     }
 }
 
-/// How far apart two curves are.
+/// How far apart two curves are, in their own unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Difference {
     /// The largest one, with its sign; the last of several.

@@ -40,7 +40,7 @@ pub enum Refusal {
     #[error("this target is written of controllers alone; --to c writes a fuzzy system")]
     NoController,
     /// What would make a page too large.
-    #[error("a page does not write this target; `fspid export` does")]
+    #[error("a page does not write this; `fspid export` does")]
     NotInPages,
     /// Nothing that a table could be of.
     #[error(

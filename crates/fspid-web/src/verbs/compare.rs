@@ -21,7 +21,7 @@ pub(super) fn compare(question: &Question) -> Answered {
     let known = |at: usize| measured.get(at).copied().unwrap_or(f64::NAN);
     let apart: Vec<f64> = theta.iter().enumerate().map(|(at, value)| known(at) - value).collect();
     let difference = Difference::of(&time_s, &apart).map(|found| {
-        json!({ "largest": found.largest, "at_s": found.at_s, "rms": found.rms, "lines": found.count })
+        json!({ "largest_deg": found.largest, "at_s": found.at_s, "rms_deg": found.rms, "lines": found.count })
     });
     let mut answer = Answer::of(json!(null));
     let [theta, command, apart] = [theta, command, apart].map(|column| answer.keep(column));
