@@ -19,6 +19,29 @@ pub struct AircraftSample {
     pub load_factor: f64,
     /// Velocity of the air along forward, right, down of the body, m/s: wind, gusts, turbulence.
     pub air_m_s: [f64; 3],
+    /// Way over ground, m north and m east of the origin of the air.
+    pub position_m: [f64; 2],
+    /// Heading, rad, clockwise from north within ±π.
+    pub heading_rad: f64,
+    /// Pitch of the body above the horizon, rad; what the loop sees is its change from the trim.
+    pub attitude_rad: f64,
+    /// Angle of sideslip, rad, air from the right positive.
+    pub sideslip_rad: f64,
+    /// Body rates of roll to the right and of yaw to the right, rad/s; that of pitch every plant shows.
+    pub roll_yaw_rad_s: [f64; 2],
+    /// Throttle, in the measure of the aircraft's data: fraction of full thrust, or multiple of a reference thrust.
+    pub throttle: f64,
+    /// Angle of the velocity over ground above the horizon, rad: the climb.
+    pub flight_path_rad: f64,
+    /// Rates of the air about forward, right, down of the body, rad/s: those of gusts and turbulence.
+    pub air_rad_s: [f64; 3],
+    /// Energy height, m.
+    ///
+    /// $$ h_e = h + \frac{V^2}{2 g} $$
+    ///
+    /// with the true airspeed $V$, so that it falls in air which takes airspeed away; over ground the
+    /// aircraft has the same with its speed over ground.
+    pub energy_height_m: f64,
     /// Angle between the true vertical and that of a pendulum on board, rad: what gyros erect to.
     pub apparent_vertical_rad: f64,
     /// First limit of the model's validity that is left at this sample.
@@ -26,7 +49,7 @@ pub struct AircraftSample {
 }
 
 /// Names of [`AircraftSample::values`], in order.
-pub const AIRCRAFT_COLUMNS: [&str; 9] = [
+pub const AIRCRAFT_COLUMNS: [&str; 22] = [
     "airspeed_m_s",
     "altitude_m",
     "alpha_rad",
@@ -36,13 +59,29 @@ pub const AIRCRAFT_COLUMNS: [&str; 9] = [
     "air_forward_m_s",
     "air_right_m_s",
     "air_down_m_s",
+    "north_m",
+    "east_m",
+    "heading_rad",
+    "attitude_rad",
+    "sideslip_rad",
+    "p_rad_s",
+    "r_rad_s",
+    "throttle",
+    "flight_path_rad",
+    "air_roll_rad_s",
+    "air_pitch_rad_s",
+    "air_yaw_rad_s",
+    "energy_height_m",
 ];
 
 impl AircraftSample {
     /// The numbers in the order of [`AIRCRAFT_COLUMNS`].
     #[must_use]
-    pub fn values(&self) -> [f64; 9] {
+    pub fn values(&self) -> [f64; AIRCRAFT_COLUMNS.len()] {
         let [forward, right, down] = self.air_m_s;
+        let [north_m, east_m] = self.position_m;
+        let [p_rad_s, r_rad_s] = self.roll_yaw_rad_s;
+        let [air_roll_rad_s, air_pitch_rad_s, air_yaw_rad_s] = self.air_rad_s;
         [
             self.airspeed_m_s,
             self.altitude_m,
@@ -53,6 +92,19 @@ impl AircraftSample {
             forward,
             right,
             down,
+            north_m,
+            east_m,
+            self.heading_rad,
+            self.attitude_rad,
+            self.sideslip_rad,
+            p_rad_s,
+            r_rad_s,
+            self.throttle,
+            self.flight_path_rad,
+            air_roll_rad_s,
+            air_pitch_rad_s,
+            air_yaw_rad_s,
+            self.energy_height_m,
         ]
     }
 }

@@ -358,22 +358,37 @@ impl AircraftFlight {
     /// What is observable at a sample beyond pitch.
     pub(crate) fn sample(&self, motion: &AircraftMotion, elevator_rad: f64) -> AircraftSample {
         let (state, air) = (&motion.body.state, self.air(motion));
-        let aileron_rad = motion.aileron_rad;
-        let instant =
-            self.aircraft().instant(state, &self.controls(elevator_rad, aileron_rad), &air);
-        let wind_body_m_s = state.attitude.to_body(air.wind_ned_m_s);
+        let controls = self.controls(elevator_rad, motion.aileron_rad);
+        let instant = self.aircraft().instant(state, &controls, &air);
         let felt = self.load_factors(&instant);
+        let [north_m, east_m, _] = state.position_ned_m.to_array();
+        let attitude = state.euler();
         AircraftSample {
             airspeed_m_s: instant.flow.airspeed_m_s,
             altitude_m: state.altitude_m(),
             alpha_rad: instant.flow.alpha_rad,
-            bank_rad: state.euler().phi_rad,
-            aileron_rad,
+            bank_rad: attitude.phi_rad,
+            aileron_rad: motion.aileron_rad,
             load_factor: -felt.z,
-            air_m_s: (wind_body_m_s + air.gust_body_m_s).to_array(),
+            air_m_s: (state.attitude.to_body(air.wind_ned_m_s) + air.gust_body_m_s).to_array(),
+            position_m: [north_m, east_m],
+            heading_rad: attitude.psi_rad,
+            attitude_rad: attitude.theta_rad,
+            sideslip_rad: instant.flow.beta_rad,
+            roll_yaw_rad_s: [state.rates_rad_s.x, state.rates_rad_s.z],
+            throttle: controls.throttle,
+            flight_path_rad: flight_path_rad(state),
+            air_rad_s: air.gust_rates_rad_s.to_array(),
+            energy_height_m: self.energy_height_m(&instant),
             apparent_vertical_rad: apparent_vertical_rad(state, felt),
             departure: self.aircraft().model().validity().departure(&instant.flow),
         }
+    }
+
+    fn energy_height_m(&self, instant: &Instant) -> f64 {
+        let gravity_m_s2 = self.aircraft().environment().gravity_m_s2;
+        let airspeed_m_s = instant.flow.airspeed_m_s;
+        instant.flow.altitude_m + airspeed_m_s * airspeed_m_s / (2.0 * gravity_m_s2)
     }
 
     fn load_factors(&self, instant: &Instant) -> Vector3 {
@@ -388,6 +403,12 @@ fn apparent_vertical_rad(state: &RigidState, load_factors: Vector3) -> f64 {
     let felt = state.attitude.to_ned(load_factors);
     let (sine, cosine) = crate::math::sin_cos(state.euler().psi_rad);
     libm::atan2(felt.x * cosine + felt.y * sine, 1.0)
+}
+
+/// Angle of the velocity over ground above the horizon, rad; 0 at rest.
+fn flight_path_rad(state: &RigidState) -> f64 {
+    let [north, east, down] = state.attitude.to_ned(state.velocity_body_m_s).to_array();
+    libm::atan2(-down, libm::hypot(north, east))
 }
 
 /// States of a body and its way through the air.

@@ -31,11 +31,15 @@ enum Part {
 }
 
 /// What a nonlinear aircraft adds to the panels: label and column.
-const AIRCRAFT: [(&str, &str); 3] = [
+const AIRCRAFT: [(&str, &str); 5] = [
     ("airspeed [m/s]", "airspeed_m_s"),
     ("altitude [m]", "altitude_m"),
+    ("flight path above the horizon [deg]", "flight_path_rad"),
     ("air, downward [m/s]", "air_down_m_s"),
+    (THROTTLE, "throttle"),
 ];
+/// Drawn where it moves.
+const THROTTLE: &str = "throttle";
 
 /// A command beyond this many times its 99th percentile is a spike, and the panel does not show it.
 const SPIKE: f64 = 3.0;
@@ -175,8 +179,16 @@ impl Drawing<'_> {
 
     /// A column that only some flights have, if these have it.
     fn column(&self, label: &str, name: &str) -> Option<LinePanel> {
-        let values = |trace: &Trace| Some(shown(trace, trace.column(name)?).to_vec());
-        self.flown().find_map(|(_, result)| values(&result.trace))?;
+        let values = |trace: &Trace| {
+            let values = shown(trace, trace.column(name)?).iter().copied();
+            Some(if name.ends_with("_rad") {
+                values.map(degrees).collect()
+            } else {
+                values.collect::<Vec<_>>()
+            })
+        };
+        let drawn = |values: &Vec<f64>| label != THROTTLE || moves(values);
+        self.flown().filter_map(|(_, result)| values(&result.trace)).find(drawn)?;
         let series = self.series(|result| values(&result.trace).unwrap_or_default(), false);
         let (y_label, x_label) = (label.to_owned(), "time [s]".to_owned());
         Some(LinePanel { y_label, x_label, series, x_range: self.window(), ..LinePanel::default() })
@@ -332,6 +344,11 @@ fn shown<'a, T>(trace: &Trace, column: &'a [T]) -> &'a [T] {
     };
     let end = if steps_at_end { column.len().saturating_sub(1) } else { column.len() };
     column.get(..end).unwrap_or(column)
+}
+
+/// True for values that are not all the same one.
+fn moves(values: &[f64]) -> bool {
+    values.windows(2).any(|pair| matches!(pair, [one, next] if one.to_bits() != next.to_bits()))
 }
 
 /// True for a flight that fails and may go anywhere: what comes down to the ground stays as readable as it was.

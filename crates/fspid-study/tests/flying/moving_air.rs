@@ -90,3 +90,81 @@ fn a_vertical_gyro_sags_in_a_climb() {
     // 3 deg/min for 20 s is 1 deg.
     assert!(error_deg > 0.1 && error_deg <= 1.0 + 1e-9, "{error_deg}");
 }
+
+/// In still air at rest the aircraft goes straight north at its airspeed, and nothing else moves.
+#[test]
+fn a_trace_tells_the_way_the_attitude_and_the_energy() {
+    let trace = flown(NAVION, &["setpoint.amplitude_deg=0.0"]);
+    let (last, speed_m_s) = (trace.rows() - 1, column(&trace, "airspeed_m_s")[0]);
+    let north_m = column(&trace, "north_m")[last];
+    assert!((north_m - speed_m_s * trace.time_s[last]).abs() < 1e-6, "{north_m}");
+    for name in ["east_m", "heading_rad", "sideslip_rad", "p_rad_s", "r_rad_s", "flight_path_rad"] {
+        assert!(largest(column(&trace, name)) < 1e-9, "{name}");
+    }
+    // Standard gravity, to the last digit that is defined.
+    let energy_m = 304.8 + speed_m_s * speed_m_s / (2.0 * 9.80665);
+    assert!((column(&trace, "energy_height_m")[last] - energy_m).abs() < 1e-6);
+    // Level flight: pitch is the angle of attack.
+    assert!((column(&trace, "attitude_rad")[0] - column(&trace, "alpha_rad")[0]).abs() < 1e-9);
+    let throttle = column(&trace, "throttle");
+    assert!(throttle[0] > 0.0 && throttle.iter().all(|it| it.to_bits() == throttle[0].to_bits()));
+}
+
+/// The climb is the rate of the altitude over the speed over ground, and pitch its sum with the angle of attack
+/// where wings are level and the air is still.
+#[test]
+fn the_flight_path_is_how_the_altitude_changes() {
+    let trace = flown(NAVION, &["setpoint.amplitude_deg=3.0"]);
+    let [path, altitude, north] =
+        ["flight_path_rad", "altitude_m", "north_m"].map(|name| column(&trace, name));
+    let [attitude, alpha] = ["attitude_rad", "alpha_rad"].map(|name| column(&trace, name));
+    for k in (1..trace.rows() - 1).step_by(97) {
+        let slope = (altitude[k + 1] - altitude[k - 1]) / (north[k + 1] - north[k - 1]);
+        // Of central differences over 0.02 s.
+        assert!((path[k].tan() - slope).abs() < 1e-4, "{k}: {} {slope}", path[k]);
+        assert!((attitude[k] - alpha[k] - path[k]).abs() < 1e-9, "{k}");
+    }
+    assert!(largest(path).to_degrees() > 1.0);
+}
+
+/// Kinematics of Euler angles: bank and heading are what the rates add up to.
+#[test]
+fn rates_of_the_body_add_up_to_bank_and_heading() {
+    let trace = flown(&turbulent(""), &QUIET);
+    let [bank, pitch, heading, p, r] =
+        ["bank_rad", "attitude_rad", "heading_rad", "p_rad_s", "r_rad_s"]
+            .map(|name| column(&trace, name));
+    let rates = |k: usize| {
+        let across = trace.q_rad_s[k] * bank[k].sin() + r[k] * bank[k].cos();
+        [p[k] + pitch[k].tan() * across, across / pitch[k].cos()]
+    };
+    let mut sums = [bank[0], heading[0]];
+    for k in 1..trace.rows() {
+        let dt_s = trace.time_s[k] - trace.time_s[k - 1];
+        for (sum, (one, next)) in sums.iter_mut().zip(rates(k - 1).into_iter().zip(rates(k))) {
+            *sum += 0.5 * (one + next) * dt_s;
+        }
+    }
+    let last = trace.rows() - 1;
+    // The trapezoidal rule over 6000 samples of a rough flight.
+    assert!((sums[0] - bank[last]).abs() < 1e-3, "{} {}", sums[0], bank[last]);
+    assert!((sums[1] - heading[last]).abs() < 1e-3, "{} {}", sums[1], heading[last]);
+    assert!(largest(heading).to_degrees() > 0.1);
+}
+
+/// Turbulence turns the air, a wind does not: rates of the air are those of turbulence and gusts.
+#[test]
+fn the_air_turns_in_turbulence_alone() {
+    let wind = "[wind]\nkind = \"steady\"\nspeed_kt = 30.0\nfrom_deg = 90.0\n";
+    let [windy, rough] =
+        [format!("{NAVION}{wind}"), turbulent("")].map(|text| flown(&text, &QUIET));
+    for name in ["air_roll_rad_s", "air_pitch_rad_s", "air_yaw_rad_s"] {
+        assert!(largest(column(&windy, name)) <= 0.0, "{name}");
+        assert!(largest(column(&rough, name)) > 1e-3, "{name}");
+    }
+    // Carried to the west by the whole wind, with the nose north.
+    let last = windy.rows() - 1;
+    let drift_m = column(&windy, "east_m")[last];
+    assert!((drift_m + 30.0 * 1852.0 / 3600.0 * 60.0).abs() < 0.1, "{drift_m}");
+    assert!(largest(column(&windy, "heading_rad")) < 1e-9);
+}
