@@ -22,6 +22,9 @@ pub const HIT_GROUND: &str = "hit the ground";
 /// The verdict on a flight whose external controller gave no answer.
 pub const CONTROLLER_LOST: &str = "controller lost";
 
+/// The verdict on a flight whose autopilot waited in vain for a mode to begin.
+pub const MODE_NEVER_BEGAN: &str = "mode never began";
+
 /// Version of the rows.
 pub const FORMAT: u32 = 2;
 

@@ -10,10 +10,11 @@
 use std::path::Path;
 use std::process::ExitCode;
 
+use fspid_aircraft::Gearing;
 use fspid_aircraft::{
     Aircraft, Controls, Environment, Linearisation, Range, Travel, TrimTarget, VelocityForm,
 };
-use fspid_daveml::flight::{Body, Gearing, Setting, TableForces};
+use fspid_daveml::flight::{Body, Setting, TableForces};
 use fspid_daveml::{Model, read};
 use fspid_numeric::scalar::Scalar;
 

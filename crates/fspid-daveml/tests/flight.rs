@@ -2,11 +2,12 @@
 #![allow(clippy::unwrap_used, reason = "a test")]
 #![allow(clippy::disallowed_methods, reason = "references may come from the platform's functions")]
 
+use fspid_aircraft::Gearing;
 use fspid_aircraft::{
     Air, AirMotion, Aircraft, Controls, Environment, Flow, ForceModel, MassProperties, RigidState,
     Travel, TrimTarget, Vector3,
 };
-use fspid_daveml::flight::{Body, FlightError, Gearing, Setting, TableForces};
+use fspid_daveml::flight::{Body, FlightError, Setting, TableForces};
 use fspid_daveml::{Model, read};
 
 const FOOT_M: f64 = 0.3048;

@@ -153,6 +153,7 @@ impl FlightModel {
             controllers: controllers.collect::<Result<_, SimError>>()?,
             externals: Vec::new(),
             surroundings: Surroundings::default(),
+            autopilot: None,
         })
     }
 

@@ -45,6 +45,7 @@ pub fn left_out_of(scenario: &Scenario) -> Vec<LeftOut> {
         // Without equations, no loop of theirs is claimed.
         externals: _,
         surroundings,
+        autopilot,
     } = scenario;
     let Surroundings { weather, pitch_sensor, rate_sensor } = surroundings;
     let sensors = || [pitch_sensor, rate_sensor].into_iter().flatten().map(Sensor::model);
@@ -59,6 +60,7 @@ pub fn left_out_of(scenario: &Scenario) -> Vec<LeftOut> {
         LeftOut::Disturbances => disturbances.iter().any(|one| !one.is_noise()),
         // Known to the study alone.
         LeftOut::Dispersions => false,
+        LeftOut::OuterLoops => autopilot.is_some(),
     };
     LeftOut::ALL.into_iter().filter(|what| present(*what)).collect()
 }

@@ -106,11 +106,13 @@ pub enum LeftOut {
     Disturbances,
     /// Numbers of the scenario that are drawn anew in campaigns.
     Dispersions,
+    /// Outer loops, which command the pitch set-point from what the aircraft does.
+    OuterLoops,
 }
 
 impl LeftOut {
     /// All of them.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Rounding,
         Self::MovingSetpoint,
         Self::NonlinearAircraft,
@@ -120,6 +122,7 @@ impl LeftOut {
         Self::Drift,
         Self::Disturbances,
         Self::Dispersions,
+        Self::OuterLoops,
     ];
 
     /// Name in files.
@@ -135,6 +138,7 @@ impl LeftOut {
             Self::Drift => "drift",
             Self::Disturbances => "disturbances",
             Self::Dispersions => "dispersions",
+            Self::OuterLoops => "outer-loops",
         }
     }
 
@@ -175,6 +179,7 @@ impl fmt::Display for LeftOut {
             Self::Drift => "Wandering bias of sensors is left out: a bias stands still.",
             Self::Disturbances => "Disturbances count while they stand still, as loads.",
             Self::Dispersions => "The claim is about the nominal numbers, not about those that a campaign draws.",
+            Self::OuterLoops => "The claim is about the pitch loop alone, not about the outer loops around it and the set-points that they command.",
         })
     }
 }

@@ -54,6 +54,7 @@ fn flown(plant: usize, lag: ActuatorLag, dt_s: f64, as_one: bool) -> SampledPlan
         controllers: vec![NamedController { name: "C".into(), controller: Controller::Fixed(pid) }],
         externals: Vec::new(),
         surroundings: Surroundings::default(),
+        autopilot: None,
     };
     let memory = Memory::of_gains(GAINS, &config);
     LoopModel::of(&scenario, &plant, &config, memory).expect("a loop").plant().clone()

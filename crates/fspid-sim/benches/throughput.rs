@@ -174,5 +174,6 @@ fn scenario(seed: u64) -> Scenario {
             named("PID with limits", Controller::Fixed(limited)),
         ],
         surroundings: Surroundings::default(),
+        autopilot: None,
     }
 }

@@ -9,6 +9,7 @@
 //! is solved leg by leg, by the [`law`](crate::law) of the leg. Nothing is allocated.
 
 use crate::actuator::{Actuator, ActuatorState, Course, Leg};
+use crate::autopilot::Commands;
 use crate::error::SimError;
 use crate::generator::Generator;
 use crate::gust_response::PlantAir;
@@ -19,6 +20,8 @@ use crate::plant::LinearPlant;
 /// What enters the plant beside the command, held over a sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Held<'a> {
+    /// What an autopilot commands; a linear plant has neither throttle nor bank.
+    pub(crate) autopilot: Commands,
     /// Disturbance at the elevator, nose up positive, rad.
     pub(crate) elevator_rad: f64,
     /// The air's velocity forward and down, m/s, and its pitch rate, rad/s.

@@ -7,6 +7,8 @@ use fspid_core::ConfigError;
 use fspid_core::fuzzy::FuzzyError;
 use fspid_lti::{InWords, LtiError};
 
+use crate::autopilot::AutopilotError;
+
 /// Why a part of a scenario could not be built.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -65,6 +67,10 @@ pub enum SimError {
     Trim(Box<TrimFailure>),
     /// A change of a linear plant's coefficients, of an aircraft that has none.
     AircraftChanges,
+    /// An autopilot around a plant that shows nothing but pitch.
+    AutopilotNeedsAircraft,
+    /// An autopilot that makes no sense.
+    Autopilot(AutopilotError),
     /// A question about a linear loop, of an aircraft that is none.
     NotLinear,
     /// A self-tuner of another structure than small signals along a flight are written for.
@@ -137,6 +143,10 @@ impl fmt::Display for SimError {
             Self::AircraftChanges => f.write_str(
                 "a nonlinear aircraft cannot be changed in flight; allowed are changes of linear plants",
             ),
+            Self::AutopilotNeedsAircraft => f.write_str(
+                "a linear plant shows neither altitude nor airspeed that outer loops could hold; allowed is a nonlinear aircraft",
+            ),
+            Self::Autopilot(error) => error.fmt(f),
             Self::NotLinear => {
                 f.write_str("a nonlinear aircraft has no linear loop; allowed is a linear plant")
             }
@@ -171,6 +181,12 @@ impl SimError {
     #[must_use]
     pub fn is_of_host(&self) -> bool {
         matches!(self, Self::NoHost | Self::Host { .. })
+    }
+}
+
+impl From<AutopilotError> for SimError {
+    fn from(error: AutopilotError) -> Self {
+        Self::Autopilot(error)
     }
 }
 

@@ -3,6 +3,7 @@
 use fspid_core::Step;
 
 use crate::aircraft::AircraftSample;
+use crate::autopilot::AutopilotSample;
 
 /// Everything observable at one sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,6 +22,8 @@ pub struct Instant {
     pub measured: [f64; 2],
     /// What an aircraft shows beyond pitch.
     pub aircraft: Option<AircraftSample>,
+    /// What the autopilot around the loop does.
+    pub autopilot: Option<AutopilotSample>,
     /// What the controller answered.
     pub step: Step<f64>,
 }

@@ -252,6 +252,7 @@ mod tests {
             controllers: Vec::new(),
             externals: Vec::new(),
             surroundings: crate::Surroundings::default(),
+            autopilot: None,
         }
     }
 

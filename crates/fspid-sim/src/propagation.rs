@@ -3,7 +3,9 @@
 
 use crate::actuated::{Actuated, ActuatedState, Held};
 use crate::aircraft::{AircraftFlight, AircraftMotion, AircraftSample};
+use crate::autopilot::Cut;
 use crate::error::SimError;
+use crate::in_flight::BEYOND;
 use crate::law::LinearStep;
 use crate::loop_model::SampledPlant;
 use crate::plant::LinearPlant;
@@ -130,7 +132,7 @@ impl Propagation {
             }
             (Self::ByLegs(it), Motion::ByLegs(state)) => it.advance(state, command_rad, held),
             (Self::Aircraft(it), Motion::Aircraft(state)) => {
-                it.advance(state, command_rad, held.elevator_rad);
+                it.advance(state, command_rad, held);
             }
             _ => {}
         }
@@ -147,9 +149,17 @@ impl Propagation {
         }
     }
 
+    /// Which way the elevator of an aircraft cannot follow the command.
+    pub(crate) fn cut(&self, motion: &Motion, command_rad: f64) -> Cut {
+        match (self, motion) {
+            (Self::Aircraft(it), Motion::Aircraft(state)) => it.cut(state, command_rad),
+            _ => Cut::Not,
+        }
+    }
+
     /// The states that a linear model of the coming sample has: those of
     /// [`linear_step`](Self::linear_step), or pitch, u, w, q and actuator of an aircraft.
-    fn values(&self, motion: &Motion) -> Vec<f64> {
+    pub(crate) fn values(&self, motion: &Motion) -> Vec<f64> {
         match (self, motion) {
             (Self::AsOne(_), Motion::AsOne(state)) => state.values().to_vec(),
             (Self::ByLegs(it), Motion::ByLegs(state)) => it.values(state),
@@ -158,12 +168,32 @@ impl Propagation {
         }
     }
 
-    fn nudge(&self, motion: &mut Motion, place: usize, by: f64) {
+    pub(crate) fn nudge(&self, motion: &mut Motion, place: usize, by: f64) {
         match (self, motion) {
             (Self::AsOne(_), Motion::AsOne(state)) => state.nudge(place, by),
             (Self::ByLegs(it), Motion::ByLegs(state)) => it.nudge(state, place, by),
             (Self::Aircraft(it), Motion::Aircraft(state)) => it.nudge(state, place, by),
             _ => {}
+        }
+    }
+
+    /// Of an aircraft: altitude, heading, v, p, r, bank and power of the engine; SI.
+    pub(crate) fn beyond(&self, motion: &Motion) -> [f64; BEYOND] {
+        match (self, motion) {
+            (Self::Aircraft(it), Motion::Aircraft(state)) => it.beyond(state),
+            _ => [0.0; BEYOND],
+        }
+    }
+
+    /// True for an aircraft whose engine does not follow its throttle at once.
+    pub(crate) fn has_lagging_engine(&self) -> bool {
+        matches!(self, Self::Aircraft(it) if it.has_lagging_engine())
+    }
+
+    /// Moves one of these.
+    pub(crate) fn nudge_beyond(&self, motion: &mut Motion, place: usize, by: f64) {
+        if let (Self::Aircraft(it), Motion::Aircraft(state)) = (self, motion) {
+            it.nudge_beyond(state, place, by);
         }
     }
 

@@ -3,6 +3,7 @@
 use crate::actuated::Actuated;
 use crate::actuator::Actuator;
 use crate::aircraft::{AircraftFlight, AircraftPlant};
+use crate::autopilot::Autopilot;
 use crate::controller::Controller;
 use crate::error::SimError;
 use crate::external::{External, NamedExternal};
@@ -94,6 +95,8 @@ pub struct Scenario {
     pub externals: Vec<NamedExternal>,
     /// Moving air and sensors; by default none.
     pub surroundings: Surroundings,
+    /// What commands pitch, throttle and bank of an aircraft, beside the set-point; by default nothing.
+    pub autopilot: Option<Autopilot>,
 }
 
 impl Scenario {
@@ -111,6 +114,7 @@ impl Scenario {
             controllers: Vec::new(),
             externals: Vec::new(),
             surroundings: Surroundings::default(),
+            autopilot: None,
         }
     }
 
@@ -119,6 +123,12 @@ impl Scenario {
     pub fn with_controller(mut self, name: &str, controller: Controller) -> Self {
         self.controllers.push(NamedController { name: name.to_owned(), controller });
         self
+    }
+
+    /// The same with its pitch loop alone: nothing around it.
+    #[must_use]
+    pub fn without_autopilot(self) -> Self {
+        Self { autopilot: None, ..self }
     }
 
     /// Everybody who answers, in the order of the flights.
@@ -181,6 +191,8 @@ impl Scenario {
             gust_responses,
             pitch_sensor: self.surroundings.pitch_sensor,
             rate_sensor: self.surroundings.rate_sensor,
+            autopilot: self.checked_autopilot()?.cloned(),
+            trim_throttle: self.plant.aircraft().map_or(0.0, |it| it.trim().controls.throttle),
         })
     }
 
@@ -192,6 +204,16 @@ impl Scenario {
         let is_seen = pitch_sensor.is_none() && rate_sensor.is_none();
         let is_calm = weather.is_none();
         self.plant.linear().is_some() && is_calm && is_seen && self.actuator.is_first_order_servo()
+    }
+
+    /// The autopilot, if this plant and this flight can have it.
+    fn checked_autopilot(&self) -> Result<Option<&Autopilot>, SimError> {
+        let Some(autopilot) = &self.autopilot else { return Ok(None) };
+        let Some(plant) = self.plant.aircraft() else {
+            return Err(SimError::AutopilotNeedsAircraft);
+        };
+        autopilot.check(plant, self.timing)?;
+        Ok(Some(autopilot))
     }
 
     fn gusts(&self) -> Result<Option<Vec<[f64; 3]>>, SimError> {
@@ -301,6 +323,8 @@ pub struct Prepared {
     pub(crate) gust_responses: Option<Vec<Vec<f64>>>,
     pub(crate) pitch_sensor: Option<Sensor>,
     pub(crate) rate_sensor: Option<Sensor>,
+    pub(crate) autopilot: Option<Autopilot>,
+    pub(crate) trim_throttle: f64,
 }
 
 impl Prepared {
@@ -326,6 +350,12 @@ impl Prepared {
     #[must_use]
     pub fn has_sensors(&self) -> bool {
         self.pitch_sensor.is_some() || self.rate_sensor.is_some()
+    }
+
+    /// True where something commands pitch from around the loop.
+    #[must_use]
+    pub fn has_autopilot(&self) -> bool {
+        self.autopilot.is_some()
     }
 
     /// True for a flight in six degrees of freedom.

@@ -155,5 +155,5 @@ type OfAir<'a> = (Option<&'a [[f64; 3]]>, Option<&'a [Vec<f64>]>);
 pub(crate) fn held<'a>(elevator_rad: f64, (gusts, responses): OfAir<'a>, k: usize) -> Held<'a> {
     let gust = gusts.and_then(|gusts| gusts.get(k)).copied().unwrap_or_default();
     let added = responses.and_then(|responses| responses.get(k)).map(Vec::as_slice);
-    Held { elevator_rad, gust, added: added.unwrap_or_default() }
+    Held { elevator_rad, gust, added: added.unwrap_or_default(), ..Held::default() }
 }

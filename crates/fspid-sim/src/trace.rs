@@ -4,6 +4,7 @@ use fspid_aircraft::Departure;
 use fspid_core::{Faults, Gains};
 
 use crate::aircraft::AIRCRAFT_COLUMNS;
+use crate::autopilot::AUTOPILOT_COLUMNS;
 use crate::external::ControllerLoss;
 use crate::instant::Instant;
 use crate::scenario::Prepared;
@@ -24,6 +25,11 @@ pub enum Outcome {
     HitGround {
         /// Time of the first sample at or below the ground, s.
         at_s: f64,
+    },
+    /// All samples were flown, and the autopilot still waits for a mode to begin.
+    ModeNeverBegan {
+        /// Its number, from 0.
+        mode: usize,
     },
     /// An external controller gave no answer; the trace ends before.
     ControllerLost {
@@ -148,7 +154,8 @@ impl Trace {
         let gust = prepared.gusts().and_then(|gusts| gusts.get(instant.k));
         let aircraft = instant.aircraft.map(|sample| sample.values());
         let values = measured.iter().flatten().chain(gust.into_iter().flatten());
-        let values = values.chain(aircraft.iter().flatten());
+        let autopilot = instant.autopilot.map(|sample| sample.values());
+        let values = values.chain(aircraft.iter().flatten()).chain(autopilot.iter().flatten());
         for (column, value) in self.columns.iter_mut().zip(values) {
             column.values.push(*value);
         }
@@ -177,5 +184,6 @@ fn column_names(prepared: &Prepared) -> impl Iterator<Item = &'static str> {
     let measured = prepared.has_sensors().then_some(MEASURED).into_iter().flatten();
     let gusts = prepared.gusts().map(|_| GUSTS).into_iter().flatten();
     let aircraft = prepared.is_aircraft().then_some(AIRCRAFT_COLUMNS).into_iter().flatten();
-    measured.chain(gusts).chain(aircraft)
+    let autopilot = prepared.has_autopilot().then_some(AUTOPILOT_COLUMNS).into_iter().flatten();
+    measured.chain(gusts).chain(aircraft).chain(autopilot)
 }

@@ -1,5 +1,6 @@
 //! All integration tests in one binary: linking one takes less than linking many.
 
+mod autopilot;
 mod batch;
 mod closed_loop;
 mod describing;

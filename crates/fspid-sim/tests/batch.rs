@@ -239,6 +239,7 @@ fn scenario(random: &mut Random, structure: Structure) -> Scenario {
         controllers: Vec::new(),
         externals: Vec::new(),
         surroundings: Surroundings::default(),
+        autopilot: None,
     };
     if structure.wild {
         for entry in Entry::ALL {

@@ -65,6 +65,7 @@ fn scenario(
         controllers: vec![NamedController { name: "C".into(), controller }],
         externals: Vec::new(),
         surroundings: Surroundings::default(),
+        autopilot: None,
     }
 }
 

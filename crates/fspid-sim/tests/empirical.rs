@@ -63,6 +63,7 @@ fn scenario(plant: LinearPlant, controller: Controller, duration_s: f64) -> Scen
         controllers: vec![NamedController { name: "C".into(), controller }],
         externals: Vec::new(),
         surroundings: Surroundings::default(),
+        autopilot: None,
     }
 }
 

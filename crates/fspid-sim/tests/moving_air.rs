@@ -56,6 +56,7 @@ fn flown(plant: impl Into<Plant>, weather: Weather, (dt_s, end_s): (f64, f64)) -
         }],
         surroundings: Surroundings { weather: Some(weather), ..Surroundings::default() },
         externals: Vec::new(),
+        autopilot: None,
     };
     simulate(&scenario).expect("flies").traces.remove(0)
 }

@@ -47,6 +47,7 @@ fn scenario(plant: LinearPlant, controller: Controller) -> Scenario {
         controllers: vec![NamedController { name: "C".into(), controller }],
         externals: Vec::new(),
         surroundings: Surroundings::default(),
+        autopilot: None,
     }
 }
 

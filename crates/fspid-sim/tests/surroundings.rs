@@ -50,6 +50,7 @@ fn scenario(plant: LinearPlant, controller: Controller, setpoint_rad: f64) -> Sc
         controllers: vec![NamedController { name: "C".into(), controller }],
         externals: Vec::new(),
         surroundings: Surroundings::default(),
+        autopilot: None,
     }
 }
 

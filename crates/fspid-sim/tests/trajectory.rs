@@ -98,6 +98,7 @@ impl Case {
             controllers: vec![named],
             externals: Vec::new(),
             surroundings: self.surroundings.clone(),
+            autopilot: None,
         }
     }
 }

@@ -3,6 +3,7 @@
 pub mod derivatives;
 
 use crate::controls::Controls;
+use crate::engine::Gearing;
 use crate::flow::Flow;
 use crate::validity::{Travel, Validity};
 use crate::vector::Vector3;
@@ -107,6 +108,11 @@ pub trait ForceModel {
         true
     }
 
+    /// What its throttle does to the power of its engine.
+    fn gearing(&self) -> Gearing {
+        Gearing::Proportional
+    }
+
     /// Flow in which the model is worth something.
     fn validity(&self) -> &Validity;
 
@@ -129,6 +135,10 @@ impl<M: ForceModel + ?Sized> ForceModel for &M {
 
     fn has_engine(&self) -> bool {
         (**self).has_engine()
+    }
+
+    fn gearing(&self) -> Gearing {
+        (**self).gearing()
     }
 
     fn validity(&self) -> &Validity {
@@ -155,6 +165,10 @@ impl<M: ForceModel + ?Sized> ForceModel for Box<M> {
 
     fn has_engine(&self) -> bool {
         (**self).has_engine()
+    }
+
+    fn gearing(&self) -> Gearing {
+        (**self).gearing()
     }
 
     fn validity(&self) -> &Validity {

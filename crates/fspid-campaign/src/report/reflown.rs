@@ -164,7 +164,9 @@ impl Grid {
         let timing = study.scenario.timing;
         let prepared = study.scenario.prepare().map_err(|error| error.to_string())?;
         let every = timing.rows().div_ceil(MOST_INSTANTS).max(1);
-        let setpoint = prepared.setpoint_rad().iter().step_by(every);
+        // Where an autopilot commands, each flight has its own.
+        let shared = if prepared.has_autopilot() { &[] } else { prepared.setpoint_rad() };
+        let setpoint = shared.iter().step_by(every);
         Ok(Self {
             dt_s: timing.dt_s(),
             every,

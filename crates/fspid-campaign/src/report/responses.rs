@@ -87,6 +87,7 @@ fn worst(controller: &ControllerSummary) -> Vec<u64> {
                 | Severity::HitGround
                 | Severity::ControllerLost
                 | Severity::Unstable
+                | Severity::ModeNeverBegan
         )
     };
     let lost = controller.failed_runs.iter().filter(is_lost).map(|it| it.run);

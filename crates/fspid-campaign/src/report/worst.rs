@@ -4,6 +4,7 @@ use fspid_page::analysis::{Chapter, DataTable, Datum, Item};
 
 use super::Source;
 use super::words::{count, cut};
+use crate::rows::MODE_NEVER_BEGAN;
 use crate::summary::{ControllerSummary, FailedRun, Severity};
 
 /// Longest reasons that a row shows, in characters.
@@ -64,6 +65,7 @@ fn severity(run: &FailedRun) -> String {
         (Severity::HitGround, _) => "hit the ground".to_owned(),
         (Severity::ControllerLost, _) => "controller lost".to_owned(),
         (Severity::Unstable, _) => "unstable loop".to_owned(),
+        (Severity::ModeNeverBegan, _) => MODE_NEVER_BEGAN.to_owned(),
         (Severity::LeftRange, _) => "left the range".to_owned(),
         (Severity::Refused, _) => "no scenario".to_owned(),
         (Severity::RequirementsNotMet, _) => "requirements not met".to_owned(),

@@ -276,6 +276,8 @@ pub enum Severity {
     ControllerLost,
     /// The loop is unstable at rest, which did not show in the flight.
     Unstable,
+    /// Its autopilot waited in vain for a mode to begin.
+    ModeNeverBegan,
     /// It left the range of its aircraft's data, which its scenario does not allow.
     LeftRange,
     /// Its numbers make no scenario.

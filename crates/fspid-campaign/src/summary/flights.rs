@@ -8,17 +8,18 @@ use super::data::{FailedRun, Severity, VerdictCount};
 use super::source::Source;
 use super::{FAILED_RUNS, NotMerged, SummaryError};
 use crate::rows::{
-    CONTROLLER, CONTROLLER_LOST, DIVERGED_AT, FAILED, HIT_GROUND, REASONS, REFUSED, RUN, STABILITY,
-    UNDECIDED, VERDICT,
+    CONTROLLER, CONTROLLER_LOST, DIVERGED_AT, FAILED, HIT_GROUND, MODE_NEVER_BEGAN, REASONS,
+    REFUSED, RUN, STABILITY, UNDECIDED, VERDICT,
 };
 use crate::table::{ColumnTable, Kind, TableError, Values};
 
 /// Verdicts from good to bad.
-const VERDICTS: [&str; 8] = [
+const VERDICTS: [&str; 9] = [
     "settled",
     "flown",
     "not settled",
     REFUSED,
+    MODE_NEVER_BEGAN,
     "unstable",
     CONTROLLER_LOST,
     HIT_GROUND,
@@ -178,6 +179,7 @@ impl Flights {
             HIT_GROUND => Severity::HitGround,
             CONTROLLER_LOST => Severity::ControllerLost,
             "unstable" => Severity::Unstable,
+            MODE_NEVER_BEGAN => Severity::ModeNeverBegan,
             REFUSED => Severity::Refused,
             // The column of the verdict says what the measures come to.
             _ if ending.reasons.is_some_and(|it| it.contains(LEFT_RANGE)) => Severity::LeftRange,

@@ -145,6 +145,7 @@ impl Severity {
             Self::ControllerLost => crate::rows::CONTROLLER_LOST,
             Self::Unstable => "unstable",
             Self::Refused => "refused",
+            Self::ModeNeverBegan => crate::rows::MODE_NEVER_BEGAN,
             Self::LeftRange => "left the range",
             Self::RequirementsNotMet => "requirements not met",
             Self::NotSettled => "not settled",

@@ -4,18 +4,16 @@
 //! from the variables. Everything is turned into SI here, once.
 
 mod body;
-mod engine;
 mod error;
 mod port;
 mod quantity;
 
 use fspid_aircraft::aerodynamics::derivatives::Geometry;
 use fspid_aircraft::{
-    Controls, Flow, ForceModel, Loads, Quantity as Limit, Range, Travel, Validity, Vector3,
+    Controls, Flow, ForceModel, Gearing, Loads, Quantity as Limit, Range, Travel, Validity, Vector3,
 };
 
 pub use body::Body;
-pub use engine::{Gearing, power_rate_per_s};
 pub use error::FlightError;
 
 use crate::model::Model;
@@ -192,6 +190,10 @@ impl ForceModel for TableForces {
 
     fn has_engine(&self) -> bool {
         self.engine.is_some()
+    }
+
+    fn gearing(&self) -> Gearing {
+        self.setting.gearing
     }
 
     fn validity(&self) -> &Validity {

@@ -91,6 +91,7 @@ pub(crate) fn scenario(dice: &mut Dice) -> Scenario {
         externals: Vec::new(),
         actuator: actuator(dice),
         surroundings: Surroundings { weather: None, pitch_sensor: sensor(dice), rate_sensor: None },
+        autopilot: None,
     }
 }
 

@@ -261,6 +261,7 @@ pub(super) fn in_words(outcome: Outcome) -> String {
         Outcome::Completed => Verdict::Flown,
         Outcome::Diverged { at_s } => Verdict::Diverged { at_s },
         Outcome::HitGround { at_s } => Verdict::HitGround { at_s },
+        Outcome::ModeNeverBegan { mode } => Verdict::ModeNeverBegan { mode },
         Outcome::ControllerLost { at_s, loss } => Verdict::ControllerLost { at_s, loss },
     };
     verdict.to_string()

@@ -27,6 +27,8 @@ pub(super) fn unit_size(unit: &str) -> f64 {
     match unit {
         "kt" => KNOT_M_S,
         "ft" | "ft/s" | "ft/s2" => FOOT_M,
+        "ft/min" => FOOT_M / 60.0,
+        "nmi" => 1852.0,
         "ft2" => FOOT_M * FOOT_M,
         "lbf" => POUND_FORCE_N,
         "psf" => POUND_FORCE_N / (FOOT_M * FOOT_M),

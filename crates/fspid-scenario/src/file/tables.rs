@@ -4,8 +4,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use fspid_aircraft::data::ForceData;
-use fspid_aircraft::{Air, Vector3};
-use fspid_daveml::flight::{Body, FlightError, Gearing, Setting, TableForces};
+use fspid_aircraft::{Air, Gearing, Vector3};
+use fspid_daveml::flight::{Body, FlightError, Setting, TableForces};
 use fspid_daveml::{Model, Problem, Reading};
 
 use crate::file::aircraft::{quantity, surfaces};

@@ -169,6 +169,7 @@ fn expected() -> Result<Scenario, SimError> {
         controllers: controllers(),
         externals: Vec::new(),
         surroundings: Surroundings::default(),
+        autopilot: None,
     })
 }
 

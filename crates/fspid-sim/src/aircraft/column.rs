@@ -33,6 +33,10 @@ pub struct AircraftSample {
     pub throttle: f64,
     /// Angle of the velocity over ground above the horizon, rad: the climb.
     pub flight_path_rad: f64,
+    /// Velocity over the ground, m/s: north, east, down.
+    pub ground_m_s: [f64; 3],
+    /// Rate of the speed over the ground, m/s².
+    pub path_acceleration_m_s2: f64,
     /// Rates of the air about forward, right, down of the body, rad/s: those of gusts and turbulence.
     pub air_rad_s: [f64; 3],
     /// Energy height, m.

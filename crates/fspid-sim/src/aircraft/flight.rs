@@ -2,15 +2,20 @@
 
 use fspid_aircraft::integrate::rk4;
 use fspid_aircraft::{
-    AirMotion, Aircraft, Controls, EulerAngles, ForceModel, Instant, Quaternion, RIGID_STATES,
-    RigidState, Vector3,
+    AirMotion, Aircraft, Controls, EulerAngles, ForceModel, Gearing, Instant, Quaternion,
+    RIGID_STATES, RigidState, Spool, Vector3,
 };
 
 use super::corner::Corner;
-use super::{AircraftPlant, AircraftSample, Atmosphere, Forces, MOST_STEP_S, WingLeveller};
+use super::{
+    AircraftPlant, AircraftSample, Atmosphere, Forces, MOST_STEP_S, WingLeveller, YawDamper,
+};
+use crate::actuated::Held;
 use crate::actuator::{Actuator, ActuatorState};
 use crate::air::{self, AirPlace, Grid, Shaping};
+use crate::autopilot::{Commands, Cut};
 use crate::error::SimError;
+use crate::in_flight::{ALTITUDE, BEYOND, HEADING};
 use crate::surroundings::Weather;
 use crate::timing::Timing;
 
@@ -20,6 +25,7 @@ pub(crate) struct AircraftFlight {
     plant: AircraftPlant,
     actuator: Actuator,
     leveller: WingLeveller,
+    damper: Option<YawDamper>,
     steps: SubSteps,
     grid: Grid,
     atmosphere: Atmosphere,
@@ -44,8 +50,13 @@ pub(crate) struct AircraftMotion {
     tick: usize,
     /// From that time on.
     turbulence: Option<Shaping>,
-    /// Aileron, within its travel, rad.
+    /// Aileron and rudder, within their travel, rad.
     aileron_rad: f64,
+    rudder_rad: f64,
+    /// What the wing leveller holds, rad.
+    bank_rad: f64,
+    /// Throttle that is asked for, within its travel.
+    throttle: f64,
     /// Pitch less that of the trim, rad.
     theta_rad: f64,
     body: Moving,
@@ -57,6 +68,8 @@ struct Moving {
     state: RigidState,
     /// Way through the air since the start, m.
     distance_m: f64,
+    /// Power of the engine, as its gearing counts it.
+    power: f64,
     actuator: ActuatorState,
 }
 
@@ -66,6 +79,8 @@ struct Holding {
     command_rad: f64,
     disturbance_rad: f64,
     aileron_rad: f64,
+    rudder_rad: f64,
+    throttle: f64,
     turbulence: air::AirMotion,
 }
 
@@ -116,7 +131,12 @@ impl AircraftFlight {
         Ok(Self {
             plant: plant.clone(),
             actuator,
-            leveller: WingLeveller::of(plant.aircraft(), plant.trim()),
+            leveller: WingLeveller::with_time(
+                plant.aircraft(),
+                plant.trim(),
+                plant.lateral().bank_time_s,
+            ),
+            damper: damper(plant),
             steps: SubSteps::of(timing.dt_s()),
             grid: Grid::new(timing.dt_s()),
             trim_theta_rad: start.euler().theta_rad,
@@ -141,9 +161,29 @@ impl AircraftFlight {
             k: 0,
             tick: 0,
             turbulence: self.atmosphere.start_turbulence(),
-            aileron_rad: self.aileron_rad(&self.start),
+            aileron_rad: self.aileron_rad(&self.start, 0.0),
+            rudder_rad: self.rudder_rad(&self.start),
+            bank_rad: 0.0,
+            throttle: self.plant.trim().controls.throttle,
             theta_rad: 0.0,
-            body: Moving { state: self.start, distance_m: 0.0, actuator: ActuatorState::default() },
+            body: Moving {
+                state: self.start,
+                distance_m: 0.0,
+                power: self.gearing().power(self.plant.trim().controls.throttle),
+                actuator: ActuatorState::default(),
+            },
+        }
+    }
+
+    fn gearing(&self) -> Gearing {
+        self.aircraft().model().gearing()
+    }
+
+    /// The throttle that acts: what is asked for, or what the engine's power has come to.
+    fn acting_throttle(&self, power: f64, asked: f64) -> f64 {
+        match self.plant.spool() {
+            Spool::Instant => asked,
+            Spool::FirstOrder { .. } | Spool::StevensLewis => self.gearing().throttle(power),
         }
     }
 
@@ -163,13 +203,34 @@ impl AircraftFlight {
         travel.clamp(self.plant.trim().point.elevator_rad - deflection_rad)
     }
 
-    fn aileron_rad(&self, state: &RigidState) -> f64 {
+    fn aileron_rad(&self, state: &RigidState, bank_rad: f64) -> f64 {
         let travel = self.aircraft().model().travel().aileron_rad;
-        travel.clamp(self.leveller.aileron_rad(state.euler().phi_rad))
+        travel.clamp(self.leveller.aileron_rad(state.euler().phi_rad - bank_rad))
     }
 
-    fn controls(&self, elevator_rad: f64, aileron_rad: f64) -> Controls {
-        Controls { elevator_rad, aileron_rad, ..self.plant.trim().controls }
+    fn rudder_rad(&self, state: &RigidState) -> f64 {
+        let trimmed_rad = self.plant.trim().controls.rudder_rad;
+        let Some(damper) = &self.damper else { return trimmed_rad };
+        let EulerAngles { phi_rad, theta_rad, .. } = state.euler();
+        let (sine, _) = crate::math::sin_cos(phi_rad);
+        let (_, cosine) = crate::math::sin_cos(theta_rad);
+        let speed_m_s = state.velocity_body_m_s.norm().max(1.0);
+        let turn_rad_s = self.aircraft().environment().gravity_m_s2 / speed_m_s * sine * cosine;
+        let rudder_rad = damper.rudder_rad(state.rates_rad_s.z, turn_rad_s);
+        self.aircraft().model().travel().rudder_rad.clamp(trimmed_rad + rudder_rad)
+    }
+
+    /// Moves aileron and rudder to where leveller and damper have them now.
+    fn steer(&self, motion: &mut AircraftMotion) {
+        motion.aileron_rad = self.aileron_rad(&motion.body.state, motion.bank_rad);
+        motion.rudder_rad = self.rudder_rad(&motion.body.state);
+    }
+
+    /// Takes what an autopilot commands until the next sample.
+    fn follow(&self, motion: &mut AircraftMotion, commands: &Commands) {
+        let travel = self.aircraft().model().travel().throttle;
+        motion.throttle = travel.clamp(self.plant.trim().controls.throttle + commands.throttle);
+        motion.bank_rad = commands.bank_rad;
     }
 
     /// The air where the aircraft is.
@@ -186,9 +247,10 @@ impl AircraftFlight {
         &self,
         motion: &mut AircraftMotion,
         command_rad: f64,
-        disturbance_rad: f64,
+        outside: &Held<'_>,
     ) {
-        let held = [command_rad, disturbance_rad];
+        let held = [command_rad, outside.elevator_rad];
+        self.follow(motion, &outside.autopilot);
         if self.atmosphere.moves() {
             for piece in self.grid.pieces(motion.k) {
                 self.reach(motion, piece.tick);
@@ -199,7 +261,7 @@ impl AircraftFlight {
         } else {
             for _ in 0..self.steps.count {
                 motion.body = self.stepped(&motion.body, &holding(motion, held), self.steps.step_s);
-                motion.aileron_rad = self.aileron_rad(&motion.body.state);
+                self.steer(motion);
             }
             motion.k += 1;
         }
@@ -216,7 +278,7 @@ impl AircraftFlight {
             if let Some(shaping) = &mut motion.turbulence {
                 shaping.advance(height_m, airspeed_m_s);
             }
-            motion.aileron_rad = self.aileron_rad(&motion.body.state);
+            self.steer(motion);
         }
     }
 
@@ -274,31 +336,30 @@ impl AircraftFlight {
                 t if t < step_s => &middle,
                 _ => &end,
             };
-            self.rate(values, controls, held.turbulence)
+            self.rate(values, controls, held)
         };
         let values = rk4::step(rate, 0.0, &joined(body), step_s);
-        let (state, distance_m) = parted(&values);
+        let Way { state, distance_m, power } = parted(&values);
         Moving {
             state: RigidState { attitude: state.attitude.normalised(), ..state },
             distance_m,
+            power,
             ..next
         }
     }
 
-    /// Rates of the body's state and of the way through the air.
-    fn rate(
-        &self,
-        values: &[f64; STATES],
-        controls: &Controls,
-        turbulence: air::AirMotion,
-    ) -> [f64; STATES] {
-        let (state, distance_m) = parted(values);
-        let air = self.atmosphere.at(&place(&state, &self.atmosphere, distance_m), turbulence);
-        let instant = self.aircraft().instant(&state, controls, &air);
+    /// Rates of the body's state, of the way through the air, and of the engine's power.
+    fn rate(&self, values: &[f64; STATES], controls: &Controls, held: &Holding) -> [f64; STATES] {
+        let Way { state, distance_m, power } = parted(values);
+        let air = self.atmosphere.at(&place(&state, &self.atmosphere, distance_m), held.turbulence);
+        let throttle = self.acting_throttle(power, held.throttle);
+        let instant = self.aircraft().instant(&state, &Controls { throttle, ..*controls }, &air);
         let rates = state.rate(&instant.accelerations);
         let mut all = [0.0; STATES];
         all[..RIGID_STATES].copy_from_slice(&rates);
         all[RIGID_STATES] = instant.flow.airspeed_m_s;
+        let asked = self.gearing().power(held.throttle);
+        all[RIGID_STATES + 1] = self.plant.spool().rate_per_s(power, asked);
         all
     }
 
@@ -310,7 +371,12 @@ impl AircraftFlight {
                 self.actuator.advance(actuator, held.command_rad, share * step_s);
             }
             let elevator_rad = self.elevator_at_rad(actuator, held.disturbance_rad);
-            self.controls(elevator_rad, held.aileron_rad)
+            Controls {
+                elevator_rad,
+                aileron_rad: held.aileron_rad,
+                rudder_rad: held.rudder_rad,
+                throttle: held.throttle,
+            }
         })
     }
 
@@ -321,6 +387,14 @@ impl AircraftFlight {
             - self.actuator.deflection_rad(&motion.body.actuator);
         let cut = (self.elevator_rad(motion, 0.0) - free_rad).abs() > 0.0;
         cut || self.actuator.is_limited(&motion.body.actuator, command_rad, dt_s)
+    }
+
+    /// Which way the command cannot be followed by the elevator.
+    pub(crate) fn cut(&self, motion: &AircraftMotion, command_rad: f64) -> Cut {
+        if !self.is_limited(motion, command_rad) {
+            return Cut::Not;
+        }
+        Cut::towards(command_rad - self.actuator.deflection_rad(&motion.body.actuator))
     }
 
     /// Change of pitch, u, w, q, deflection and, for a lag of second order, its rate; SI.
@@ -355,10 +429,54 @@ impl AircraftFlight {
         }
     }
 
+    /// True for an engine that does not follow its throttle at once.
+    pub(crate) fn has_lagging_engine(&self) -> bool {
+        self.plant.spool() != Spool::Instant
+    }
+
+    /// Altitude, heading, v, p, r, bank and power of the engine; SI.
+    pub(crate) fn beyond(&self, motion: &AircraftMotion) -> [f64; BEYOND] {
+        let Moving { state, power, .. } = &motion.body;
+        let (euler, rates_rad_s) = (state.euler(), state.rates_rad_s);
+        [
+            state.altitude_m(),
+            euler.psi_rad,
+            state.velocity_body_m_s.y,
+            rates_rad_s.x,
+            rates_rad_s.z,
+            euler.phi_rad,
+            *power,
+        ]
+    }
+
+    /// Moves one of [`beyond`](Self::beyond).
+    pub(crate) fn nudge_beyond(&self, motion: &mut AircraftMotion, place: usize, by: f64) {
+        let Moving { state, power, .. } = &mut motion.body;
+        let euler = state.euler();
+        match place {
+            ALTITUDE => state.position_ned_m.z -= by,
+            HEADING => {
+                let psi_rad = euler.psi_rad + by;
+                state.attitude = Quaternion::from_euler(EulerAngles { psi_rad, ..euler });
+            }
+            2 => state.velocity_body_m_s.y += by,
+            3 => state.rates_rad_s.x += by,
+            4 => state.rates_rad_s.z += by,
+            5 => {
+                let phi_rad = euler.phi_rad + by;
+                state.attitude = Quaternion::from_euler(EulerAngles { phi_rad, ..euler });
+            }
+            _ => *power += by,
+        }
+        self.steer(motion);
+    }
+
     /// What is observable at a sample beyond pitch.
     pub(crate) fn sample(&self, motion: &AircraftMotion, elevator_rad: f64) -> AircraftSample {
         let (state, air) = (&motion.body.state, self.air(motion));
-        let controls = self.controls(elevator_rad, motion.aileron_rad);
+        let throttle = self.acting_throttle(motion.body.power, motion.throttle);
+        let &AircraftMotion { aileron_rad, rudder_rad, .. } = motion;
+        let controls = Controls { elevator_rad, aileron_rad, rudder_rad, throttle };
         let instant = self.aircraft().instant(state, &controls, &air);
         let felt = self.load_factors(&instant);
         let [north_m, east_m, _] = state.position_ned_m.to_array();
@@ -378,6 +496,8 @@ impl AircraftFlight {
             roll_yaw_rad_s: [state.rates_rad_s.x, state.rates_rad_s.z],
             throttle: controls.throttle,
             flight_path_rad: flight_path_rad(state),
+            ground_m_s: state.attitude.to_ned(state.velocity_body_m_s).to_array(),
+            path_acceleration_m_s2: path_acceleration_m_s2(state, &instant),
             air_rad_s: air.gust_rates_rad_s.to_array(),
             energy_height_m: self.energy_height_m(&instant),
             apparent_vertical_rad: apparent_vertical_rad(state, felt),
@@ -411,8 +531,16 @@ fn flight_path_rad(state: &RigidState) -> f64 {
     libm::atan2(-down, libm::hypot(north, east))
 }
 
-/// States of a body and its way through the air.
-const STATES: usize = RIGID_STATES + 1;
+/// How fast the speed over the ground changes, m/s²; 0 at rest. Turning with the body changes no length.
+fn path_acceleration_m_s2(state: &RigidState, instant: &Instant) -> f64 {
+    let velocity_m_s = state.velocity_body_m_s;
+    let speed_m_s = velocity_m_s.norm();
+    let along = velocity_m_s.dot(instant.accelerations.velocity_rate_body_m_s2);
+    if speed_m_s > 0.0 { along / speed_m_s } else { 0.0 }
+}
+
+/// States of a body, its way through the air, and the power of its engine.
+const STATES: usize = RIGID_STATES + 2;
 /// Most corners in a part of a period that a step ends at.
 const MOST_CORNERS: usize = 64;
 /// Most tries for a corner; three are usual.
@@ -423,22 +551,38 @@ fn turbulence(motion: &AircraftMotion) -> air::AirMotion {
     motion.turbulence.as_ref().map(Shaping::motion).unwrap_or_default()
 }
 
+/// The yaw damper of a plant that has one.
+fn damper(plant: &AircraftPlant) -> Option<YawDamper> {
+    let asked = plant.lateral().yaw_damping;
+    (asked > 0.0).then(|| YawDamper::of(plant.aircraft(), plant.trim(), asked))
+}
+
 /// Everything that is held from here on.
 fn holding(motion: &AircraftMotion, [command_rad, disturbance_rad]: [f64; 2]) -> Holding {
-    let (aileron_rad, turbulence) = (motion.aileron_rad, turbulence(motion));
-    Holding { command_rad, disturbance_rad, aileron_rad, turbulence }
+    let &AircraftMotion { aileron_rad, rudder_rad, throttle, .. } = motion;
+    let turbulence = turbulence(motion);
+    Holding { command_rad, disturbance_rad, aileron_rad, rudder_rad, throttle, turbulence }
 }
 
 fn joined(body: &Moving) -> [f64; STATES] {
-    let mut values = [body.distance_m; STATES];
+    let mut values = [body.power; STATES];
     values[..RIGID_STATES].copy_from_slice(&body.state.to_array());
+    values[RIGID_STATES] = body.distance_m;
     values
 }
 
-fn parted(values: &[f64; STATES]) -> (RigidState, f64) {
+/// What is integrated.
+struct Way {
+    state: RigidState,
+    distance_m: f64,
+    power: f64,
+}
+
+fn parted(values: &[f64; STATES]) -> Way {
     let mut state = [0.0; RIGID_STATES];
     state.copy_from_slice(&values[..RIGID_STATES]);
-    (RigidState::from_array(&state), values[RIGID_STATES])
+    let (state, distance_m) = (RigidState::from_array(&state), values[RIGID_STATES]);
+    Way { state, distance_m, power: values[RIGID_STATES + 1] }
 }
 
 fn place(state: &RigidState, atmosphere: &Atmosphere, distance_m: f64) -> AirPlace {

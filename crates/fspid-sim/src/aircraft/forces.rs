@@ -4,7 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use fspid_aircraft::aerodynamics::derivatives::DerivativeModel;
-use fspid_aircraft::{Controls, Flow, ForceModel, Loads, Travel, Validity};
+use fspid_aircraft::{Controls, Flow, ForceModel, Gearing, Loads, Travel, Validity};
 
 /// A model of the forces on an aircraft.
 ///
@@ -73,6 +73,10 @@ impl ForceModel for Forces {
 
     fn has_engine(&self) -> bool {
         self.model().has_engine()
+    }
+
+    fn gearing(&self) -> Gearing {
+        self.model().gearing()
     }
 
     fn validity(&self) -> &Validity {

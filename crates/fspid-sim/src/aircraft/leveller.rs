@@ -1,4 +1,4 @@
-//! What keeps the wings level while the controller of the study looks after pitch.
+//! What looks after the lateral motion while the controller of the study looks after pitch.
 
 use fspid_aircraft::{AirMotion, Aircraft, Controls, ForceModel, RigidState, Trim, Vector3};
 
@@ -27,6 +27,12 @@ impl WingLeveller {
     /// The leveller of an aircraft at its trim.
     #[must_use]
     pub fn of<M: ForceModel>(aircraft: &Aircraft<M>, trim: &Trim) -> Self {
+        Self::with_time(aircraft, trim, LEVELLING_TIME_S)
+    }
+
+    /// The same with another time $T$, s.
+    #[must_use]
+    pub fn with_time<M: ForceModel>(aircraft: &Aircraft<M>, trim: &Trim, time_s: f64) -> Self {
         let damping = slope(|roll_rad_s| {
             let rates_rad_s = Vector3::new(roll_rad_s, 0.0, 0.0);
             roll_acceleration(aircraft, &RigidState { rates_rad_s, ..trim.state }, &trim.controls)
@@ -35,7 +41,7 @@ impl WingLeveller {
             let controls = Controls { aileron_rad, ..trim.controls };
             roll_acceleration(aircraft, &trim.state, &controls)
         });
-        let gain = -damping / (power * LEVELLING_TIME_S);
+        let gain = -damping / (power * time_s);
         Self { gain: if gain.is_finite() && damping < 0.0 { gain } else { 0.0 } }
     }
 
@@ -43,6 +49,51 @@ impl WingLeveller {
     #[must_use]
     pub fn aileron_rad(&self, bank_rad: f64) -> f64 {
         -self.gain * bank_rad
+    }
+}
+
+/// A yaw damper: rudder against the yaw rate that a turn without sideslip does not need.
+///
+/// $$ \delta_r = -k_r (r - r_t), \quad r_t = \frac{g}{V} \sin\phi \cos\theta, \qquad
+///    k_r = \frac{2 \zeta \sqrt{N_\beta} + N_r}{N_{\delta_r}} $$
+///
+/// $\sqrt{N_\beta}$ is near the frequency of the Dutch roll and $-N_r$ near twice its damping times that, so that the roll comes
+/// near a damping ratio of $\zeta$ where it was less. The derivatives are taken of the yaw acceleration at the trim. An
+/// aircraft without rudder, or with enough damping of its own, has no damper.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct YawDamper {
+    /// $k_r$, s: rudder per yaw rate.
+    pub gain_s: f64,
+}
+
+impl YawDamper {
+    /// The damper of an aircraft at its trim for a damping ratio.
+    #[must_use]
+    pub fn of<M: ForceModel>(aircraft: &Aircraft<M>, trim: &Trim, damping_ratio: f64) -> Self {
+        let yaw = |state: &RigidState, controls: &Controls| {
+            let instant = aircraft.instant(state, controls, &AirMotion::STILL);
+            instant.accelerations.angular_rad_s2.z
+        };
+        let damping = slope(|yaw_rad_s| {
+            let rates_rad_s = Vector3::new(0.0, 0.0, yaw_rad_s);
+            yaw(&RigidState { rates_rad_s, ..trim.state }, &trim.controls)
+        });
+        let power = slope(|rudder_rad| yaw(&trim.state, &Controls { rudder_rad, ..trim.controls }));
+        let stiffness = slope(|sideslip_rad| {
+            let velocity_m_s = trim.state.velocity_body_m_s;
+            let aside_m_s = velocity_m_s.norm() * libm::tan(sideslip_rad);
+            let velocity_body_m_s = velocity_m_s + Vector3::new(0.0, aside_m_s, 0.0);
+            yaw(&RigidState { velocity_body_m_s, ..trim.state }, &trim.controls)
+        });
+        let missing = 2.0 * damping_ratio * stiffness.max(0.0).sqrt() + damping;
+        let gain_s = missing / power;
+        Self { gain_s: if gain_s.is_finite() && missing > 0.0 { gain_s } else { 0.0 } }
+    }
+
+    /// Rudder at a yaw rate, before its stops; `turn_rad_s` is that of a turn without sideslip.
+    #[must_use]
+    pub fn rudder_rad(&self, yaw_rad_s: f64, turn_rad_s: f64) -> f64 {
+        -self.gain_s * (yaw_rad_s - turn_rad_s)
     }
 }
 

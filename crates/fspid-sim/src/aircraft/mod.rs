@@ -18,7 +18,7 @@
 //! The flight ends at the first sample at or below the ground: nobody lands here.
 //!
 //! # Not here
-//! Plant changes, ground effect, engine lag; the throttle does not move.
+//! Plant changes and ground effect. Without an [`autopilot`](crate::autopilot) the throttle does not move.
 
 mod atmosphere;
 mod column;
@@ -32,9 +32,9 @@ use atmosphere::Atmosphere;
 pub use column::{AIRCRAFT_COLUMNS, AircraftSample};
 pub(crate) use flight::{AircraftFlight, AircraftMotion};
 pub use forces::Forces;
-pub use leveller::{LEVELLING_TIME_S, WingLeveller};
+pub use leveller::{LEVELLING_TIME_S, WingLeveller, YawDamper};
 
-use fspid_aircraft::{Aircraft, Trim, TrimTarget};
+use fspid_aircraft::{Aircraft, Spool, Trim, TrimTarget};
 
 use crate::error::{SimError, positive};
 
@@ -49,6 +49,24 @@ pub struct AircraftPlant {
     aircraft: Aircraft<Forces>,
     trim: Trim,
     ground_altitude_m: Option<f64>,
+    spool: Spool,
+    lateral: Lateral,
+}
+
+/// How the lateral motion is looked after.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lateral {
+    /// How fast the wing leveller comes to its bank, s.
+    pub bank_time_s: f64,
+    /// Damping ratio that the yaw damper brings the Dutch roll near; 0 for no damper.
+    pub yaw_damping: f64,
+}
+
+impl Default for Lateral {
+    /// The wing leveller alone.
+    fn default() -> Self {
+        Self { bank_time_s: LEVELLING_TIME_S, yaw_damping: 0.0 }
+    }
 }
 
 impl AircraftPlant {
@@ -58,7 +76,13 @@ impl AircraftPlant {
     /// [`SimError::Trim`] where there is no such flight, with what stands in its way.
     pub fn trimmed(aircraft: Aircraft<Forces>, target: TrimTarget) -> Result<Self, SimError> {
         let trim = aircraft.trim(target).map_err(|failure| SimError::Trim(Box::new(failure)))?;
-        Ok(Self { aircraft, trim, ground_altitude_m: None })
+        Ok(Self {
+            aircraft,
+            trim,
+            ground_altitude_m: None,
+            spool: Spool::Instant,
+            lateral: Lateral::default(),
+        })
     }
 
     /// The same above a ground, at which a flight ends.
@@ -68,6 +92,46 @@ impl AircraftPlant {
     pub fn above_ground(self, altitude_m: f64) -> Result<Self, SimError> {
         positive("height above the ground, m", self.trim.target.altitude_m - altitude_m)?;
         Ok(Self { ground_altitude_m: Some(altitude_m), ..self })
+    }
+
+    /// The same with an engine whose power follows the throttle so; only an autopilot moves a throttle.
+    ///
+    /// # Errors
+    /// [`SimError::Number`] for a time constant that is not finite and positive.
+    pub fn with_engine(self, spool: Spool) -> Result<Self, SimError> {
+        if let Spool::FirstOrder { time_constant_s } = spool {
+            positive("time constant of the engine, s", time_constant_s)?;
+        }
+        Ok(Self { spool, ..self })
+    }
+
+    /// The same with its lateral motion looked after so.
+    ///
+    /// # Errors
+    /// [`SimError::Number`] for a time that is not finite and positive, and for a damping ratio that is not from 0 to 1.
+    pub fn with_lateral(self, lateral: Lateral) -> Result<Self, SimError> {
+        positive("time to a bank, s", lateral.bank_time_s)?;
+        let (found, allowed) = (lateral.yaw_damping, "0 to 1");
+        if !(0.0..=1.0).contains(&found) {
+            return Err(SimError::Number {
+                what: "damping ratio of the yaw damper",
+                found,
+                allowed,
+            });
+        }
+        Ok(Self { lateral, ..self })
+    }
+
+    /// How the lateral motion is looked after.
+    #[must_use]
+    pub fn lateral(&self) -> Lateral {
+        self.lateral
+    }
+
+    /// How the engine's power follows the throttle.
+    #[must_use]
+    pub fn spool(&self) -> Spool {
+        self.spool
     }
 
     /// Altitude of the ground at which a flight ends, m; without one there is none.

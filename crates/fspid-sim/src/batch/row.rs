@@ -69,6 +69,7 @@ impl<const W: usize> BatchRow<'_, W> {
             elevator_rad: self.elevator_rad[lane],
             measured: [self.measurement_rad[lane], q_rad_s],
             aircraft: None,
+            autopilot: None,
             step: Step {
                 command_rad: self.command_rad[lane],
                 gains: Gains { kp: kp[lane], ki: ki[lane], kd: kd[lane] },

@@ -150,7 +150,8 @@ impl Envelope {
             Outcome::ControllerLost { at_s, loss } => {
                 return Some(Failure::ControllerLost { at_s, loss });
             }
-            Outcome::Completed => {}
+            // What a mode waits for says nothing of the pitch loop.
+            Outcome::Completed | Outcome::ModeNeverBegan { .. } => {}
         }
         // Written so that NaN is not held.
         let holds = |[before, last]: [f64; 2], ratio| last <= floor_rad || last < ratio * before;

@@ -52,6 +52,7 @@ impl Case {
             controllers: vec![named],
             externals: Vec::new(),
             surroundings: self.surroundings.clone(),
+            autopilot: None,
         }
     }
 

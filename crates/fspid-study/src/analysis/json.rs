@@ -10,8 +10,8 @@ use super::answer::{Margins, NO_CROSSOVER, NO_LOWER_LIMIT, NO_UPPER_LIMIT};
 use super::flights::Flights;
 use super::frozen::count;
 use super::{
-    AnalysedLoop, Analysis, Equilibrium, FlownExternal, FrozenMap, FrozenPoint, PlantLoop,
-    RestLoop, Stability,
+    AnalysedLoop, AnalysedMode, Analysis, Equilibrium, FlownExternal, FrozenMap, FrozenPoint,
+    PlantLoop, RestLoop, Stability,
 };
 use crate::json::{by_name, merged, present, unless_empty};
 
@@ -54,6 +54,7 @@ fn controller(found: &AnalysedLoop) -> Value {
         json!({ "gains_are": kind, "gains": gains.map(triple) }),
         present(json!({
             "plants": unless_empty(plants, of_several),
+            "modes": unless_empty(&found.modes, AnalysedMode::json),
             "flights": found.flights.as_ref().map(Flights::json),
         })),
     ])

@@ -14,6 +14,7 @@ use super::answer::Margins;
 use super::equilibrium::{Equilibrium, equilibrium};
 use super::flights::Flights;
 use super::frozen::{FrozenMap, FrozenPoint};
+use super::modes::AnalysedMode;
 use super::stability::{Stability, of_stand};
 use crate::metrics::Absent;
 
@@ -62,6 +63,8 @@ pub struct AnalysedLoop {
     pub absent: Option<Absent>,
     /// What flights say, if they were asked for.
     pub flights: Option<Flights>,
+    /// The modes of an autopilot, with everything that they engage around this controller.
+    pub modes: Vec<AnalysedMode>,
 }
 
 impl AnalysedLoop {
@@ -80,6 +83,7 @@ impl AnalysedLoop {
             plants: Vec::new(),
             absent: Some(reason),
             flights: flights.clone(),
+            modes: Vec::new(),
         };
         let Some(gains) = equilibrium.gains() else {
             return Ok(none(Absent::GainsDrift));
@@ -98,7 +102,8 @@ impl AnalysedLoop {
             };
             plants.push(PlantLoop { from_s: *from_s, map, ..found });
         }
-        Ok(Self { name, equilibrium, plants, absent: None, flights })
+        let modes = AnalysedMode::all(scenario, controller, gains)?;
+        Ok(Self { name, equilibrium, plants, absent: None, flights, modes })
     }
 
     /// The plant with the smallest disk margin; an unstable one before all others.
@@ -118,13 +123,22 @@ impl AnalysedLoop {
         worst.min_by(|one, other| rank(&one.1.margins).total_cmp(&rank(&other.1.margins)))
     }
 
-    /// Whether every plant is held at rest; undecided where there is none to hold.
+    /// Whether every plant is held at rest, with everything around it too; undecided where there is none to hold.
     #[must_use]
     pub fn stability(&self) -> Stability {
         match self.plants.as_slice() {
             [] => Stability::Undecided,
-            plants => Stability::of_all(plants.iter().map(PlantLoop::stability)),
+            plants => {
+                let around = self.modes.iter().map(AnalysedMode::stability);
+                Stability::of_all(plants.iter().map(PlantLoop::stability).chain(around))
+            }
         }
+    }
+
+    /// How many modes of the autopilot grow.
+    #[must_use]
+    pub fn growing_modes(&self) -> usize {
+        self.modes.iter().filter(|mode| mode.stability() != Stability::Stable).count()
     }
 
     /// Margins with the worst plant.
@@ -152,7 +166,7 @@ impl AnalysedLoop {
         let held = |plant: &PlantLoop| {
             plant.margins.is_ok() && plant.map.as_ref().is_none_or(FrozenMap::is_held)
         };
-        !self.plants.is_empty() && self.plants.iter().all(held)
+        !self.plants.is_empty() && self.plants.iter().all(held) && self.growing_modes() == 0
     }
 }
 

@@ -18,6 +18,7 @@ mod flown;
 mod frozen;
 mod json;
 mod loops;
+mod modes;
 mod nonlinear_parts;
 mod rank;
 mod stability;
@@ -41,6 +42,7 @@ pub use frozen::{FrozenMap, FrozenPoint};
 pub use fspid_sim::loop_model::BreakPoint;
 pub use loops::{AnalysedLoop, PlantLoop, RestLoop};
 pub(crate) use loops::{held_at_rest, lasting_plants};
+pub use modes::AnalysedMode;
 pub use nonlinear_parts::not_in_the_linear_loop;
 pub use stability::Stability;
 pub(crate) use stability::why_undecided;
@@ -148,7 +150,9 @@ impl Analysis {
     #[must_use]
     pub fn stability(&self) -> Stability {
         let plants = self.loops.iter().flat_map(|found| &found.plants);
-        let loops = Stability::of_all(plants.map(PlantLoop::stability_at_every_gain));
+        let modes = self.loops.iter().flat_map(|found| &found.modes).map(AnalysedMode::stability);
+        let loops = plants.map(PlantLoop::stability_at_every_gain).chain(modes);
+        let loops = Stability::of_all(loops);
         match self.externals.iter().all(FlownExternal::is_held) {
             true => loops,
             false => Stability::of_all([loops, Stability::Undecided]),

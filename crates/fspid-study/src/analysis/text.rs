@@ -47,6 +47,10 @@ fn verdict(found: &AnalysedLoop) -> String {
     }
     let held = found.worst().map(held_where_worst).unwrap_or_default();
     let stability = found.stability();
+    let (growing, modes) = (found.growing_modes(), found.modes.len());
+    if growing > 0 {
+        return format!("UNSTABLE with the outer loops of {growing} of {modes} modes {gains}");
+    }
     let bad = found.plants.iter().filter(|it| it.stability() == stability).count();
     let plants = |bad| match found.plants.len() {
         1 => String::new(),
@@ -80,6 +84,9 @@ fn push_loop(out: &mut String, found: &AnalysedLoop) {
         if let Some(map) = &plant.map {
             push_map(out, map);
         }
+    }
+    for mode in &found.modes {
+        out.push_str(&format!("  mode {}\n", mode.in_words()));
     }
     for (label, sentence) in found.flights.iter().flat_map(Flights::lines) {
         out.push_str(&format!("  {label:17}  {sentence}\n"));

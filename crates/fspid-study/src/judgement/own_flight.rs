@@ -72,6 +72,8 @@ fn missing_step_deg(judgement: &Judgement, sizes_deg: &[f64]) -> Option<f64> {
 /// The study with one step at its start.
 fn with_step(study: &Study, size_deg: f64) -> Result<Study, SimError> {
     let mut own = study.clone();
+    // The step is one of the pitch loop's, whatever stands around it.
+    own.scenario.autopilot = None;
     own.scenario.setpoint = Profile::new(radians(size_deg), Shape::Step { at_s: 0.0 })?;
     Ok(own)
 }

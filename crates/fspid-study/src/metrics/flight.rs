@@ -47,6 +47,12 @@ pub enum Verdict {
         /// Time in which what grows becomes twice as large, s.
         doubling_s: f64,
     },
+    /// The autopilot waited in vain for a mode to begin. Its measures are there, and are not those of the flight that the
+    /// scenario describes.
+    ModeNeverBegan {
+        /// Number of the mode, from 0.
+        mode: usize,
+    },
     /// It left the range of its aircraft's data, which its scenario does not allow. Its measures are there, and are of
     /// data that do not hold: [`Ending`](crate::simulation::Ending) says it of a flight, its metrics never do.
     LeftRange(Exit),
@@ -59,8 +65,8 @@ impl Verdict {
         matches!(self, Self::Settled | Self::Flown)
     }
 
-    /// True for a flight that fails by itself: it diverged, hit the ground, lost its controller, left the range of its data, or its loop is
-    /// unstable at rest.
+    /// True for a flight that fails by itself: it diverged, hit the ground, lost its controller, left the range of its data, waited in vain for
+    /// a mode of its autopilot, or its loop is unstable at rest.
     #[must_use]
     pub fn is_failure(self) -> bool {
         match self {
@@ -69,6 +75,7 @@ impl Verdict {
             | Self::HitGround { .. }
             | Self::ControllerLost { .. }
             | Self::Unstable { .. }
+            | Self::ModeNeverBegan { .. }
             | Self::LeftRange(_) => true,
         }
     }
@@ -84,6 +91,7 @@ impl Verdict {
             Self::HitGround { .. } => "hit the ground",
             Self::ControllerLost { .. } => "controller lost",
             Self::Unstable { .. } => "unstable at rest",
+            Self::ModeNeverBegan { .. } => "mode never began",
             Self::LeftRange(_) => "left the range",
         }
     }
@@ -95,7 +103,11 @@ impl Verdict {
             Self::HitGround { at_s } => Some(Absent::HitGround { at_s }),
             Self::ControllerLost { at_s, loss } => Some(Absent::ControllerLost { at_s, loss }),
             Self::Unstable { spectral_radius, .. } => Some(Absent::Unstable { spectral_radius }),
-            Self::Settled | Self::NotSettled { .. } | Self::Flown | Self::LeftRange(_) => None,
+            Self::Settled
+            | Self::NotSettled { .. }
+            | Self::Flown
+            | Self::ModeNeverBegan { .. }
+            | Self::LeftRange(_) => None,
         }
     }
 }
@@ -117,6 +129,9 @@ impl fmt::Display for Verdict {
                     write!(f, "doubles every {} s, ", to_digits(*doubling_s, 3))?;
                 }
                 write!(f, "spectral radius {spectral_radius:.6})")
+            }
+            Self::ModeNeverBegan { mode } => {
+                write!(f, "mode {} of the autopilot never began", mode + 1)
             }
             Self::LeftRange(exit) => f.write_str(&left_validity(exit)),
         }
@@ -173,10 +188,13 @@ impl FlightMetrics {
             (Outcome::ControllerLost { at_s, loss }, _) => {
                 Some(Verdict::ControllerLost { at_s, loss })
             }
-            (Outcome::Completed, Some(unstable)) => Some(Verdict::Unstable {
-                spectral_radius: unstable.spectral_radius,
-                doubling_s: unstable.doubling_s,
-            }),
+            (Outcome::Completed | Outcome::ModeNeverBegan { .. }, Some(unstable)) => {
+                Some(Verdict::Unstable {
+                    spectral_radius: unstable.spectral_radius,
+                    doubling_s: unstable.doubling_s,
+                })
+            }
+            (Outcome::ModeNeverBegan { mode }, None) => Some(Verdict::ModeNeverBegan { mode }),
             (Outcome::Completed, None) => None,
         };
         let absence = failed.and_then(Verdict::absence);

@@ -72,6 +72,7 @@ fn outcome(result: &ControllerResult) -> Outcome {
         Verdict::ControllerLost { .. } => ("bad", "\u{2717} CONTROLLER LOST"),
         Verdict::Unstable { .. } => ("bad", "\u{2717} UNSTABLE AT REST"),
         Verdict::LeftRange(_) => ("bad", "\u{2717} LEFT THE RANGE OF ITS DATA"),
+        Verdict::ModeNeverBegan { .. } => ("bad", "\u{2717} MODE NEVER BEGAN"),
     };
     let detail = match verdict {
         Verdict::Diverged { at_s } => format!(
@@ -91,6 +92,10 @@ fn outcome(result: &ControllerResult) -> Outcome {
              can be measured in this flight.",
             capital(&verdict.to_string()),
             fixed(spectral_radius, 6)
+        ),
+        Verdict::ModeNeverBegan { .. } => format!(
+            "{}: what it waits for did not come in this flight, which is not the one that the scenario describes.",
+            capital(&verdict.to_string())
         ),
         Verdict::Flown => "There was no step in the command to measure against.".to_owned(),
         Verdict::Settled | Verdict::NotSettled { .. } => {

@@ -7,7 +7,7 @@ use crate::metrics::{Verdict, left_validity};
 use fspid_scenario::file::RangeRule;
 
 /// Which flights fail by themselves, whatever is required of them, wherever that is said.
-pub const FAILS_BY_ITSELF: &str = "diverges, hits the ground, leaves the range of its aircraft's data where its scenario does not allow that, or is of a loop that is unstable at rest";
+pub const FAILS_BY_ITSELF: &str = "diverges, hits the ground, leaves the range of its aircraft's data where its scenario does not allow that, waits in vain for a mode of its autopilot, or is of a loop that is unstable at rest";
 
 /// How a flight ended.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -95,6 +95,7 @@ fn outcome(verdict: Verdict) -> Value {
             "spectral_radius": finite(spectral_radius),
             "doubling_s": finite(doubling_s),
         }),
+        Verdict::ModeNeverBegan { mode } => json!({ "kind": kind, "mode": mode + 1 }),
         Verdict::LeftRange(exit) => json!({
             "kind": kind,
             "at_s": finite(exit.at_s),

@@ -3,6 +3,7 @@
 use fspid_core::Gains;
 use fspid_sim::RestPoint;
 use fspid_sim::load::{ConstantLoad, HALF_GONE, REMOVED};
+use fspid_sim::stability::Unstable;
 
 use super::ControllerResult;
 use crate::analysis::{AtRest, RestGains, held_in_words, why_undecided};
@@ -47,7 +48,13 @@ impl AtRest {
 
     /// At which rest the loop is unstable, where it is not at the trim.
     fn unstable_where_in_words(&self) -> Option<String> {
-        let at = self.unstable?.at;
+        let Unstable { at, mode, .. } = self.unstable?;
+        if let Some(mode) = mode {
+            return Some(format!(
+                "unstable with the outer loops of mode {} of the autopilot, which the pitch loop alone is not",
+                mode + 1
+            ));
+        }
         (at != RestPoint::TRIM).then(|| {
             let held = held_in_words(at);
             format!("unstable {held}: where gains move, the loop is another one at each set-point and load")

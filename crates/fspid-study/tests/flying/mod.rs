@@ -11,6 +11,7 @@ mod loading;
 mod lqi;
 mod moving_air;
 mod one_verdict;
+mod outer_loops;
 
 use fspid_scenario::file::{self, Study};
 use fspid_sim::Trace;

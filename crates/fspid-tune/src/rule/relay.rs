@@ -177,7 +177,7 @@ pub(super) fn experiment(
         Outcome::Diverged { at_s } => return Err(RuleError::RelayDiverged { at_s }),
         Outcome::HitGround { at_s } => return Err(RuleError::RelayHitGround { at_s }),
         // A relay is no program that could be lost.
-        Outcome::Completed | Outcome::ControllerLost { .. } => {}
+        Outcome::Completed | Outcome::ModeNeverBegan { .. } | Outcome::ControllerLost { .. } => {}
     }
     let cycles = relay.borrow().cycles.len();
     let Some((settled, k)) = found else {
@@ -214,6 +214,7 @@ fn still(scenario: &Scenario, longest_s: f64) -> Result<Scenario, RuleError> {
     still.disturbances.clear();
     still.controllers.clear();
     still.surroundings.weather = None;
+    still.autopilot = None;
     still.setpoint = Profile::new(0.0, Shape::Step { at_s: 0.0 })?;
     still.timing = Timing::new(scenario.timing.dt_s(), longest_s)?;
     Ok(still)

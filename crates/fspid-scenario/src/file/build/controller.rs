@@ -11,6 +11,7 @@ use fspid_sim::Controller;
 use super::schedule::{self, Pressure};
 use super::{judged, lqi, rad, supervisor};
 use crate::file::files::Files;
+use crate::file::spec::autopilot::OuterKind;
 use crate::file::spec::controller as keys;
 use crate::file::spec::controller::{ControllerKind, DerivativeOn, LawWord, SecondInputWord};
 use crate::keyed::{Key, Section};
@@ -51,6 +52,31 @@ pub(super) fn controller(
             let tuner = tuner(report, files, section, gains);
             let fspid = Fspid::new(tuner?, config?);
             placed(report, section, fspid).map(Controller::SelfTuning)
+        }
+    }
+}
+
+/// The controller of an outer loop within `ends`.
+pub(super) fn outer(
+    report: &mut Report,
+    files: &mut Files<'_>,
+    section: &Section,
+    ends: PidConfig<f64>,
+) -> Option<Controller> {
+    let (gains, _) = gains(report, section);
+    let (weights, filter_s) = (weights(report, section), filter(report, section, None));
+    let config = PidConfig {
+        rate_gain_s: section.get(keys::RATE_GAIN)?,
+        setpoint_weights: weights?,
+        derivative: Derivative { filter_s: filter_s? },
+        integral: section.get(keys::INTEGRAL)?,
+        ..ends
+    };
+    match section.variant()? {
+        OuterKind::Pid => placed(report, section, Pid::new(gains?, config)).map(Controller::Fixed),
+        OuterKind::Fspid => {
+            let tuner = tuner(report, files, section, gains);
+            placed(report, section, Fspid::new(tuner?, config)).map(Controller::SelfTuning)
         }
     }
 }

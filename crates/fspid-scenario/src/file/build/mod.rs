@@ -3,6 +3,7 @@
 mod actuator;
 mod air;
 mod airframe;
+mod autopilot;
 mod controller;
 mod cost;
 pub(crate) mod data;
@@ -48,6 +49,9 @@ use crate::tuning::{Contest, Tuning};
 use crate::units::radians as rad;
 use fspid_diagnostics::{Report, in_two};
 
+/// A period that stands in where the loop is wrong, so that controllers are judged all the same, s.
+const STAND_IN_PERIOD_S: f64 = 0.01;
+
 /// A scenario with what is asked of it.
 pub(crate) struct Built {
     pub(crate) scenario: Scenario,
@@ -71,7 +75,9 @@ pub(crate) fn scenario(
         overrides::check_listed(report, item);
     }
     let timing = sound(section.get(keys::LOOP)).and_then(|part| timing::timing(report, part));
-    let flown = flight::flown(report, files, section);
+    let flown = flight::flown(report, files, section)
+        .and_then(|flown| autopilot::with_engine(report, section, flown))
+        .and_then(|flown| autopilot::with_lateral(report, section, flown));
     let actuator = actuator(report, section);
     let sampling = timing.zip(actuator).map(|(timing, actuator)| Sampling { timing, actuator });
     check_linear(report, section, flown.as_ref(), sampling);
@@ -86,6 +92,8 @@ pub(crate) fn scenario(
         sampling,
     );
     let surroundings = surroundings(report, files, section, flown.as_ref());
+    let dt_s = timing.map_or(STAND_IN_PERIOD_S, |timing| timing.dt_s());
+    let autopilot = autopilot::autopilot(report, files, section, (flown.as_ref(), dt_s));
     let pressure = Pressure::of(section, flown.as_ref());
     let (controllers, derived_gains) = controllers(report, files, section, (timing, pressure));
     let externals = externals(report, files, section, timing);
@@ -107,6 +115,7 @@ pub(crate) fn scenario(
         controllers,
         externals,
         surroundings: surroundings?,
+        autopilot: autopilot?,
     };
     if section.sound {
         timing::check_flight(report, section, &scenario);
@@ -214,8 +223,7 @@ fn controllers(
             part.wrong(report, NAME, message, "a name of its own");
         }
     }
-    // A period stands in where the loop is wrong, so that the controllers are judged all the same.
-    let dt_s = timing.map_or(0.01, |timing| timing.dt_s());
+    let dt_s = timing.map_or(STAND_IN_PERIOD_S, |timing| timing.dt_s());
     let (mut controllers, mut derived_gains) = (Vec::new(), Vec::new());
     for part in parts.iter().filter(|part| part.sound) {
         let name = part.get(NAME).unwrap_or_default().to_owned();
@@ -235,7 +243,7 @@ fn externals(
     section: &Section,
     timing: Option<Timing>,
 ) -> Vec<NamedExternal> {
-    let dt_s = timing.map_or(0.01, |timing| timing.dt_s());
+    let dt_s = timing.map_or(STAND_IN_PERIOD_S, |timing| timing.dt_s());
     let is_external = |part: &&Section| part.variant() == Some(ControllerKind::External);
     let parts = section.sections(keys::CONTROLLER).iter().filter(|part| part.sound);
     parts

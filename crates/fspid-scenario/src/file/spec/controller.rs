@@ -354,7 +354,7 @@ pub(crate) const DEAD_ZONE: Key<Section> = optional(
 );
 
 /// What a self-tuning controller has beyond a PID.
-const TUNER: &[KeyRow] =
+pub(crate) const TUNER: &[KeyRow] =
     &[&SUPERVISOR, &LAW, &LEAKAGE_PER_S, &GAIN_COUPLING, &GAIN_LIMITS, &DEAD_ZONE];
 
 static SUPERVISOR_TABLE: Table = choosing(

@@ -11,6 +11,10 @@ use fspid_sim::ElevatorSign;
 
 use super::actuator::ACTUATOR_TABLE;
 use super::air::{GUST_TABLE, TURBULENCE_TABLE, WIND_TABLE};
+use super::autopilot::{
+    ENGINE_TABLE, GLIDE_SLOPE_TABLE, LATERAL_TABLE, MODE_TABLE, OUTER_LOOP_TABLE,
+    TOTAL_ENERGY_TABLE,
+};
 use super::controller::CONTROLLER_TABLE;
 use super::dispersion::DISPERSION_TABLE;
 use super::flight::AIRCRAFT_TABLE;
@@ -59,6 +63,30 @@ pub(crate) const PLANT_CHANGE: Key<[Section]> = optional(
     tables(&PLANT_CHANGE_TABLE, 0, 100),
     "Changes of the aircraft in flight, in order of time.",
 );
+pub(crate) const ENGINE: Key<Section> = optional(
+    "engine",
+    table(&ENGINE_TABLE),
+    "How the engine follows the throttle; without this table at once.",
+);
+pub(crate) const LATERAL: Key<Section> = optional(
+    "lateral",
+    table(&LATERAL_TABLE),
+    "What looks after the lateral motion of a nonlinear aircraft; without this table a wing leveller with 2 s.",
+);
+pub(crate) const GLIDE_SLOPE: Key<Section> =
+    optional("glide_slope", table(&GLIDE_SLOPE_TABLE), "A beam to follow to the ground.");
+pub(crate) const OUTER_LOOP: Key<[Section]> = optional(
+    "outer_loop",
+    tables(&OUTER_LOOP_TABLE, 0, 20),
+    "Loops around the pitch loop, which command its set-point, the throttle or the bank.",
+);
+pub(crate) const TOTAL_ENERGY: Key<Section> = optional(
+    "total_energy",
+    table(&TOTAL_ENERGY_TABLE),
+    "A loop for altitude and airspeed together.",
+);
+pub(crate) const MODE: Key<[Section]> =
+    optional("mode", tables(&MODE_TABLE, 0, 100), "Which outer loops are engaged when, in order.");
 pub(crate) const CONTROLLER: Key<[Section]> = required(
     "controller",
     tables(&CONTROLLER_TABLE, 1, 100),
@@ -89,6 +117,7 @@ pub(crate) static SCENARIO: Table = choosing(
     "A flight to be simulated, once for each controller.",
     &[
         &[&SCHEMA, &NAME, &PLANT, &AIRCRAFT, &ACTUATOR, &LOOP, &SETPOINT, &SENSOR],
+        &[&ENGINE, &LATERAL, &GLIDE_SLOPE, &OUTER_LOOP, &TOTAL_ENERGY, &MODE],
         &[&WIND, &GUST, &TURBULENCE, &DISTURBANCE, &PLANT_CHANGE, &CONTROLLER],
         &[&REQUIREMENT, &DISPERSION, &TUNING, &CONTEST, &SET],
     ],

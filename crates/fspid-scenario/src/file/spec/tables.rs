@@ -5,7 +5,7 @@ use crate::keyed::{
     FILE_PATH, Key, KeyRow, Section, Table, choosing, defaulted, finite, one_of, optional, plain,
     positive, required, table, word,
 };
-use fspid_daveml::flight::Gearing;
+use fspid_aircraft::Gearing;
 
 use super::aircraft::SURFACE_KEYS;
 

@@ -111,6 +111,7 @@ fn diverged(result: &ControllerResult) -> Option<Case> {
         }
         // What hits the ground may be stable: the flight fails by itself.
         fspid_sim::Outcome::Completed
+        | fspid_sim::Outcome::ModeNeverBegan { .. }
         | fspid_sim::Outcome::HitGround { .. }
         | fspid_sim::Outcome::ControllerLost { .. } => None,
     }

@@ -160,8 +160,7 @@ fn flown(
         .fly(&prepared, &Perturbation::NONE, |instant| {
             if instant.k.is_multiple_of(every) {
                 curves.time_s.push(timing.time_s(instant.k));
-                let setpoint = prepared.setpoint_rad().get(instant.k).copied().unwrap_or(f64::NAN);
-                curves.setpoint_deg.push(degrees(setpoint));
+                curves.setpoint_deg.push(degrees(instant.setpoint_rad));
                 curves.pitch_deg.push(degrees(instant.theta_rad));
                 curves.elevator_deg.push(degrees(instant.elevator_rad));
             }

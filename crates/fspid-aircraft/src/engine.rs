@@ -1,4 +1,4 @@
-//! Between the throttle and the power of an engine.
+//! Between the throttle and the power of an engine, and how power follows.
 
 /// What the throttle does to the power that an engine is asked for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -23,6 +23,43 @@ impl Gearing {
             Self::Proportional => throttle,
             Self::StevensLewis if throttle <= 0.77 => 0.6494 * throttle,
             Self::StevensLewis => 2.1738 * throttle - 1.1738,
+        }
+    }
+
+    /// The throttle that asks for a power: the inverse of [`power`](Self::power), which rises with the throttle.
+    #[must_use]
+    pub fn throttle(self, power: f64) -> f64 {
+        match self {
+            Self::Proportional => power,
+            Self::StevensLewis if power <= 0.6494 * 0.77 => power / 0.6494,
+            Self::StevensLewis => (power + 1.1738) / 2.1738,
+        }
+    }
+}
+
+/// How the power of an engine follows the one that is asked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Spool {
+    /// At once.
+    #[default]
+    Instant,
+    /// $\dot P = (P_t - P) / \tau$.
+    FirstOrder {
+        /// $\tau$, s.
+        time_constant_s: f64,
+    },
+    /// That of the F-16 model: [`power_rate_per_s`].
+    StevensLewis,
+}
+
+impl Spool {
+    /// Rate of the power, 1/s.
+    #[must_use]
+    pub fn rate_per_s(self, power: f64, asked: f64) -> f64 {
+        match self {
+            Self::Instant => 0.0,
+            Self::FirstOrder { time_constant_s } => (asked - power) / time_constant_s,
+            Self::StevensLewis => power_rate_per_s(power, asked),
         }
     }
 }
@@ -69,6 +106,23 @@ mod tests {
         assert!((dry - wet).abs() < 2e-5);
         assert_eq!(Gearing::StevensLewis.power(1.0), 1.0);
         assert_eq!(Gearing::Proportional.power(0.3), 0.3);
+    }
+
+    #[test]
+    fn the_throttle_of_a_power_asks_for_that_power() {
+        for gearing in [Gearing::Proportional, Gearing::StevensLewis] {
+            for step in 0..=20 {
+                let power = f64::from(step) / 20.0;
+                assert!((gearing.power(gearing.throttle(power)) - power).abs() < 1e-15, "{power}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_spool_of_first_order_takes_its_time_constant_and_an_instant_one_none() {
+        assert_eq!(Spool::FirstOrder { time_constant_s: 4.0 }.rate_per_s(0.2, 0.6), 0.1);
+        assert_eq!(Spool::Instant.rate_per_s(0.2, 0.6), 0.0);
+        assert_eq!(Spool::StevensLewis.rate_per_s(0.8, 1.0), power_rate_per_s(0.8, 1.0));
     }
 
     #[test]

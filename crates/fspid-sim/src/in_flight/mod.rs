@@ -1,11 +1,14 @@
 //! A flight that stands at a sample and waits for a command: the loop, open where the controller stands.
 
+mod small_motion;
+
 use std::borrow::Borrow;
 
 use fspid_core::{Sample, Step};
 
 use crate::actuated::Held;
 use crate::aircraft::AircraftSample;
+use crate::autopilot::{AutopilotSample, AutopilotState, Commands, Cut, Observed};
 use crate::error::SimError;
 use crate::flown::{CommandPath, Perturbation};
 use crate::instant::Instant;
@@ -103,6 +106,47 @@ pub(crate) struct Course<P> {
     /// At the elevator, rad, and what an aircraft shows, of the sample that was looked at.
     disturbance_rad: f64,
     aircraft: Option<AircraftSample>,
+    around: Option<Around>,
+}
+
+/// The autopilot around the loop.
+#[derive(Clone, Debug)]
+struct Around {
+    state: AutopilotState,
+    /// What it does at the sample that was looked at.
+    sample: Option<AutopilotSample>,
+    /// Which way pitch was cut at the sample before, and the command there, rad.
+    cut: Cut,
+    command_rad: f64,
+}
+
+impl Around {
+    fn start(prepared: &Prepared) -> Result<Option<Self>, SimError> {
+        let Some(autopilot) = &prepared.autopilot else { return Ok(None) };
+        let (dt_s, throttle) = (prepared.timing.dt_s(), prepared.trim_throttle);
+        let state = AutopilotState::start(autopilot, dt_s, throttle)?;
+        Ok(Some(Self { state, sample: None, cut: Cut::Not, command_rad: 0.0 }))
+    }
+
+    /// The pitch set-point that it adds, rad.
+    fn look(&mut self, prepared: &Prepared, k: usize, observed: Option<Observed>) -> f64 {
+        if let (Some(autopilot), Some(observed)) = (&prepared.autopilot, observed) {
+            let at = (k, prepared.timing.time_s(k));
+            self.sample = Some(self.state.answer(autopilot, at, &observed, self.cut));
+        }
+        self.state.commands().pitch_rad
+    }
+
+    /// Remembers which way pitch is cut: by the controller, or by what moves the elevator.
+    fn take(&mut self, step: &Step<f64>, below: Cut) {
+        let own = if step.saturated {
+            Cut::towards(step.command_rad - self.command_rad)
+        } else {
+            Cut::Not
+        };
+        self.cut = if step.saturated && own == Cut::Not { self.cut } else { own.or(below) };
+        self.command_rad = step.command_rad;
+    }
 }
 
 impl<P: Borrow<Prepared>> Course<P> {
@@ -117,6 +161,7 @@ impl<P: Borrow<Prepared>> Course<P> {
             delayed: Delay::of(all.delay_samples),
             disturbance_rad: 0.0,
             aircraft: None,
+            around: Around::start(all)?,
             prepared,
         })
     }
@@ -150,7 +195,7 @@ impl<P: Borrow<Prepared>> Course<P> {
         let k = self.k;
         let prepared: &Prepared = self.prepared.borrow();
         let Some(&setpoint_rad) = prepared.setpoint_rad.get(k) else {
-            return Err(Outcome::Completed);
+            return Err(self.completed());
         };
         while prepared.stages.get(self.stage + 1).is_some_and(|next| next.from <= k) {
             self.stage += 1;
@@ -173,7 +218,21 @@ impl<P: Borrow<Prepared>> Course<P> {
         let rate_rad_s = self.sensors.rate_rad_s(k, q_rad_s);
         (self.disturbance_rad, self.aircraft) = (disturbance_rad, aircraft);
         let measured = [measurement_rad, rate_rad_s];
+        let setpoint_rad = match &mut self.around {
+            Some(around) => {
+                setpoint_rad + around.look(prepared, k, aircraft.as_ref().map(Observed::from))
+            }
+            None => setpoint_rad,
+        };
         Ok(Seen { k, setpoint_rad, theta_rad, q_rad_s, measured })
+    }
+
+    /// How a flight ended of which every sample was flown.
+    fn completed(&self) -> Outcome {
+        let autopilot = self.prepared().autopilot.as_ref();
+        let around = self.around.as_ref().zip(autopilot);
+        let waits = around.and_then(|(around, autopilot)| around.state.waits_for(autopilot));
+        waits.map_or(Outcome::Completed, |mode| Outcome::ModeNeverBegan { mode })
     }
 
     /// Takes the answer: what was there, and the command that arrives at the servo.
@@ -187,8 +246,21 @@ impl<P: Borrow<Prepared>> Course<P> {
         let elevator_rad = propagation.elevator_rad(&self.plant, self.disturbance_rad);
         let Seen { k, setpoint_rad, theta_rad, q_rad_s, measured } = seen;
         let aircraft = self.aircraft;
-        let instant =
-            Instant { k, setpoint_rad, theta_rad, q_rad_s, elevator_rad, measured, aircraft, step };
+        if let Some(around) = &mut self.around {
+            around.take(&step, propagation.cut(&self.plant, command_rad));
+        }
+        let autopilot = self.around.as_ref().and_then(|around| around.sample);
+        let instant = Instant {
+            k,
+            setpoint_rad,
+            theta_rad,
+            q_rad_s,
+            elevator_rad,
+            measured,
+            aircraft,
+            autopilot,
+            step,
+        };
         (instant, command_rad)
     }
 
@@ -197,7 +269,12 @@ impl<P: Borrow<Prepared>> Course<P> {
     pub(crate) fn held(&self) -> Held<'_> {
         let prepared = self.prepared();
         let air = (prepared.gusts(), prepared.gust_responses.as_deref());
-        held(self.disturbance_rad, air, self.k)
+        Held { autopilot: self.commands(), ..held(self.disturbance_rad, air, self.k) }
+    }
+
+    /// What an autopilot commands; nothing without one.
+    fn commands(&self) -> Commands {
+        self.around.as_ref().map(|around| around.state.commands()).unwrap_or_default()
     }
 
     /// Flies to the next sample.
@@ -205,13 +282,20 @@ impl<P: Borrow<Prepared>> Course<P> {
     pub(crate) fn advance(&mut self, command_rad: f64) -> Result<(), SimError> {
         let prepared: &Prepared = self.prepared.borrow();
         let air = (prepared.gusts(), prepared.gust_responses.as_deref());
-        let held = held(self.disturbance_rad, air, self.k);
+        let autopilot = self.around.as_ref().map(|around| around.state.commands());
+        let held = Held {
+            autopilot: autopilot.unwrap_or_default(),
+            ..held(self.disturbance_rad, air, self.k)
+        };
         let propagation = &prepared.stages[self.stage].propagation;
         propagation.advance(&mut self.plant, command_rad, &held)?;
         self.k += 1;
         Ok(())
     }
 }
+
+pub(crate) use small_motion::{ALTITUDE, BEYOND, HEADING};
+pub use small_motion::{ModePoles, mode_poles};
 
 /// Commands on their way, the oldest at `next`.
 #[derive(Clone, Debug)]
@@ -223,6 +307,20 @@ struct Delay {
 impl Delay {
     fn of(samples: usize) -> Self {
         Self { commands_rad: vec![0.0; samples], next: 0 }
+    }
+
+    /// The commands on their way, the oldest first.
+    fn in_order(&self) -> impl Iterator<Item = f64> {
+        let (later, first) = self.commands_rad.split_at(self.next);
+        first.iter().chain(later).copied()
+    }
+
+    /// Moves the command of a place among them.
+    fn nudge(&mut self, place: usize, by_rad: f64) {
+        let length = self.commands_rad.len().max(1);
+        if let Some(command_rad) = self.commands_rad.get_mut((self.next + place) % length) {
+            *command_rad += by_rad;
+        }
     }
 
     /// Takes a command and answers the one that arrives.

@@ -1,0 +1,117 @@
+//! The autopilot around the loop: outer loops that command the pitch set-point, the throttle and the bank, and the modes
+//! that engage them.
+//!
+//! # The cascade
+//! An [`OuterLoop`] holds one [`Quantity`] of the flight and moves the pitch set-point, the throttle, the bank or the target
+//! of another outer loop. It is a [`Controller`](crate::Controller) like the one under test, fixed or self-tuning, in SI
+//! units of what it holds and moves. [`TotalEnergy`] holds altitude and airspeed together and moves pitch and throttle
+//! together. All answer once a sample, the outermost first, before the pitch controller does.
+//!
+//! # Modes
+//! A [`Mode`] says which loops are engaged and what they hold. Modes follow each other in the order in which they are
+//! written: the next one begins at the first sample at which its [`Entry`] is met. A loop that is not engaged forgets;
+//! one that becomes engaged takes over what is commanded ([`track`](fspid_core::Controller::track)), so that a change
+//! of modes bumps nothing but what a gain without an integral has to, within its rate limit. What nobody moves any more
+//! stays where it was.
+//!
+//! # Anti-windup across the cascade
+//! While what a loop moves is cut (a limit of its own, of the loop below, of the pitch controller, of the elevator's
+//! drive), its integral does not grow in that direction.
+//!
+//! # Where pitch, throttle and bank count from
+//! Pitch and throttle are changes from the trim, as the set-point of the scenario is, which is added to the pitch of the
+//! autopilot.
+//!
+//! # Not here
+//! Air data with errors of position; localiser; flare and roll-out; go-around logic.
+
+mod channel;
+mod check;
+mod error;
+mod flight;
+mod glide_slope;
+mod mode;
+mod outer_loop;
+mod quantity;
+mod sample;
+mod total_energy;
+
+pub use error::AutopilotError;
+pub(crate) use flight::{AutopilotState, Commands, Cut};
+pub use glide_slope::GlideSlope;
+pub use mode::{Condition, Engagement, Entry, Mode, Side, Target};
+pub use outer_loop::{Moves, OuterLoop, Units};
+pub(crate) use quantity::Observed;
+pub use quantity::Quantity;
+pub use sample::{AUTOPILOT_COLUMNS, AutopilotSample};
+pub use total_energy::TotalEnergy;
+
+use crate::aircraft::AircraftPlant;
+use crate::timing::Timing;
+use fspid_aircraft::ForceModel;
+
+/// What stands around the pitch loop.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Autopilot {
+    loops: Vec<OuterLoop>,
+    total_energy: Option<TotalEnergy>,
+    glide_slope: Option<GlideSlope>,
+    modes: Vec<Mode>,
+    /// For each mode its loops by number, the outermost first.
+    order: Vec<Vec<usize>>,
+}
+
+impl Autopilot {
+    /// Outer loops and the modes that engage them.
+    ///
+    /// # Errors
+    /// [`AutopilotError`] names the first mode or loop that makes no sense.
+    pub fn new(
+        loops: Vec<OuterLoop>,
+        total_energy: Option<TotalEnergy>,
+        glide_slope: Option<GlideSlope>,
+        modes: Vec<Mode>,
+    ) -> Result<Self, AutopilotError> {
+        let order = check::order(&loops, total_energy.as_ref(), glide_slope.as_ref(), &modes)?;
+        Ok(Self { loops, total_energy, glide_slope, modes, order })
+    }
+
+    /// Refuses what this aircraft and a flight of this length cannot have.
+    ///
+    /// # Errors
+    /// [`AutopilotError`] for a throttle to be moved without an engine and for a mode that begins after the flight.
+    pub fn check(&self, plant: &AircraftPlant, timing: Timing) -> Result<(), AutopilotError> {
+        check::within(&self.modes, timing)?;
+        let by_throttle = self.loops.iter().find(|outer| outer.moves == Moves::Throttle);
+        let name = by_throttle.map(|outer| outer.name.as_str());
+        let name = name.or_else(|| self.total_energy.map(|_| "total energy"));
+        match name.filter(|_| !plant.aircraft().model().has_engine()) {
+            Some(name) => Err(AutopilotError::NoEngine { name: name.to_owned() }),
+            None => Ok(()),
+        }
+    }
+
+    /// The outer loops, as they are written.
+    #[must_use]
+    pub fn loops(&self) -> &[OuterLoop] {
+        &self.loops
+    }
+
+    /// The modes, in order.
+    #[must_use]
+    pub fn modes(&self) -> &[Mode] {
+        &self.modes
+    }
+
+    /// The beam that is followed.
+    #[must_use]
+    pub fn glide_slope(&self) -> Option<&GlideSlope> {
+        self.glide_slope.as_ref()
+    }
+
+    /// The loop for altitude and airspeed together.
+    #[must_use]
+    pub fn total_energy(&self) -> Option<&TotalEnergy> {
+        self.total_energy.as_ref()
+    }
+}
