@@ -39,7 +39,7 @@ impl Progress {
         self.stopped.store(true, Ordering::Relaxed);
     }
 
-    fn is_stopped(&self) -> bool {
+    pub(crate) fn is_stopped(&self) -> bool {
         self.stopped.load(Ordering::Relaxed)
     }
 
@@ -63,6 +63,10 @@ impl Progress {
 
     pub(crate) fn add_found(&self, runs: u64) {
         self.found.fetch_add(runs, Ordering::Relaxed);
+    }
+
+    pub(crate) fn add_flown(&self, runs: u64) {
+        self.flown.fetch_add(runs, Ordering::Relaxed);
     }
 
     fn add(&self, runs: &[Run], controllers: usize) {

@@ -39,6 +39,12 @@ pub enum CampaignError {
         /// The scenario.
         path: String,
     },
+    /// A requirement that cannot be asked of flights.
+    #[error("{reason}")]
+    NotOfFlights {
+        /// Which, and why.
+        reason: String,
+    },
     /// A count beyond its limits.
     #[error("{0}")]
     Count(#[from] CountError),

@@ -62,6 +62,12 @@ impl Folder {
         self.path.join("shards")
     }
 
+    /// Folder of the scores of a search for rare failures.
+    #[must_use]
+    pub fn flights_path(&self) -> PathBuf {
+        self.path.join("flights")
+    }
+
     /// Path of the part with these runs.
     #[must_use]
     pub fn shard_path(&self, range: Range) -> PathBuf {

@@ -23,6 +23,7 @@ mod parts;
 mod plan;
 mod planning;
 mod range;
+pub mod rare;
 pub mod replay;
 pub mod report;
 pub mod rows;

@@ -188,6 +188,12 @@ where
     StringValueParser::new().try_map(counted).into()
 }
 
+/// A probability that may be required: above 0, up to 1.
+pub(crate) fn positive_share(text: &str) -> Result<f64, String> {
+    let share = text.parse().ok().filter(|share: &f64| *share > 0.0 && *share <= 1.0);
+    share.ok_or_else(|| "allowed is a number above 0, up to 1".to_owned())
+}
+
 fn has_ending(path: &Path, endings: &[&str]) -> bool {
     let ending = path.extension().and_then(|ending| ending.to_str());
     ending.is_some_and(|it| endings.iter().any(|known| it.eq_ignore_ascii_case(known)))

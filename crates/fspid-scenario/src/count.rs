@@ -80,7 +80,7 @@ macro_rules! counts {
 
 counts! {
     THREADS: "the number of threads",
-        ["campaign run --threads", "campaign shard --threads", "campaign search --threads", "tune --threads", "contest --threads", "bench --threads"],
+        ["campaign run --threads", "campaign shard --threads", "campaign search --threads", "campaign rare --threads", "tune --threads", "contest --threads", "bench --threads"],
         0 to 1024, "more than any machine has stall it; 0 is as many as it has";
     RUNS: "the number of runs", ["campaign run --runs", "campaign plan --runs"],
         1 to 1_000_000_000, "an assumption: hours to weeks of flights";
@@ -92,6 +92,8 @@ counts! {
         0 to 1_000_000_000, "a column of them is 8 GB";
     FLIGHTS: "the number of flights", ["campaign search --budget"],
         1 to 10_000_000, "an assumption: hours of flights";
+    RARE_FLIGHTS: "the number of flights", ["campaign rare --flights"],
+        1000 to 100_000_000, "of fewer no interval can be made; the most are hours of flights, whose scores are some gigabytes";
     BUDGET: "the budget", ["tune --budget", "contest --budget"],
         1 to 10_000_000, "each candidate is kept with its costs, some 300 bytes";
     POPULATION: "the population", ["tune --population"],

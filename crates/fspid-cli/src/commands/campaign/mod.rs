@@ -4,6 +4,7 @@ mod engine;
 mod merge;
 mod plan;
 mod progress;
+mod rare;
 mod replay;
 mod report;
 mod run;
@@ -41,6 +42,7 @@ enum Command {
     Report(report::Arguments),
     Replay(replay::Arguments),
     Search(search::Arguments),
+    Rare(rare::Arguments),
 }
 
 const HELP: &str = "Examples:
@@ -48,6 +50,7 @@ const HELP: &str = "Examples:
   fspid campaign report robust/campaign.parquet --out robust.html
   fspid campaign replay robust --run 137 --trace run-137.csv
   fspid campaign search pitch.toml --measure overshoot_pct --controller FSPID
+  fspid campaign rare pitch.toml --fails overshoot_pct
 On a cluster: --engine ray, dask, slurm or command; or by hand: plan once, fly each shard anywhere, merge:
   fspid campaign plan pitch.toml --runs 1000000 --out robust
   fspid campaign shard 0 --out robust
@@ -90,6 +93,7 @@ Examples:
   fspid campaign report robust/campaign.parquet --out robust.html
   fspid campaign replay robust --run 137 --trace run-137.csv
   fspid campaign search pitch.toml --measure overshoot_pct --controller FSPID --budget 5000
+  fspid campaign rare pitch.toml --fails overshoot_pct --flights 100000 --most 1e-6
   python -c \"import pandas; print(pandas.read_parquet('robust/campaign.parquet').describe())\"
 Exit codes: 0 done, failed flights are results; 2 the input is wrong; 4 the output could not be written.";
 
@@ -102,6 +106,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Command::Report(arguments) => report::run(arguments),
         Command::Replay(arguments) => replay::run(arguments),
         Command::Search(arguments) => search::run(arguments),
+        Command::Rare(arguments) => rare::run(arguments),
     }
 }
 

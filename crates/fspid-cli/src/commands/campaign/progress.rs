@@ -10,6 +10,23 @@ use super::super::progress::{Telling, answer_after, duration, tell};
 
 /// Works and tells how far it is on standard error.
 pub(super) fn told<T>(telling: Telling, runs: u64, work: impl FnOnce(&Progress) -> T) -> T {
+    told_by(telling, &|progress, elapsed| line(progress, runs, elapsed), work)
+}
+
+/// The same of a search, which may end with fewer runs, and whose failures are not counted one by one.
+pub(super) fn told_of_search<T>(
+    telling: Telling,
+    most: u64,
+    work: impl FnOnce(&Progress) -> T,
+) -> T {
+    told_by(telling, &|progress, elapsed| runs_line(progress, most, elapsed), work)
+}
+
+fn told_by<T>(
+    telling: Telling,
+    line: &(dyn Fn(&Progress, Duration) -> String + Sync),
+    work: impl FnOnce(&Progress) -> T,
+) -> T {
     let progress = Progress::default();
     if telling == Telling::Nothing {
         return work(&progress);
@@ -21,17 +38,23 @@ pub(super) fn told<T>(telling: Telling, runs: u64, work: impl FnOnce(&Progress) 
         scope.spawn(move || {
             // Until the other end is dropped.
             while waiting.recv_timeout(telling.period()) == Err(RecvTimeoutError::Timeout) {
-                tell(telling, &line(progress, runs, start.elapsed()));
+                tell(telling, &line(progress, start.elapsed()));
             }
         });
         let answer = work(progress);
         drop(done);
-        answer_after(telling, &line(progress, runs, start.elapsed()));
+        answer_after(telling, &line(progress, start.elapsed()));
         answer
     })
 }
 
 fn line(progress: &Progress, runs: u64, elapsed: Duration) -> String {
+    let failed = progress.failed();
+    let failed = format!("{} flight{} failed", grouped(failed), if failed == 1 { "" } else { "s" });
+    format!("{}, {failed}", runs_line(progress, runs, elapsed))
+}
+
+fn runs_line(progress: &Progress, runs: u64, elapsed: Duration) -> String {
     let (flown, found) = (progress.flown(), progress.found());
     let seconds = elapsed.as_secs_f64();
     let mut parts = vec![format!("{} of {} runs", grouped(flown + found), grouped(runs))];
@@ -46,8 +69,6 @@ fn line(progress: &Progress, runs: u64, elapsed: Duration) -> String {
     if found > 0 {
         parts.push(format!("{} found", grouped(found)));
     }
-    let failed = progress.failed();
-    parts.push(format!("{} flight{} failed", grouped(failed), if failed == 1 { "" } else { "s" }));
     parts.join(", ")
 }
 

@@ -1,0 +1,222 @@
+//! The limit state of flights: how near a flight is to not meeting a requirement.
+
+use fspid_scenario::dispersion::{Distribution, Drawn, SEED_LIMIT, standard_normal};
+use fspid_scenario::file::{Study, known_words};
+use fspid_scenario::measure::Family;
+use fspid_scenario::requirement::Requirement;
+use rayon::prelude::*;
+
+use super::chains::LimitState;
+use super::point::{Point, Shape};
+use crate::campaign::{Campaign, Progress};
+use crate::engine::{self, FlightResult, Memory};
+use crate::error::CampaignError;
+use crate::plan::{SHARD_RUNS, SLOW_SHARD_RUNS};
+
+/// Score of a flight that fails before anything of it is measured; lost earlier is higher.
+const LOST: f64 = 1e300;
+/// Score of a flight of which the requirement cannot be told, and that therefore does not meet it.
+const ABSENT: f64 = 1e200;
+/// Lost flights are in order of time; no flight lasts this long.
+const LONGEST_S: f64 = 1e12;
+
+/// What a coordinate of the dispersions is drawn from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Axis {
+    #[default]
+    Normal,
+    Seed,
+}
+
+/// Flights of one controller, asked for one requirement.
+#[derive(Debug)]
+pub struct Target<'a> {
+    campaign: &'a Campaign,
+    progress: &'a Progress,
+    controller: String,
+    requirement: Requirement,
+    axes: Vec<Axis>,
+}
+
+impl<'a> Target<'a> {
+    /// Of a requirement by its id, and of a controller by its name: the only one that it concerns, or the first.
+    ///
+    /// # Errors
+    /// A requirement or a controller that there is not; a requirement that is not of flights, or not of the controller.
+    pub fn of(
+        campaign: &'a Campaign,
+        progress: &'a Progress,
+        fails: &str,
+        controller: Option<&str>,
+    ) -> Result<Self, CampaignError> {
+        let study = campaign.template().study();
+        let requirement = required(study, fails)?;
+        let names: Vec<&str> = study.scenario.flyers().map(|flyer| flyer.name()).collect();
+        let asked = controller.or(requirement.controller.as_deref());
+        let name = match asked {
+            None => names.first().copied(),
+            Some(name) => names.iter().copied().find(|known| *known == name),
+        };
+        let Some(name) = name else {
+            return Err(unknown("controller", asked.unwrap_or_default(), &names));
+        };
+        if let Some(only) = requirement.controller.as_ref().filter(|only| *only != name) {
+            let (id, only) = (&requirement.id, only.as_str());
+            let reason = format!("`{id}` is required of {only} alone, and not of {name}");
+            return Err(CampaignError::NotOfFlights { reason });
+        }
+        let axis = |distribution: &Distribution| match distribution {
+            Distribution::Seed => vec![Axis::Seed],
+            other => vec![Axis::Normal; other.dimensions()],
+        };
+        let axes = campaign.draws().in_cube(|dispersion| axis(&dispersion.distribution));
+        let controller = name.to_owned();
+        Ok(Self { campaign, progress, controller, requirement, axes })
+    }
+
+    /// The controller.
+    #[must_use]
+    pub fn controller(&self) -> &str {
+        &self.controller
+    }
+
+    /// The requirement.
+    #[must_use]
+    pub fn requirement(&self) -> &Requirement {
+        &self.requirement
+    }
+
+    /// Whether anything that is drawn is a seed.
+    pub(super) fn draws_seeds(&self) -> bool {
+        self.axes.contains(&Axis::Seed)
+    }
+
+    /// How many points are kept together: a second or two of flights side by side, fewer of those flown one by one.
+    pub(super) fn part(&self) -> usize {
+        let scenario = &self.campaign.template().study().scenario;
+        let side_by_side = scenario.flies_side_by_side() && scenario.externals.is_empty();
+        (if side_by_side { SHARD_RUNS } else { SLOW_SHARD_RUNS }) as usize
+    }
+
+    /// Tells of flights that had been flown before.
+    pub(super) fn found(&self, flights: u64) {
+        self.progress.add_found(flights);
+    }
+
+    /// What is drawn at a point.
+    #[must_use]
+    pub fn drawn(&self, point: &Point) -> Vec<Drawn> {
+        let (mut normals, mut seeds) = (point.normals.iter(), point.seeds.iter());
+        let coordinate = |axis: &Axis| match axis {
+            Axis::Normal => in_unit(standard_normal::below(normals.next().copied().unwrap_or(0.0))),
+            // The middle of what a seed stands for: both are exact.
+            Axis::Seed => (seeds.next().copied().unwrap_or(0) as f64 + 0.5) / SEED_LIMIT as f64,
+        };
+        let cube: Vec<f64> = self.axes.iter().map(coordinate).collect();
+        self.campaign.draws().drawn_at(&cube)
+    }
+
+    /// The scenario of a point, with the one controller.
+    fn study(&self, point: &Point) -> Result<Study, String> {
+        let mut study = self.campaign.study(&self.drawn(point))?;
+        study.scenario.controllers.retain(|it| it.name == self.controller);
+        study.scenario.externals.retain(|it| it.name == self.controller);
+        Ok(study)
+    }
+
+    fn flown(&self, memory: &mut Memory, points: &[Point]) -> Result<Vec<f64>, CampaignError> {
+        if self.progress.is_stopped() {
+            return Err(CampaignError::Stopped);
+        }
+        let studies: Vec<Result<Study, String>> = points.iter().map(|it| self.study(it)).collect();
+        let sound: Vec<Study> = studies.iter().filter_map(|it| it.as_ref().ok().cloned()).collect();
+        let mut flown = engine::fly_with(memory, &sound).into_iter();
+        let scores = studies.iter().map(|study| {
+            let flights = if study.is_ok() { flown.next() } else { None };
+            match flights {
+                Some(Err(error)) if error.is_of_host() => Err(error.into()),
+                Some(Ok(flights)) => Ok(flights.first().map_or(LOST, |it| self.score(it))),
+                // Numbers that make no scenario, or one that cannot be flown: refused runs fail in campaigns too.
+                _ => Ok(LOST),
+            }
+        });
+        let scores: Result<Vec<f64>, CampaignError> = scores.collect();
+        self.progress.add_flown(points.len() as u64);
+        scores
+    }
+
+    /// Above 0 for a flight that does not meet the requirement or fails by itself, and the higher the worse.
+    fn score(&self, flight: &FlightResult) -> f64 {
+        if let Some(at_s) = flight.diverged_at_s().or_else(|| flight.hit_ground_at_s()) {
+            return LOST * (1.0 - at_s / LONGEST_S);
+        }
+        if !flight.ending().failures().is_empty() {
+            return LOST * 0.5;
+        }
+        let mut judgements = flight.judgements.iter();
+        let judgement = judgements.find(|it| it.requirement.id == self.requirement.id);
+        let Some(judgement) = judgement else { return ABSENT };
+        let slack = judgement.found.as_ref().map(|case| self.requirement.slack(case.value));
+        match slack {
+            Ok(slack) if judgement.met => (-slack).clamp(-ABSENT, 0.0),
+            Ok(slack) if slack < 0.0 => (-slack).min(ABSENT),
+            _ => ABSENT,
+        }
+    }
+}
+
+impl LimitState for Target<'_> {
+    type Error = CampaignError;
+
+    fn shape(&self) -> Shape {
+        let count = |of: Axis| self.axes.iter().filter(|axis| **axis == of).count();
+        Shape { normals: count(Axis::Normal), airs: 0, seeds: count(Axis::Seed) }
+    }
+
+    fn scores(&mut self, points: &[Point]) -> Result<Vec<f64>, CampaignError> {
+        let at_once = engine::at_once(self.campaign.template().study());
+        let this = &*self;
+        let parts: Vec<Result<Vec<f64>, CampaignError>> = points
+            .par_chunks(at_once)
+            .map_init(Memory::default, |memory, points| this.flown(memory, points))
+            .collect();
+        let mut scores = Vec::with_capacity(points.len());
+        for part in parts {
+            scores.extend(part?);
+        }
+        Ok(scores)
+    }
+}
+
+/// The requirement of this id, if flights answer it.
+fn required(study: &Study, id: &str) -> Result<Requirement, CampaignError> {
+    let of_flights = |requirement: &&Requirement| {
+        matches!(requirement.measure.family(), Family::Step | Family::Flight)
+    };
+    let Some(requirement) = study.requirements.iter().find(|it| it.id == id) else {
+        let ids: Vec<&str> =
+            study.requirements.iter().filter(of_flights).map(|it| it.id.as_str()).collect();
+        if study.requirements.is_empty() {
+            let reason = "the scenario has no requirement; add what shall hold, for instance:\n\n        [[requirement]]\n        measure = \"overshoot_pct\"\n        most = 35.0\n";
+            return Err(CampaignError::NotOfFlights { reason: reason.to_owned() });
+        }
+        return Err(unknown("requirement", id, &ids));
+    };
+    if !of_flights(&requirement) {
+        let measure = requirement.measure.name();
+        let reason = format!(
+            "`{id}` asks for {measure}, which is of the linear loop and not of a flight; `fspid campaign run` counts it"
+        );
+        return Err(CampaignError::NotOfFlights { reason });
+    }
+    Ok(requirement.clone())
+}
+
+fn unknown(what: &'static str, found: &str, known: &[&str]) -> CampaignError {
+    CampaignError::Unknown { what, found: found.to_owned(), known: known_words(found, known) }
+}
+
+/// Strictly between 0 and 1.
+fn in_unit(share: f64) -> f64 {
+    share.clamp(f64::MIN_POSITIVE, 1.0 - f64::EPSILON / 2.0)
+}
