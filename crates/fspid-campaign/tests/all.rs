@@ -3,6 +3,7 @@
 mod campaign;
 mod engine;
 mod parts;
+mod rare;
 mod search;
 mod statistics;
 mod summary;

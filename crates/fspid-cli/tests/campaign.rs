@@ -283,3 +283,102 @@ fn a_store_without_an_engine_that_puts_parts_there_is_refused() {
     assert_eq!(code(&refused), 2);
     assert!(text(&refused.stderr).contains("--store goes with --engine ray and dask"));
 }
+
+/// A search for rare failures of some hundred flights, and what its folder holds.
+const RARE: [&str; 11] = [
+    "campaign",
+    "rare",
+    "pitch.toml",
+    "--fails",
+    "overshoot_pct",
+    "--flights",
+    "1000",
+    "--seed",
+    "3",
+    "--set",
+    "loop.duration_s=1.5",
+];
+
+fn rare_files(folder: &Path, out: &str) -> Vec<(String, Vec<u8>)> {
+    let parts = std::fs::read_dir(folder.join(out).join("flights")).expect("parts");
+    let parts = parts.map(|entry| entry.expect("an entry").path());
+    let whole = ["answer.json", "levels.svg", "question.json"].map(|it| folder.join(out).join(it));
+    let mut files: Vec<PathBuf> = parts.chain(whole).collect();
+    files.sort();
+    let read = |path: &PathBuf| {
+        let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+        (name, std::fs::read(path).expect("read"))
+    };
+    files.iter().map(read).collect()
+}
+
+#[test]
+fn a_rare_failure_has_the_same_bytes_for_any_threads_and_after_an_interruption() {
+    let folder = folder();
+    let folder = folder.path();
+    let one = done(&with(&RARE, &["--threads", "1", "--out", "one", "--quiet"]), folder);
+    let two = done(&with(&RARE, &["--threads", "2", "--out", "two", "--quiet"]), folder);
+    assert_eq!(one, two);
+    assert_eq!(rare_files(folder, "one"), rare_files(folder, "two"));
+    // What an interruption leaves: the first parts, and perhaps a beginning of the next under another name.
+    let parts = rare_files(folder, "two").len() - 3;
+    assert!(parts > 6, "{parts}");
+    for number in parts / 2..parts {
+        let part = folder.join(format!("two/flights/{number:06}.scores"));
+        std::fs::remove_file(part).expect("removed");
+    }
+    std::fs::remove_file(folder.join("two/answer.json")).expect("removed");
+    std::fs::write(folder.join("two/flights/.tmpAbCdEf"), "fspid rare sc").expect("written");
+    assert_eq!(done(&with(&RARE, &["--out", "two", "--quiet"]), folder), one);
+    std::fs::remove_file(folder.join("two/flights/.tmpAbCdEf")).expect("removed");
+    assert_eq!(rare_files(folder, "one"), rare_files(folder, "two"));
+    // Nothing kept, the same answer.
+    assert_eq!(done(&with(&RARE, &["--quiet"]), folder), one);
+}
+
+#[test]
+fn a_folder_of_another_question_and_a_damaged_part_are_refused() {
+    let folder = folder();
+    let folder = folder.path();
+    done(&with(&RARE, &["--out", "kept", "--quiet"]), folder);
+    let mut other = RARE;
+    other[8] = "4";
+    let refused = fspid(&with(&other, &["--out", "kept"]), folder);
+    assert_eq!(code(&refused), 2);
+    let told = text(&refused.stderr);
+    assert!(told.contains("seed: \"3\" there, \"4\" here"), "{told}");
+    let part = folder.join("kept/flights/000001.scores");
+    let whole = std::fs::read_to_string(&part).expect("a part");
+    for damaged in [
+        whole.replace("end\n", ""),
+        whole.replacen("fspid", "fspad", 1),
+        whole.replacen("\n-", "\nx-", 1),
+    ] {
+        std::fs::write(&part, damaged).expect("written");
+        let refused = fspid(&with(&RARE, &["--out", "kept"]), folder);
+        assert_eq!(code(&refused), 2);
+        let told = text(&refused.stderr);
+        assert!(told.contains("000001.scores") && told.contains("remove it"), "{told}");
+    }
+}
+
+#[test]
+fn a_probability_that_is_required_decides_about_the_exit_code() {
+    let folder = folder();
+    let folder = folder.path();
+    let met = fspid(&with(&RARE, &["--most", "0.9", "--quiet"]), folder);
+    assert_eq!(code(&met), 0, "{}", text(&met.stderr));
+    assert!(text(&met.stdout).contains(": MET."), "{}", text(&met.stdout));
+    let not_met = fspid(&with(&RARE, &["--most", "1e-12", "--quiet"]), folder);
+    assert_eq!(code(&not_met), 1);
+    assert!(text(&not_met.stdout).contains(": NOT MET."), "{}", text(&not_met.stdout));
+    for most in ["0", "-1", "2", "nan", "much"] {
+        let refused = fspid(&with(&RARE, &["--most", most]), folder);
+        assert_eq!(code(&refused), 2, "{most}");
+    }
+    let refused = fspid(&["campaign", "rare", "pitch.toml", "--fails", "overshot_pct"], folder);
+    assert_eq!(code(&refused), 2);
+    assert!(text(&refused.stderr).contains("overshoot_pct"), "{}", text(&refused.stderr));
+    let refused = fspid(&["campaign", "rare", "pitch.toml", "--fails", "phase_margin_deg"], folder);
+    assert!(text(&refused.stderr).contains("not of a flight"), "{}", text(&refused.stderr));
+}

@@ -30,7 +30,7 @@ fn commands(folder: &Path) -> Vec<Vec<String>> {
 }
 
 /// A command that answers, the exit codes that are well, and a key of its answer. They run in this order in one folder.
-const ANSWERS: [(&str, &[i32], &str); 47] = [
+const ANSWERS: [(&str, &[i32], &str); 48] = [
     ("init pitch.toml", &[0], "file"),
     ("init --list", &[0], "templates"),
     ("init --template tuning tuning.toml", &[0], "next"),
@@ -52,6 +52,11 @@ const ANSWERS: [(&str, &[i32], &str); 47] = [
     ("campaign report run/campaign.parquet", &[0], "schema"),
     ("campaign replay run --run 3", &[0], "schema"),
     ("campaign search campaign.toml --measure overshoot_pct --budget 30", &[0], "measure"),
+    (
+        "campaign rare campaign.toml --fails overshoot_pct --flights 1000 --set loop.duration_s=2",
+        &[0],
+        "at_most",
+    ),
     ("tune tuning.toml --budget 12 --quiet", &[0, 1], "best"),
     ("tune contest.toml --all --budget 8 --quiet", &[0, 1], "controllers"),
     ("tune pitch.toml --rule amigo", &[0, 1], "controller"),

@@ -98,7 +98,7 @@ fn turbulence(seed: u64) -> Weather {
         height_m: ALTITUDE_M,
         airspeed_m_s: SPEED_M_S,
         wing_span_m: 196.0 * FOOT_M,
-        seed,
+        noise: seed.into(),
         follows: Follows::Start,
     };
     Weather { turbulence: Some(turbulence), ..winds(Vec::new()) }

@@ -75,7 +75,7 @@ fn turbulence(w20_m_s: f64) -> Weather {
         height_m: 150.0,
         airspeed_m_s: 176.0 * FOOT_M,
         wing_span_m: 33.4 * FOOT_M,
-        seed: 9,
+        noise: 9.into(),
         follows: Follows::Start,
     };
     Weather { course: course(), winds: Vec::new(), turbulence: Some(turbulence) }

@@ -11,7 +11,7 @@ use super::question::{Method, Question};
 use super::subset::{Known, Subset};
 use super::target::Target;
 use crate::campaign::Campaign;
-use crate::replay::{changes, command};
+use crate::replay::command;
 
 /// What the methods found, as far as they were asked.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,7 +69,7 @@ impl Rare {
             .chain(of_importance)
             .min_by(|a, b| a.distance_squared().total_cmp(&b.distance_squared()));
         let likeliest = |point: &Point| {
-            let changes = changes(campaign, &target.drawn(point));
+            let changes = target.changes(point);
             let command = command(campaign, &changes);
             Likeliest { changes, command, distance: libm::sqrt(point.distance_squared()) }
         };

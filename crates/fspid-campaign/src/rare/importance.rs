@@ -1,10 +1,11 @@
 //! Importance sampling: points are drawn where failures are, and each counts by how much likelier it is to be drawn there.
 //!
-//! $$ \hat p = \frac1n \sum_{i} w(x_i) \mathbf 1[\text{fails}], \qquad w = \frac{\varphi}{0.1 \varphi + 0.9 q} $$
+//! $$ \hat p = \frac1n \sum_{i} w(x_i) \mathbf 1[\text{fails}], \qquad
+//! w = \frac{\varphi(x)}{0.1 \varphi(x) + 0.6 q(x) + 0.3 q(-x)} $$
 //!
 //! q is the normal distribution of independent numbers that the cross-entropy method finds: level by level the means and
 //! variances of the best tenth, weighted. A tenth of the points is drawn as flights are, so that no weight is above ten; that
-//! keeps the variance finite, and it does not find what q has not found. Seeds and noises of air are drawn as they are.
+//! keeps the variance finite, and it does not find what q has not found. The mirror image of q is there because limits often have two sides, of which q finds one. Seeds and noises of air are drawn as they are.
 //!
 //! # Source
 //! R. Y. Rubinstein, D. P. Kroese, *The Cross-Entropy Method* (2004), chapter 3; T. Hesterberg, "Weighted average importance
@@ -26,6 +27,8 @@ const SEARCH: f64 = 0.4;
 const MOST_ITERATIONS: u64 = 16;
 /// Standard deviations of q are no smaller: what is as thin as its best points misses what lies beside them.
 const THINNEST: f64 = 0.3;
+/// Share of q, of its points and those of its mirror image together.
+const STRAIGHT: f64 = 2.0 / 3.0;
 /// How much wider than those points q is drawn in the end.
 const WIDER: f64 = 1.2;
 /// Fewest failures that count, as if their weights were alike (Kish's effective number).
@@ -34,6 +37,18 @@ pub const LEAST_EFFECTIVE: f64 = 100.0;
 const TEAM: u64 = 100;
 /// Standard normal quantile at 0.975.
 const Z: f64 = 1.959_963_984_540_054;
+
+/// What points are drawn from.
+#[derive(Clone, Copy, Debug)]
+struct Mixed {
+    /// Share of the standard normal distribution.
+    plain: f64,
+    /// Of the others, those of q; the rest is of its mirror image.
+    straight: f64,
+}
+
+const SEARCHED: Mixed = Mixed { plain: 0.0, straight: 1.0 };
+const COUNTED: Mixed = Mixed { plain: PLAIN, straight: STRAIGHT };
 
 /// A normal distribution of independent numbers.
 #[derive(Clone, Debug, PartialEq)]
@@ -70,19 +85,21 @@ impl Aim {
         Self { means: vec![0.0; dimensions], deviations: vec![1.0; dimensions] }
     }
 
-    /// Logarithm of the density over that of the standard normal distribution.
-    fn log_ratio(&self, point: &Point) -> f64 {
+    /// The density over that of the standard normal distribution, or of the mirror image for a sign of -1.
+    fn ratio(&self, point: &Point, sign: f64) -> f64 {
         let axes = self.means.iter().zip(&self.deviations).zip(&point.normals);
-        let ratio = |((mean, deviation), x): ((&f64, &f64), &f64)| {
-            let z = (x - mean) / deviation;
+        let log = |((mean, deviation), x): ((&f64, &f64), &f64)| {
+            let z = (sign * x - mean) / deviation;
             0.5 * (x * x - z * z) - libm::log(*deviation)
         };
-        axes.map(ratio).sum()
+        libm::exp(axes.map(log).sum())
     }
 
-    /// The weight of a point that was drawn from the mixture with `plain` of the standard normal distribution.
-    fn weight(&self, point: &Point, plain: f64) -> f64 {
-        1.0 / (plain + (1.0 - plain) * libm::exp(self.log_ratio(point)))
+    /// The weight of a point that was drawn from a mixture.
+    fn weight(&self, point: &Point, mixed: Mixed) -> f64 {
+        let Mixed { plain, straight } = mixed;
+        let aimed = straight * self.ratio(point, 1.0) + (1.0 - straight) * self.ratio(point, -1.0);
+        1.0 / (plain + (1.0 - plain) * aimed)
     }
 
     /// The normal distribution of weighted points.
@@ -119,7 +136,7 @@ pub fn importance<L: LimitState>(
     let (mut levels, mut asked, mut plain_failing) = (Vec::new(), 0_u64, 0);
     let mut round = 0;
     while round < MOST_ITERATIONS && (asked + each as u64) as f64 <= search.max(each as f64) {
-        let drawn = drawn(state, seed, round, each, (&aim, 0.0))?;
+        let drawn = drawn(state, seed, round, each, (&aim, SEARCHED))?;
         asked += each as u64;
         if round == 0 {
             plain_failing = drawn.iter().filter(|(_, score)| *score > 0.0).count();
@@ -134,7 +151,7 @@ pub fn importance<L: LimitState>(
         let elite: Vec<(&Point, f64)> = drawn
             .iter()
             .filter(|(_, score)| is_elite(*score))
-            .map(|(point, _)| (point, aim.weight(point, 0.0)))
+            .map(|(point, _)| (point, aim.weight(point, SEARCHED)))
             .collect();
         aim = Aim::of(&elite, dimensions);
         round += 1;
@@ -145,7 +162,7 @@ pub fn importance<L: LimitState>(
     let reached = levels.last().is_some_and(|level| *level >= 0.0);
     aim.deviations.iter_mut().for_each(|it| *it *= WIDER);
     let count = (points.saturating_sub(asked) as usize).max(each);
-    let last = drawn(state, seed, MOST_ITERATIONS, count, (&aim, PLAIN))?;
+    let last = drawn(state, seed, MOST_ITERATIONS, count, (&aim, COUNTED))?;
     asked += count as u64;
     let mut found = weighed(&last, &aim);
     let plain = upper_bound(plain_failing as u64, each as u64, interval::CONFIDENCE).unwrap_or(1.0);
@@ -163,17 +180,19 @@ fn drawn<L: LimitState>(
     seed: u64,
     round: u64,
     count: usize,
-    (aim, plain): (&Aim, f64),
+    (aim, mixed): (&Aim, Mixed),
 ) -> Result<Vec<(Point, f64)>, L::Error> {
     let shape = state.shape();
     let point = |member: u64| {
         let mut dice = Dice::at(seed, Place { team: TEAM, rung: round, step: 0, member });
         // By lot, so that every point is of the mixture.
-        let is_plain = dice.uniform() < plain;
+        let (is_plain, is_straight) =
+            (dice.uniform() < mixed.plain, dice.uniform() < mixed.straight);
         let mut point = Point::drawn(shape, &mut dice);
         if !is_plain {
             let axes = point.normals.iter_mut().zip(&aim.means).zip(&aim.deviations);
-            axes.for_each(|((x, mean), deviation)| *x = mean + deviation * *x);
+            let sign = if is_straight { 1.0 } else { -1.0 };
+            axes.for_each(|((x, mean), deviation)| *x = sign * (mean + deviation * *x));
         }
         point
     };
@@ -186,7 +205,7 @@ fn drawn<L: LimitState>(
 fn weighed(drawn: &[(Point, f64)], aim: &Aim) -> Importance {
     let count = drawn.len() as f64;
     let failures = || drawn.iter().filter(|(_, score)| *score > 0.0).map(|(point, _)| point);
-    let weights: Vec<f64> = failures().map(|point| aim.weight(point, PLAIN)).collect();
+    let weights: Vec<f64> = failures().map(|point| aim.weight(point, COUNTED)).collect();
     let sum: f64 = weights.iter().sum();
     let squares: f64 = weights.iter().map(|weight| weight * weight).sum();
     let largest = weights.iter().copied().fold(0.0, f64::max);

@@ -1,9 +1,10 @@
 //! The limit state of flights: how near a flight is to not meeting a requirement.
 
-use fspid_scenario::dispersion::{Distribution, Drawn, SEED_LIMIT, standard_normal};
-use fspid_scenario::file::{Study, known_words};
+use fspid_scenario::dispersion::{Dispersion, Distribution, Drawn, SEED_LIMIT, standard_normal};
+use fspid_scenario::file::{NewValue, SettingPath, Study, known_words};
 use fspid_scenario::measure::Family;
 use fspid_scenario::requirement::Requirement;
+use fspid_sim::signal::Noise;
 use rayon::prelude::*;
 
 use super::chains::LimitState;
@@ -25,8 +26,15 @@ const LONGEST_S: f64 = 1e12;
 enum Axis {
     #[default]
     Normal,
+    /// Turbulence, which can be mixed.
+    Air,
+    /// Another seed.
     Seed,
 }
+
+/// The place of the seed that can be mixed, and of the mixture.
+const SEED_OF_AIR: &str = "turbulence.seed";
+const MIXTURE_OF_AIR: &str = "turbulence.mixture";
 
 /// Flights of one controller, asked for one requirement.
 #[derive(Debug)]
@@ -36,6 +44,8 @@ pub struct Target<'a> {
     controller: String,
     requirement: Requirement,
     axes: Vec<Axis>,
+    /// Where a mixture of air goes.
+    mixture: Option<SettingPath>,
 }
 
 impl<'a> Target<'a> {
@@ -65,13 +75,10 @@ impl<'a> Target<'a> {
             let reason = format!("`{id}` is required of {only} alone, and not of {name}");
             return Err(CampaignError::NotOfFlights { reason });
         }
-        let axis = |distribution: &Distribution| match distribution {
-            Distribution::Seed => vec![Axis::Seed],
-            other => vec![Axis::Normal; other.dimensions()],
-        };
-        let axes = campaign.draws().in_cube(|dispersion| axis(&dispersion.distribution));
+        let axes = campaign.draws().in_cube(axes);
         let controller = name.to_owned();
-        Ok(Self { campaign, progress, controller, requirement, axes })
+        let mixture = SettingPath::parse(MIXTURE_OF_AIR);
+        Ok(Self { campaign, progress, controller, requirement, axes, mixture })
     }
 
     /// The controller.
@@ -103,22 +110,47 @@ impl<'a> Target<'a> {
         self.progress.add_found(flights);
     }
 
-    /// What is drawn at a point.
-    #[must_use]
-    pub fn drawn(&self, point: &Point) -> Vec<Drawn> {
+    /// What is drawn at a point, but for mixtures: of those the newest seed.
+    fn drawn(&self, point: &Point) -> Vec<Drawn> {
         let (mut normals, mut seeds) = (point.normals.iter(), point.seeds.iter());
+        let mut airs = point.airs.iter();
+        // The middle of what a seed stands for: both are exact.
+        let of_seed = |seed: u64| (seed as f64 + 0.5) / SEED_LIMIT as f64;
         let coordinate = |axis: &Axis| match axis {
             Axis::Normal => in_unit(standard_normal::below(normals.next().copied().unwrap_or(0.0))),
-            // The middle of what a seed stands for: both are exact.
-            Axis::Seed => (seeds.next().copied().unwrap_or(0) as f64 + 0.5) / SEED_LIMIT as f64,
+            Axis::Air => {
+                of_seed(airs.next().and_then(|air| air.terms.last()).map_or(0, |term| term.0))
+            }
+            Axis::Seed => of_seed(seeds.next().copied().unwrap_or(0)),
         };
         let cube: Vec<f64> = self.axes.iter().map(coordinate).collect();
         self.campaign.draws().drawn_at(&cube)
     }
 
+    /// What a point changes in the scenario, as `--set` takes it.
+    #[must_use]
+    pub fn changes(&self, point: &Point) -> Vec<String> {
+        let drawn = self.drawn(point);
+        let values = self.values(&drawn, point);
+        values.iter().map(|(path, value)| format!("{}={value}", path.text())).collect()
+    }
+
+    fn values(&self, drawn: &[Drawn], point: &Point) -> Vec<(&SettingPath, NewValue)> {
+        let mut values = self.campaign.draws().values(drawn);
+        // All that draw a seed of turbulence set the same one place, the last of them for good.
+        let mixed = point.airs.last().filter(|air| air.terms.len() > 1);
+        let noise = mixed.and_then(|air| Noise::mixed(&air.terms).ok());
+        if let (Some(path), Some(noise)) = (&self.mixture, noise) {
+            values.push((path, NewValue::Text(noise.to_string())));
+        }
+        values
+    }
+
     /// The scenario of a point, with the one controller.
     fn study(&self, point: &Point) -> Result<Study, String> {
-        let mut study = self.campaign.study(&self.drawn(point))?;
+        let drawn = self.drawn(point);
+        let built = self.campaign.template().with(&self.values(&drawn, point));
+        let mut study = built.map_err(|problems| problems.first_in_a_line())?;
         study.scenario.controllers.retain(|it| it.name == self.controller);
         study.scenario.externals.retain(|it| it.name == self.controller);
         Ok(study)
@@ -170,7 +202,7 @@ impl LimitState for Target<'_> {
 
     fn shape(&self) -> Shape {
         let count = |of: Axis| self.axes.iter().filter(|axis| **axis == of).count();
-        Shape { normals: count(Axis::Normal), airs: 0, seeds: count(Axis::Seed) }
+        Shape { normals: count(Axis::Normal), airs: count(Axis::Air), seeds: count(Axis::Seed) }
     }
 
     fn scores(&mut self, points: &[Point]) -> Result<Vec<f64>, CampaignError> {
@@ -185,6 +217,17 @@ impl LimitState for Target<'_> {
             scores.extend(part?);
         }
         Ok(scores)
+    }
+}
+
+/// What the coordinates of a dispersion are drawn from.
+fn axes(dispersion: &Dispersion) -> Vec<Axis> {
+    let is_air = |path: &SettingPath| path.text() == SEED_OF_AIR;
+    let mut paths = dispersion.targets.iter().flat_map(|target| &target.paths);
+    match &dispersion.distribution {
+        Distribution::Seed if paths.all(is_air) => vec![Axis::Air],
+        Distribution::Seed => vec![Axis::Seed],
+        other => vec![Axis::Normal; other.dimensions()],
     }
 }
 

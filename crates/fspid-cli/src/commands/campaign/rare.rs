@@ -111,6 +111,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         seed: arguments.seed,
         most: arguments.most,
     };
+    // What is asked in vain is told before anything begins.
+    let nothing = fspid_campaign::Progress::default();
+    rare::Target::of(&campaign, &nothing, &asked.fails, asked.controller.as_deref())
+        .map_err(failure)?;
     let folder = arguments.out.as_ref().map(|out| Folder::new(out));
     interrupt::ends_with(match &folder {
         Some(folder) => format!(

@@ -4,6 +4,7 @@ use fspid_sim::air::{
     Follows, FullCycle, Intensity, LogShear, Microburst, RampHold, Severity, Steady, Turbulence,
     Wind,
 };
+use fspid_sim::signal::Noise;
 use fspid_sim::{Plant, Weather};
 
 use super::flown::{Flown, Way};
@@ -127,9 +128,17 @@ fn turbulence(
         height_m: way.course.height_m,
         airspeed_m_s: way.course.airspeed_m_s,
         wing_span_m: span_m(report, part, way)?,
-        seed: u64::try_from(part.get(keys::SEED)?).ok()?,
+        noise: noise(report, part)?,
         follows: follows(files, part, way),
     })
+}
+
+/// The mixture if there is one; the seed has no part then.
+fn noise(report: &mut Report, part: &Section) -> Option<Noise> {
+    match part.get(keys::MIXTURE) {
+        Some(text) => judged(report, (part, keys::MIXTURE), text.parse::<Noise>()),
+        None => Some(u64::try_from(part.get(keys::SEED)?).ok()?.into()),
+    }
 }
 
 /// Whose height and airspeed: where the file does not say, those of a flight that does not stay at its height.

@@ -2,8 +2,8 @@
 
 use crate::keyed::word::{words, words_of};
 use crate::keyed::{
-    Key, KeyRow, Range, Table, choosing, defaulted, finite, not_negative, number, of_kinds, one_of,
-    optional, plain, positive, required, variant, whole, word,
+    Key, KeyRow, Range, TEXT, Table, choosing, defaulted, finite, not_negative, number, of_kinds,
+    one_of, optional, plain, positive, required, variant, whole, word,
 };
 use fspid_sim::air::{Follows, Severity, Specification};
 
@@ -46,9 +46,15 @@ pub(crate) const SEED: Key<i64> = defaulted(
     "The same seed gives the same turbulence at any sample period: it is drawn each 10 ms and held.",
 );
 
+pub(crate) const MIXTURE: Key<str> = optional(
+    "mixture",
+    TEXT,
+    "Seeds with weights in place of `seed`, as `campaign rare` mixes air: \"7*0.8 + 9*0.6\"; the squares of the weights sum to 1.",
+);
+
 pub(super) static TURBULENCE_TABLE: Table = plain(
     "Turbulence of the form of Dryden.",
-    &[&[&MODEL, &INTENSITY, &FOLLOWS, &TURBULENCE_W20_M_S, &SEED]],
+    &[&[&MODEL, &INTENSITY, &FOLLOWS, &TURBULENCE_W20_M_S, &SEED, &MIXTURE]],
 );
 
 pub(crate) const FROM: Key<f64> = defaulted(

@@ -45,6 +45,7 @@ pub(crate) use shaping::Shaping;
 
 use super::wind::AirMotion;
 use crate::error::{SimError, finite, positive};
+use crate::signal::Noise;
 use shaped_noise::{ShapedNoise, Source};
 
 /// Number of the first random stream of turbulence; disturbances count theirs from 0.
@@ -55,7 +56,7 @@ const STREAM_W: u64 = STREAM + 8;
 const STREAM_P: u64 = STREAM + 12;
 
 /// Which turbulence, and at what condition it is flown through.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Turbulence {
     /// Document that scale lengths are stated by.
     pub specification: Specification,
@@ -67,8 +68,8 @@ pub struct Turbulence {
     pub airspeed_m_s: f64,
     /// Wing span b, m.
     pub wing_span_m: f64,
-    /// Seed; the same seed gives the same turbulence.
-    pub seed: u64,
+    /// Where its random numbers come from; the same seed gives the same turbulence.
+    pub noise: Noise,
     /// Whether height and airspeed stay those above.
     pub follows: Follows,
 }
@@ -84,9 +85,9 @@ pub enum Follows {
 }
 
 /// Turbulence prepared for one sample period.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Dryden {
-    seed: u64,
+    noise: Noise,
     along: ShapedNoise<1>,
     /// Two states of the velocity, then that of the rate.
     across: ShapedNoise<3>,
@@ -128,7 +129,7 @@ impl Dryden {
         };
         let sigma_p = roll_sigma_rad_s(sigma_w, vertical_m, span_m);
         Ok(Self {
-            seed: turbulence.seed,
+            noise: turbulence.noise.clone(),
             along: first_order(sigma_u, along_m / airspeed_m_s, dt_s)?,
             across: second(sigma_v, across_m, 3.0)?,
             vertical: second(sigma_w, vertical_m, 4.0)?,
@@ -166,8 +167,8 @@ impl Dryden {
         AirMotion { body_m_s: [u, v, w], body_rad_s: [p, q, r], ..AirMotion::default() }
     }
 
-    fn source(&self, stream: u64) -> Source {
-        Source { seed: self.seed, stream }
+    fn source(&self, stream: u64) -> Source<'_> {
+        Source { noise: &self.noise, stream }
     }
 }
 

@@ -15,7 +15,7 @@ use fspid_numeric::matrix::cholesky;
 
 use crate::error::SimError;
 use crate::math::dot;
-use crate::signal::noise::standard_normal;
+use crate::signal::Noise;
 
 /// A filter of N states driven by one white noise, for one sample period.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,15 +27,15 @@ pub(super) struct ShapedNoise<const N: usize> {
 
 /// Where a filter's random numbers come from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Source {
-    pub(super) seed: u64,
+pub(super) struct Source<'a> {
+    pub(super) noise: &'a Noise,
     /// Stream of the first state; those of the others follow.
     pub(super) stream: u64,
 }
 
-impl Source {
+impl Source<'_> {
     fn normals<const N: usize>(self, k: usize) -> [f64; N] {
-        std::array::from_fn(|state| standard_normal(self.seed, self.stream + state as u64, k))
+        std::array::from_fn(|state| self.noise.normal(self.stream + state as u64, k))
     }
 }
 
@@ -52,13 +52,13 @@ impl<const N: usize> ShapedNoise<N> {
     }
 
     /// States at sample 0, from the stationary distribution.
-    pub(super) fn start(&self, source: Source) -> [f64; N] {
+    pub(super) fn start(&self, source: Source<'_>) -> [f64; N] {
         let normals: [f64; N] = source.normals(0);
         self.start.map(|row| dot(&row, &normals))
     }
 
     /// States at sample `k` from those at the sample before.
-    pub(super) fn advance(&self, states: &mut [f64; N], source: Source, k: usize) {
+    pub(super) fn advance(&self, states: &mut [f64; N], source: Source<'_>, k: usize) {
         let normals: [f64; N] = source.normals(k);
         let before = *states;
         for ((next, by_state), by_normal) in

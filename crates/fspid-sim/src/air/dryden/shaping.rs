@@ -30,7 +30,7 @@ impl Shaping {
     pub(crate) fn start(turbulence: &Turbulence) -> Result<Self, SimError> {
         let filters = Dryden::new(turbulence, GRID_S)?;
         let state = filters.start();
-        Ok(Self { turbulence: *turbulence, filters: Arc::new(filters), state, tick: 0 })
+        Ok(Self { turbulence: turbulence.clone(), filters: Arc::new(filters), state, tick: 0 })
     }
 
     /// The time of the grid that has been reached.
@@ -51,7 +51,7 @@ impl Shaping {
     fn follow(&mut self, height_m: f64, airspeed_m_s: f64) {
         let height_m = (height_m / HEIGHT_STEP_M).round() * HEIGHT_STEP_M;
         let airspeed_m_s = (airspeed_m_s / AIRSPEED_STEP_M_S).round() * AIRSPEED_STEP_M_S;
-        let here = Turbulence { height_m, airspeed_m_s, ..self.turbulence };
+        let here = Turbulence { height_m, airspeed_m_s, ..self.turbulence.clone() };
         if here == self.turbulence {
             return;
         }
@@ -79,7 +79,7 @@ mod tests {
             height_m,
             airspeed_m_s: 60.0,
             wing_span_m: 10.0,
-            seed: 8,
+            noise: 8.into(),
             follows,
         }
     }

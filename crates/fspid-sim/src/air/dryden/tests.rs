@@ -10,7 +10,7 @@ fn turbulence() -> Turbulence {
         height_m: 500.0 * FEET,
         airspeed_m_s: 176.0 * FEET,
         wing_span_m: 33.4 * FEET,
-        seed: 5,
+        noise: 5.into(),
         follows: Follows::Start,
     }
 }
@@ -197,7 +197,8 @@ fn flights_through_turbulence_have_the_moments_of_the_distribution() {
         Scales::at(Specification::MilF8785c, Severity::Moderate.into(), turbulence().height_m);
     let (mut sums, mut squares, mut fourths, mut n) = ([0.0; 3], [0.0; 3], [0.0; 3], 0.0);
     for seed in 0..40 {
-        let dryden = Dryden::new(&Turbulence { seed, ..turbulence() }, 0.5).expect("allowed");
+        let noise = seed.into();
+        let dryden = Dryden::new(&Turbulence { noise, ..turbulence() }, 0.5).expect("allowed");
         let mut state = dryden.start();
         for k in 1..=1000 {
             for (axis, value) in dryden.motion(&state).body_m_s.into_iter().enumerate() {
@@ -224,7 +225,7 @@ fn turbulence_is_as_strong_at_its_first_sample_as_at_any_other() {
     let n = 4000;
     let mut squares = [0.0; 3];
     for seed in 0..n {
-        let dryden = Dryden { seed, ..dryden(0.01) };
+        let dryden = Dryden { noise: seed.into(), ..dryden(0.01) };
         for (axis, value) in dryden.motion(&dryden.start()).body_m_s.into_iter().enumerate() {
             squares[axis] += (value / scales.sigma_m_s[axis]) * (value / scales.sigma_m_s[axis]);
         }
@@ -237,8 +238,9 @@ fn turbulence_is_as_strong_at_its_first_sample_as_at_any_other() {
 
 #[test]
 fn the_same_seed_gives_the_same_bits_and_another_seed_others() {
-    let first = |seed| {
-        let dryden = Dryden::new(&Turbulence { seed, ..turbulence() }, 0.02).expect("allowed");
+    let first = |seed: u64| {
+        let noise = seed.into();
+        let dryden = Dryden::new(&Turbulence { noise, ..turbulence() }, 0.02).expect("allowed");
         let mut state = dryden.start();
         (1..50).for_each(|k| dryden.advance(&mut state, k));
         dryden.motion(&state).body_m_s.map(f64::to_bits)

@@ -1,0 +1,127 @@
+//! Flights whose probability of failure is known.
+
+use std::path::Path;
+
+use fspid_campaign::rare::{Method, Question, Rare, rare};
+use fspid_campaign::sample::Sampling;
+use fspid_campaign::{Campaign, CampaignError, Folder, Progress, Shards, local, plan};
+use fspid_scenario::dispersion::standard_normal::above;
+
+/// The largest error of a step is its size, which is drawn: the error before anything has moved.
+const STEP: &str = r#"
+schema = 1
+name = "a step of a size that is drawn"
+[plant]
+preset = "b747-paper"
+[loop]
+sample_period_s = 0.01
+duration_s = 0.3
+[setpoint]
+kind = "step"
+amplitude_deg = 1.0
+[[controller]]
+name = "PID"
+kind = "pid"
+kp = 2.0
+ki = 0.5
+kd = 1.0
+[[requirement]]
+measure = "largest_error_deg"
+most = 1.5
+[[requirement]]
+measure = "gain_margin_db"
+least = 6.0
+[[dispersion]]
+path = "setpoint.amplitude_deg"
+distribution = "normal"
+mean = 1.0
+standard_deviation = 0.1
+[[dispersion]]
+path = "controller[0].kp"
+distribution = "uniform"
+lower = 1.9
+upper = 2.1
+"#;
+
+/// Five standard deviations: 2.87e-7.
+const DEVIATIONS: f64 = 5.0;
+
+fn campaign(text: &str) -> Campaign {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scenario = folder.path().join("step.toml");
+    std::fs::write(&scenario, text).expect("written");
+    let question = fspid_campaign::Question {
+        scenario: &scenario,
+        overrides: &[],
+        runs: 1,
+        seed: 1,
+        sampling: Sampling::Random,
+        shards: Shards::ForThreads,
+    };
+    plan(&question, &Folder::new(Path::new("."))).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn question(method: Method, flights: u64) -> Question {
+    Question {
+        fails: "largest_error_deg".to_owned(),
+        controller: None,
+        method,
+        flights,
+        seed: 1,
+        most: None,
+    }
+}
+
+fn asked(text: &str, question: &Question) -> Result<Rare, CampaignError> {
+    let campaign = campaign(text);
+    let progress = Progress::default();
+    local::in_threads(2, || rare(&campaign, question, None, &progress)).expect("threads")
+}
+
+#[test]
+fn a_flight_whose_probability_is_known_is_answered_by_both_methods() {
+    let found = asked(STEP, &question(Method::Both, 24_000)).expect("answered");
+    let exact = above(DEVIATIONS);
+    for (method, known) in found.known() {
+        let fspid_campaign::rare::Known::Within(interval) = known else {
+            panic!("{method:?} {known:?}")
+        };
+        // Twice the stated interval: the seed is one of many.
+        let (low, high) = (interval.low * interval.low, interval.high * interval.high);
+        let centre = interval.estimate;
+        assert!(low / centre < exact && exact < high / centre, "{method:?} {interval:?}");
+    }
+    assert_eq!(found.agree(), Some(true));
+    let likeliest = found.likeliest.as_ref().expect("a failure");
+    // Nothing fails within five standard deviations, and the likeliest is hardly beyond.
+    assert!((5.0..5.3).contains(&likeliest.distance), "{likeliest:?}");
+    assert!(likeliest.changes[0].starts_with("setpoint.amplitude_deg=1.5"), "{likeliest:?}");
+    assert!(likeliest.command.contains("--set setpoint.amplitude_deg=1.5"));
+    let plain = found.plain_flights().expect("an interval");
+    assert!(plain > 100.0 * found.flights() as f64, "{plain}");
+}
+
+#[test]
+fn what_cannot_be_asked_is_refused_by_name() {
+    let refused = |text: &str, fails: &str, controller: Option<&str>| {
+        let question = Question {
+            fails: fails.to_owned(),
+            controller: controller.map(str::to_owned),
+            ..question(Method::Subset, 2000)
+        };
+        asked(text, &question).expect_err("refused").to_string()
+    };
+    let told = refused(STEP, "largest_eror_deg", None);
+    assert!(told.contains("no requirement `largest_eror_deg`"), "{told}");
+    assert!(told.contains("largest_error_deg") && !told.contains("gain_margin_db"), "{told}");
+    let told = refused(STEP, "gain_margin_db", None);
+    assert!(told.contains("of the linear loop and not of a flight"), "{told}");
+    let told = refused(STEP, "largest_error_deg", Some("nobody"));
+    assert!(told.contains("no controller `nobody`") && told.contains("PID"), "{told}");
+    let none: String = STEP.split("[[requirement]]").next().unwrap_or_default().to_owned()
+        + "[[dispersion]]\npath = \"setpoint.amplitude_deg\"\ndistribution = \"uniform\"\nlower = 0.9\nupper = 1.1\n";
+    let told = refused(&none, "overshoot_pct", None);
+    assert!(told.contains("the scenario has no requirement"), "{told}");
+    let few = asked(STEP, &question(Method::Subset, 10)).expect_err("refused").to_string();
+    assert!(few.contains("allowed is a whole number from 1000"), "{few}");
+}
