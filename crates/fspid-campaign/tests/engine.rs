@@ -250,3 +250,26 @@ fn a_self_tuning_loop_that_is_unstable_at_rest_fails_without_measures() {
 
 /// The plant of the step, its elevator counted the wrong way.
 const TURNED: &str = "numerator = [1.15101, 0.17742]\ndenominator = [1.0, 0.739, 0.921468, 0.0]\nelevator_sign = \"nose-down-positive\"";
+
+/// Loads, altitude and airspeed of an aircraft are judged in a campaign as they are by `verify`.
+#[test]
+fn requirements_on_the_flight_of_an_aircraft_are_judged_in_campaigns_as_alone() {
+    let text = include_str!("../../../scenarios/gallery/navion-step.toml").to_owned()
+        + "[[requirement]]\nmeasure = \"altitude_deviation_ft\"\nmost = 1e6\n\
+           [[requirement]]\nmeasure = \"least_load_factor_g\"\nleast = -3.0\n\
+           [[requirement]]\nmeasure = \"airspeed_deviation_kt\"\nmost = 0.001\n";
+    let study = template(&text).with(&[]).expect("as it is");
+    let simulated = Simulation::of(&study).expect("it flies").judgements;
+    let [flight] = alone(&study).try_into().expect("one controller");
+    let judged = |id: &str| flight.judgements.iter().find(|it| it.requirement.id == id);
+    for (id, met) in [
+        ("altitude_deviation_ft", true),
+        ("least_load_factor_g", true),
+        ("airspeed_deviation_kt", false),
+    ] {
+        let ours = judged(id).expect("asked");
+        let theirs = simulated.iter().find(|it| it.requirement.id == id).expect("asked");
+        assert_eq!(ours, theirs);
+        assert!(ours.found.is_ok() && ours.met == met, "{id}: {ours:?}");
+    }
+}

@@ -7,6 +7,8 @@ pub enum Family {
     Step,
     /// A flight as a whole.
     Flight,
+    /// The flight of a nonlinear aircraft: its loads, its way, its air; a linear plant has none of these.
+    Aircraft,
     /// The linear loop as sampled, around rest; the worst of the aircraft's plants counts.
     Loop,
     /// The same with the gains frozen at everything that the supervisor can produce; the worst counts.
@@ -88,6 +90,32 @@ pub enum Measure {
     PhugoidDoubling,
     /// Equivalent delay between command and elevator, s.
     EquivalentDelay,
+    /// Largest load factor, g.
+    LargestLoadFactor,
+    /// Least load factor, g.
+    LeastLoadFactor,
+    /// Largest fall below the altitude of the start or of a target, ft.
+    AltitudeLoss,
+    /// Beyond the target altitude, seen from the start, ft.
+    AltitudeOvershoot,
+    /// Largest distance from the altitude of the start or of a target, ft.
+    AltitudeDeviation,
+    /// Largest true airspeed, kt.
+    LargestAirspeed,
+    /// Least true airspeed, kt.
+    LeastAirspeed,
+    /// Largest distance from the airspeed of the trim, kt.
+    AirspeedDeviation,
+    /// Largest angle of attack, deg.
+    LargestAlpha,
+    /// Least distance below the largest angle of attack that the aircraft's data hold for, deg.
+    AlphaMargin,
+    /// Largest size of the bank, deg.
+    LargestBank,
+    /// Fastest descent, ft/min.
+    LargestSink,
+    /// Descent at the end, ft/min.
+    FinalSink,
 }
 
 /// All that is to be known about a measure.
@@ -105,6 +133,8 @@ struct Row {
 const TIMES: &[&str] = &["from_s", "to_s"];
 /// Names of the ends of a band of frequencies.
 const BAND: &[&str] = &["from_hz", "to_hz"];
+/// Names of a time window and of a target altitude.
+const TARGET: &[&str] = &["from_s", "to_s", "target_ft", "target_m"];
 
 const fn row(
     measure: Measure,
@@ -118,8 +148,8 @@ const fn row(
 
 /// One row a measure, in the order of the enumeration.
 #[rustfmt::skip] // a table: one row a measure
-const ROWS: [Row; 35] = {
-    use Family::{Airframe, Flight, Frozen, Loop, Step};
+const ROWS: [Row; 48] = {
+    use Family::{Aircraft, Airframe, Flight, Frozen, Loop, Step};
     use Measure as M;
     [
         row(M::Overshoot, ("overshoot_pct", "%"), Step, &[], "how far the response goes beyond the new set-point, of the step"),
@@ -157,6 +187,19 @@ const ROWS: [Row; 35] = {
         row(M::PhugoidDamping, ("phugoid_damping", ""), Airframe, &[], "damping ratio of the aircraft's phugoid; 1 or -1 where it creeps"),
         row(M::PhugoidDoubling, ("phugoid_doubling_s", "s"), Airframe, &[], "time in which the phugoid doubles"),
         row(M::EquivalentDelay, ("equivalent_delay_s", "s"), Airframe, &[], "delay of servo, whole samples and half a sample of the hold"),
+        row(M::LargestLoadFactor, ("largest_load_factor_g", "g"), Aircraft, TIMES, "largest load factor along the body's upward axis; 1 in level flight"),
+        row(M::LeastLoadFactor, ("least_load_factor_g", "g"), Aircraft, TIMES, "least load factor along the body's upward axis; its limits may be below 0"),
+        row(M::AltitudeLoss, ("altitude_loss_ft", "ft"), Aircraft, TARGET, "largest fall below the altitude of the start, or below the target; 0 where it never is below"),
+        row(M::AltitudeOvershoot, ("altitude_overshoot_ft", "ft"), Aircraft, TARGET, "how far it goes beyond the target altitude, seen from the start; one that does not get there has none"),
+        row(M::AltitudeDeviation, ("altitude_deviation_ft", "ft"), Aircraft, TARGET, "largest distance from the altitude of the start, or from the target"),
+        row(M::LargestAirspeed, ("largest_airspeed_kt", "kt"), Aircraft, TIMES, "largest true airspeed"),
+        row(M::LeastAirspeed, ("least_airspeed_kt", "kt"), Aircraft, TIMES, "least true airspeed"),
+        row(M::AirspeedDeviation, ("airspeed_deviation_kt", "kt"), Aircraft, TIMES, "largest distance of the true airspeed from that of the trim"),
+        row(M::LargestAlpha, ("largest_alpha_deg", "deg"), Aircraft, TIMES, "largest angle of attack, from the reference of the aircraft's data"),
+        row(M::AlphaMargin, ("alpha_margin_deg", "deg"), Aircraft, TIMES, "least distance below the largest angle of attack for which the aircraft's data are trusted; below 0 beyond it"),
+        row(M::LargestBank, ("largest_bank_deg", "deg"), Aircraft, TIMES, "largest size of the bank"),
+        row(M::LargestSink, ("largest_sink_ft_min", "ft/min"), Aircraft, TIMES, "fastest descent; 0 where it never descends"),
+        row(M::FinalSink, ("final_sink_ft_min", "ft/min"), Aircraft, TIMES, "descent at the end of the time that counts; below 0 in a climb"),
     ]
 };
 
@@ -218,12 +261,25 @@ impl Measure {
         matches!(self, Self::Stable | Self::FrozenStable)
     }
 
+    /// True for a measure that may be below 0, so that its limits may be too.
+    #[must_use]
+    pub const fn is_signed(self) -> bool {
+        matches!(
+            self,
+            Self::LargestLoadFactor
+                | Self::LeastLoadFactor
+                | Self::LargestAlpha
+                | Self::AlphaMargin
+                | Self::FinalSink
+        )
+    }
+
     /// True if the condition of this name can be asked of it, such as `step_deg`.
     #[must_use]
     pub fn takes(self, condition: &str) -> bool {
         let of_family = match self.family() {
             Family::Step => &["step_deg", "air"][..],
-            Family::Flight => &["air"],
+            Family::Flight | Family::Aircraft => &["air"],
             Family::Loop | Family::Frozen | Family::Airframe => &[],
         };
         of_family.contains(&condition) || self.row().conditions.contains(&condition)
@@ -269,6 +325,10 @@ mod tests {
                 "rad/s² per g" => "_rad_s2_per_g",
                 "s" => "_s",
                 "deg" => "_deg",
+                "g" => "_g",
+                "ft" => "_ft",
+                "kt" => "_kt",
+                "ft/min" => "_ft_min",
                 other => panic!("{other}"),
             };
             assert!(measure.name().ends_with(suffix), "{}", measure.name());

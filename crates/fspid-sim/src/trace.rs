@@ -123,12 +123,20 @@ impl Trace {
             command_rad: column(),
             elevator_rad: column(),
             gains: Vec::with_capacity(rows),
-            columns: column_names(prepared).map(|name| Column { name, values: column() }).collect(),
+            columns: Self::empty_columns(prepared),
             exit: None,
             outcome: Outcome::Completed,
             saturated_samples: 0,
             faults: Faults::NONE,
         }
+    }
+
+    /// The columns that only some flights have, for a flight of what is prepared, with room for it.
+    #[must_use]
+    pub fn empty_columns(prepared: &Prepared) -> Vec<Column> {
+        let rows = prepared.timing().rows();
+        let column = |name| Column { name, values: Vec::with_capacity(rows) };
+        column_names(prepared).map(column).collect()
     }
 
     /// Adds a sample of a flight of what is prepared.
@@ -148,8 +156,8 @@ impl Trace {
         Exit::take_in(&mut self.exit, departure, instant.k, prepared.timing());
     }
 
-    /// The values in the order of [`column_names`].
-    fn push_columns(&mut self, prepared: &Prepared, instant: &Instant) {
+    /// Adds what a sample has to [its columns](Self::empty_columns).
+    pub fn push_columns(&mut self, prepared: &Prepared, instant: &Instant) {
         let measured = prepared.has_sensors().then_some(instant.measured);
         let gust = prepared.gusts().and_then(|gusts| gusts.get(instant.k));
         let aircraft = instant.aircraft.map(|sample| sample.values());

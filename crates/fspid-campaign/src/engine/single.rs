@@ -13,6 +13,10 @@ pub(super) fn record(
     flyer: Flyer<'_>,
 ) -> Result<Trace, SimError> {
     let timing = prepared.timing();
+    // Requirements ask an aircraft for more than its pitch.
+    if prepared.is_aircraft() {
+        trace.columns = Trace::empty_columns(prepared);
+    }
     let outcome = flyer.respondent().fly(prepared, &Perturbation::NONE, |instant| {
         trace.time_s.push(timing.time_s(instant.k));
         trace.setpoint_rad.push(instant.setpoint_rad);
@@ -21,6 +25,7 @@ pub(super) fn record(
         trace.elevator_rad.push(instant.elevator_rad);
         trace.saturated_samples += usize::from(instant.step.saturated);
         trace.faults = instant.step.faults;
+        trace.push_columns(prepared, &instant);
         let departure = instant.aircraft.and_then(|aircraft| aircraft.departure);
         Exit::take_in(&mut trace.exit, departure, instant.k, timing);
         ControlFlow::Continue(())

@@ -79,6 +79,11 @@ Measures of the flight:
   rms_error_deg largest_error_deg (from_s, to_s)
   iae_deg_s itae_deg_s2 largest_command_deg command_rate_deg_s command_variation_deg
   elevator_rate_deg_s elevator_travel_deg saturated_pct
+Measures of the flight of a nonlinear aircraft (from_s, to_s); a linear plant has none of them:
+  largest_load_factor_g least_load_factor_g largest_bank_deg largest_alpha_deg alpha_margin_deg
+  largest_airspeed_kt least_airspeed_kt airspeed_deviation_kt (true airspeed; from that of the trim)
+  altitude_loss_ft altitude_deviation_ft (from the start, or from target_ft or target_m)
+  altitude_overshoot_ft (needs target_ft or target_m) largest_sink_ft_min final_sink_ft_min
 Measures of the loop as sampled, at the gains it has at rest; the worst plant counts:
   stable gain_margin_db gain_margin_low_db gain_margin_high_db phase_margin_deg (from_hz, to_hz)
   delay_margin_s disk_margin sensitivity_peak gain_crossover_rad_s mode_damping (from_hz, to_hz)
@@ -91,6 +96,8 @@ Ready sets and their choices, the first of each if left out:
   mil-f-9490d  speed=normal|below|limit|beyond, air=smooth|turbulent, first_aeroelastic_mode_hz=HZ
   mil-f-8785c  level=1|2|3, category=B|A|C
   ctms         none
+  mil-f-9490d-altitude  air=smooth|turbulent, target_ft=FT or target_m=M (that of the start)
+  rvsm         air=smooth|turbulent, target_ft=FT or target_m=M (that of the start)
 
 Examples:
   fspid verify pitch.toml --set ctms

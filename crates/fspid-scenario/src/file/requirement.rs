@@ -8,7 +8,7 @@ use crate::keyed::Section;
 use crate::measure::Measure;
 use crate::requirement::keys;
 use crate::requirement::keys::names_in_words;
-use crate::requirement::read::{check_conditions, conditions, limits};
+use crate::requirement::read::{check_conditions, check_signs, check_target, conditions, limits};
 use crate::requirement::{
     Air, AskedIn, Choices, Conditions, Origin, Requirement, RequirementSet, SET_NAMES, set,
     set_text,
@@ -34,6 +34,7 @@ pub(crate) fn requirements(
                 "no controller has this name",
                 names.join(", "),
             );
+            check_signs(report, section, section.get(keys::MEASURE));
             continue;
         }
         let found = match section.get(keys::SET) {
@@ -138,7 +139,10 @@ fn number_ids(requirements: &mut [Requirement]) {
 }
 
 fn single(report: &mut Report, section: &Section) -> Option<Requirement> {
-    let measure = section.get(keys::MEASURE)?;
+    let Some(measure) = section.get(keys::MEASURE) else {
+        check_signs(report, section, None);
+        return None;
+    };
     let limits = limits(report, section, measure);
     let conditions = Conditions { air: section.get(keys::AIR), ..conditions(section) };
     check_conditions(report, section, measure, &conditions);
@@ -215,6 +219,8 @@ fn choices(section: &Section) -> Choices {
         speed: text(keys::SPEED, Choices::DEFAULT_SPEED),
         air: section.get(keys::AIR).unwrap_or(Air::Smooth),
         first_aeroelastic_mode_hz: section.get(keys::FIRST_AEROELASTIC_MODE_HZ),
+        target_ft: section.get(keys::TARGET_FT),
+        target_m: section.get(keys::TARGET_M),
     }
 }
 
@@ -226,7 +232,10 @@ fn check_choices(report: &mut Report, section: &Section, chosen: &RequirementSet
         keys::SPEED.name,
         keys::AIR.name,
         keys::FIRST_AEROELASTIC_MODE_HZ.name,
+        keys::TARGET_FT.name,
+        keys::TARGET_M.name,
     ];
+    check_target(report, section);
     for key in keys.into_iter().filter(|it| section.given(*it) && !chosen.takes(it.as_str())) {
         let takes = |name: &&&str| set(name).is_some_and(|set| set.takes(key.as_str()));
         let owners: Vec<String> =

@@ -1,5 +1,6 @@
 //! What counts for a requirement, and in which air.
 
+use crate::units::FOOT_M;
 use fspid_diagnostics::digits::to_digits;
 
 /// Which air a flight must be in for a requirement to be asked of it.
@@ -43,6 +44,10 @@ pub struct Conditions {
     pub from_hz: Option<f64>,
     /// Frequency from which on nothing counts, Hz.
     pub to_hz: Option<f64>,
+    /// Altitude that is aimed at, ft.
+    pub target_ft: Option<f64>,
+    /// The same in m.
+    pub target_m: Option<f64>,
     /// The air that it is asked in.
     pub air: Option<Air>,
 }
@@ -53,7 +58,7 @@ const SAME_SIZE: f64 = 1e-3;
 impl Conditions {
     /// The numbers among them by name, in the order of the file.
     #[must_use]
-    pub fn numbers(&self) -> [(&'static str, Option<f64>); 6] {
+    pub fn numbers(&self) -> [(&'static str, Option<f64>); 8] {
         [
             ("step_deg", self.step_deg),
             ("within_deg", self.within_deg),
@@ -61,7 +66,15 @@ impl Conditions {
             ("to_s", self.to_s),
             ("from_hz", self.from_hz),
             ("to_hz", self.to_hz),
+            ("target_ft", self.target_ft),
+            ("target_m", self.target_m),
         ]
+    }
+
+    /// Altitude that is aimed at, m.
+    #[must_use]
+    pub fn target_altitude_m(&self) -> Option<f64> {
+        self.target_m.or(self.target_ft.map(|feet| feet * FOOT_M))
     }
 
     /// True for a frequency that counts: from the lowest, below the highest.
@@ -92,6 +105,9 @@ impl Conditions {
         say(self.within_deg.map(|band| format!("within {} deg", to_digits(band, 6))));
         say(range(self.from_s, self.to_s, "s"));
         say(range(self.from_hz, self.to_hz, "Hz"));
+        let target = |value: f64, unit: &str| format!("target {} {unit}", to_digits(value, 6));
+        say(self.target_ft.map(|feet| target(feet, "ft")));
+        say(self.target_m.map(|metres| target(metres, "m")));
         say(self.air.map(|air| format!("in {} air", air.name())));
         words.join(", ")
     }

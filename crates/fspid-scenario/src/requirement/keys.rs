@@ -5,7 +5,8 @@ use crate::keyed::document::Item;
 use crate::keyed::word::Word;
 use crate::keyed::{
     BOOLEAN, Choice, Key, KeyName, KeyRow, Range, Section, TEXT, Table, Way, carried, choosing,
-    name_in, not_negative, number, optional, own, plain, positive, required, tables, whole, word,
+    finite, name_in, not_negative, number, optional, own, plain, positive, required, tables, whole,
+    word,
 };
 use crate::measure::Measure;
 
@@ -45,11 +46,11 @@ const MEASURE_DOC: &str = "What is measured; `fspid verify --help` lists all. Th
 
 pub(crate) const LEAST: Key<f64> = optional(
     "least",
-    not_negative(""),
-    "Smallest value that is met, in the unit of the measure; the limit itself is met.",
+    finite(""),
+    "Smallest value that is met, in the unit of the measure; the limit itself is met. Below 0 only for a measure that can be.",
 );
 pub(crate) const MOST: Key<f64> =
-    optional("most", not_negative(""), "Largest value that is met, in the unit of the measure.");
+    optional("most", finite(""), "Largest value that is met, in the unit of the measure.");
 
 /// Limits.
 pub(crate) const LIMITS: &[KeyRow] = &[&LEAST, &MOST];
@@ -68,10 +69,17 @@ pub(crate) const FROM_HZ: Key<f64> =
     optional("from_hz", not_negative("Hz"), "Lowest frequency that counts.");
 pub(crate) const TO_HZ: Key<f64> =
     optional("to_hz", positive("Hz"), "Frequency from which on nothing counts.");
+pub(crate) const TARGET_FT: Key<f64> = optional(
+    "target_ft",
+    finite("ft"),
+    "Altitude that is aimed at; for altitude_loss_ft and altitude_deviation_ft that of the start if left out.",
+);
+pub(crate) const TARGET_M: Key<f64> =
+    optional("target_m", finite("m"), "The same in metres, in its place.");
 
 /// What counts.
 pub(crate) const CONDITIONS: &[KeyRow] =
-    &[&STEP_DEG, &WITHIN_DEG, &FROM_S, &TO_S, &FROM_HZ, &TO_HZ];
+    &[&STEP_DEG, &WITHIN_DEG, &FROM_S, &TO_S, &FROM_HZ, &TO_HZ, &TARGET_FT, &TARGET_M];
 
 pub(crate) const CLAUSE: Key<str> = optional("clause", TEXT, "Clause of its source.");
 pub(crate) const SOURCE: Key<str> = optional("source", TEXT, "Where it is from.");

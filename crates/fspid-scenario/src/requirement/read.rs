@@ -15,6 +15,7 @@ pub(crate) fn limits(
 ) -> (Option<f64>, Option<f64>) {
     let (least, most) = (section.get(keys::LEAST), section.get(keys::MOST));
     let written = section.given(keys::LEAST) || section.given(keys::MOST);
+    check_signs(report, section, Some(measure));
     if measure.is_yes_or_no() {
         return if written { (least, most) } else { (Some(1.0), None) };
     }
@@ -31,6 +32,18 @@ pub(crate) fn limits(
     (least, most)
 }
 
+/// Refuses limits below 0 of what never is; of a measure that nobody knows as well.
+pub(crate) fn check_signs(report: &mut Report, section: &Section, measure: Option<Measure>) {
+    if measure.is_some_and(Measure::is_signed) {
+        return;
+    }
+    for key in [keys::LEAST, keys::MOST] {
+        if section.get(key).is_some_and(|limit| limit < 0.0) {
+            section.wrong(report, key, "out of range", "a finite number, 0 or above");
+        }
+    }
+}
+
 /// What counts, in whatever air.
 pub(crate) fn conditions(section: &Section) -> Conditions {
     Conditions {
@@ -40,6 +53,8 @@ pub(crate) fn conditions(section: &Section) -> Conditions {
         to_s: section.get(keys::TO_S),
         from_hz: section.get(keys::FROM_HZ),
         to_hz: section.get(keys::TO_HZ),
+        target_ft: section.get(keys::TARGET_FT),
+        target_m: section.get(keys::TARGET_M),
         air: None,
     }
 }
@@ -65,12 +80,24 @@ pub(crate) fn check_conditions(
         let allowed = "a finite number above 0, in deg";
         section.problem(report, keys::WITHIN_DEG, message, allowed);
     }
+    if measure == Measure::AltitudeOvershoot && conditions.target_altitude_m().is_none() {
+        let message = "missing key; it goes with `altitude_overshoot_ft`";
+        section.problem(report, keys::TARGET_FT, message, "a finite number, in ft; or target_m");
+    }
+    check_target(report, section);
     if conditions.from_s.is_some() && conditions.step_deg.is_some() {
         let message = "not together with `step_deg`, from which the time counts";
         section.wrong(report, keys::FROM_S, message, "one of the two");
     }
     check_order(report, section, [keys::FROM_S, keys::TO_S]);
     check_order(report, section, [keys::FROM_HZ, keys::TO_HZ]);
+}
+
+/// Refuses two targets.
+pub(crate) fn check_target(report: &mut Report, section: &Section) {
+    if section.given(keys::TARGET_FT) && section.given(keys::TARGET_M) {
+        section.wrong(report, keys::TARGET_M, "not together with `target_ft`", "one of the two");
+    }
 }
 
 /// Refuses an end that is not after its beginning.
@@ -101,7 +128,9 @@ pub(super) fn requirement_set(text: &str, name: &str) -> Result<RequirementSet, 
 fn check_line(report: &mut Report, line: &Section) {
     if let Some(measure) = line.get(keys::MEASURE) {
         limits(report, line, measure);
-        check_conditions(report, line, measure, &conditions(line));
+        // Who asks for a set chooses its target.
+        let chosen = Conditions { target_m: Some(0.0), ..conditions(line) };
+        check_conditions(report, line, measure, &chosen);
     }
 }
 

@@ -10,7 +10,7 @@ use super::{AskedIn, Conditions, Confidence, Origin, Requirement};
 use crate::measure::Measure;
 
 /// Names of the ready sets.
-pub const SET_NAMES: [&str; SETS.len()] = [SETS[0].0, SETS[1].0, SETS[2].0];
+pub const SET_NAMES: [&str; SETS.len()] = [SETS[0].0, SETS[1].0, SETS[2].0, SETS[3].0, SETS[4].0];
 
 /// Names of the ready sets, for lists of allowed words.
 pub(crate) fn set_names() -> Vec<&'static str> {
@@ -79,6 +79,8 @@ pub(crate) struct Choices {
     pub(crate) speed: String,
     pub(crate) air: Air,
     pub(crate) first_aeroelastic_mode_hz: Option<f64>,
+    pub(crate) target_ft: Option<f64>,
+    pub(crate) target_m: Option<f64>,
 }
 
 impl Choices {
@@ -98,8 +100,14 @@ impl SetLine {
             "category" => self.category.is_some(),
             "speed" => self.speed.is_some(),
             "air" => self.conditions.air.is_some(),
+            "target_ft" | "target_m" => self.takes_target(),
             _ => self.below_aeroelastic_mode || self.above_aeroelastic_mode,
         }
+    }
+
+    /// True for a line about an altitude that it does not name.
+    fn takes_target(&self) -> bool {
+        self.measure.takes("target_ft") && self.conditions.target_altitude_m().is_none()
     }
 
     fn is_asked(&self, choices: &Choices) -> bool {
@@ -116,6 +124,10 @@ impl SetLine {
         let mut conditions = self.conditions;
         if self.below_aeroelastic_mode {
             conditions.to_hz = mode_hz;
+        }
+        if self.takes_target() {
+            conditions.target_ft = choices.target_ft;
+            conditions.target_m = choices.target_m;
         }
         if self.above_aeroelastic_mode {
             conditions.from_hz = mode_hz;

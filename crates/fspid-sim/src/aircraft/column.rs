@@ -33,9 +33,11 @@ pub struct AircraftSample {
     pub throttle: f64,
     /// Angle of the velocity over ground above the horizon, rad: the climb.
     pub flight_path_rad: f64,
-    /// Velocity over the ground, m/s: north, east, down.
-    pub ground_m_s: [f64; 3],
-    /// Rate of the speed over the ground, m/s².
+    /// Rate of the altitude, m/s.
+    pub climb_m_s: f64,
+    /// Speed over the ground, along it, m/s.
+    pub ground_speed_m_s: f64,
+    /// Rate of the speed along the path over the ground, m/s².
     pub path_acceleration_m_s2: f64,
     /// Rates of the air about forward, right, down of the body, rad/s: those of gusts and turbulence.
     pub air_rad_s: [f64; 3],
@@ -53,7 +55,7 @@ pub struct AircraftSample {
 }
 
 /// Names of [`AircraftSample::values`], in order.
-pub const AIRCRAFT_COLUMNS: [&str; 22] = [
+pub const AIRCRAFT_COLUMNS: [&str; 23] = [
     "airspeed_m_s",
     "altitude_m",
     "alpha_rad",
@@ -72,6 +74,7 @@ pub const AIRCRAFT_COLUMNS: [&str; 22] = [
     "r_rad_s",
     "throttle",
     "flight_path_rad",
+    "climb_m_s",
     "air_roll_rad_s",
     "air_pitch_rad_s",
     "air_yaw_rad_s",
@@ -105,6 +108,7 @@ impl AircraftSample {
             r_rad_s,
             self.throttle,
             self.flight_path_rad,
+            self.climb_m_s,
             air_roll_rad_s,
             air_pitch_rad_s,
             air_yaw_rad_s,

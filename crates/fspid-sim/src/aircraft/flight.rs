@@ -481,6 +481,10 @@ impl AircraftFlight {
         let felt = self.load_factors(&instant);
         let [north_m, east_m, _] = state.position_ned_m.to_array();
         let attitude = state.euler();
+        let over_ground_m_s = state.attitude.to_ned(state.velocity_body_m_s);
+        let [over_north_m_s, over_east_m_s, sink_m_s] = over_ground_m_s.to_array();
+        let climb_m_s = -sink_m_s;
+        let ground_speed_m_s = libm::hypot(over_north_m_s, over_east_m_s);
         AircraftSample {
             airspeed_m_s: instant.flow.airspeed_m_s,
             altitude_m: state.altitude_m(),
@@ -495,8 +499,9 @@ impl AircraftFlight {
             sideslip_rad: instant.flow.beta_rad,
             roll_yaw_rad_s: [state.rates_rad_s.x, state.rates_rad_s.z],
             throttle: controls.throttle,
-            flight_path_rad: flight_path_rad(state),
-            ground_m_s: state.attitude.to_ned(state.velocity_body_m_s).to_array(),
+            flight_path_rad: libm::atan2(climb_m_s, ground_speed_m_s),
+            climb_m_s,
+            ground_speed_m_s,
             path_acceleration_m_s2: path_acceleration_m_s2(state, &instant),
             air_rad_s: air.gust_rates_rad_s.to_array(),
             energy_height_m: self.energy_height_m(&instant),
@@ -523,12 +528,6 @@ fn apparent_vertical_rad(state: &RigidState, load_factors: Vector3) -> f64 {
     let felt = state.attitude.to_ned(load_factors);
     let (sine, cosine) = crate::math::sin_cos(state.euler().psi_rad);
     libm::atan2(felt.x * cosine + felt.y * sine, 1.0)
-}
-
-/// Angle of the velocity over ground above the horizon, rad; 0 at rest.
-fn flight_path_rad(state: &RigidState) -> f64 {
-    let [north, east, down] = state.attitude.to_ned(state.velocity_body_m_s).to_array();
-    libm::atan2(-down, libm::hypot(north, east))
 }
 
 /// How fast the speed over the ground changes, m/s²; 0 at rest. Turning with the body changes no length.

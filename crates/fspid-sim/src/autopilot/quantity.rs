@@ -22,12 +22,11 @@ pub(crate) struct Observed {
 
 impl From<&AircraftSample> for Observed {
     fn from(sample: &AircraftSample) -> Self {
-        let ([north_m, east_m], [north_m_s, east_m_s, down_m_s]) =
-            (sample.position_m, sample.ground_m_s);
+        let [north_m, east_m] = sample.position_m;
         Self {
             altitude_m: sample.altitude_m,
-            vertical_speed_m_s: -down_m_s,
-            ground_speed_m_s: libm::hypot(north_m_s, east_m_s),
+            vertical_speed_m_s: sample.climb_m_s,
+            ground_speed_m_s: sample.ground_speed_m_s,
             airspeed_m_s: sample.airspeed_m_s,
             path_acceleration_m_s2: sample.path_acceleration_m_s2,
             north_m,

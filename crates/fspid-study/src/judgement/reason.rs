@@ -99,6 +99,40 @@ pub enum NotEvaluated {
     /// The aircraft has no such quality.
     #[error("{0}")]
     Quality(qualities::Absent),
+    /// A linear plant has no loads, no way and no airspeed.
+    #[error(
+        "a linear plant has no {measure}: it is measured on a nonlinear aircraft, an `[aircraft]` that is not flown as its linear model"
+    )]
+    NoAircraft {
+        /// Name of what was asked for.
+        measure: &'static str,
+    },
+    /// Nobody said which altitude is aimed at.
+    #[error("nobody says which altitude is aimed at: target_ft or target_m does")]
+    NoTarget,
+    /// The flight starts where it aims at.
+    #[error("the flight starts at the target of {} ft, so that nothing can be overshot", to_digits(*target_ft, 6))]
+    AtTarget {
+        /// The target, ft.
+        target_ft: f64,
+    },
+    /// The flight did not get to the altitude that it aims at.
+    #[error(
+        "the target of {} ft was not reached: {} ft were left",
+        to_digits(*target_ft, 6),
+        to_digits(*left_ft, 4)
+    )]
+    TargetNotReached {
+        /// The target, ft.
+        target_ft: f64,
+        /// The nearest that the flight came, ft.
+        left_ft: f64,
+    },
+    /// The aircraft's data do not say how far the angle of attack may go.
+    #[error(
+        "the aircraft's data name no largest angle of attack: `alpha_deg` of its [validity] does"
+    )]
+    NoAlphaLimit,
     /// Nobody said how fast the aircraft flies.
     #[error(
         "nobody says how fast the aircraft flies: a plant file with `speed_m_s` in its condition does, or an `aircraft` whose file has a flight condition"

@@ -72,7 +72,7 @@ pub enum VerifyError {
 /// What can be done where nothing is required.
 fn way_out(in_cases: usize) -> String {
     match in_cases {
-        0 => "\n    add a ready set: --set mil-f-9490d, --set mil-f-8785c or --set ctms;\n    or write into the scenario, or into a file for --requirements:\n\n        [[requirement]]\n        measure = \"phase_margin_deg\"\n        least = 45.0\n".to_owned(),
+        0 => "\n    add a ready set: --set mil-f-9490d, --set mil-f-8785c or --set ctms; of an aircraft's altitude --set mil-f-9490d-altitude or --set rvsm;\n    or write into the scenario, or into a file for --requirements:\n\n        [[requirement]]\n        measure = \"phase_margin_deg\"\n        least = 45.0\n".to_owned(),
         _ => format!(
             " as it is written: `only_in` limits all its {in_cases} requirements to cases of tuning or contest\n    leave `only_in` out, or judge a case by `--set` with its changes and requirements of a file\n"
         ),

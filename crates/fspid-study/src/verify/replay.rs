@@ -48,7 +48,10 @@ impl Verification {
             (frozen.gains, named.controller.config_at(frozen.gains))
         });
         // A flight needs every plant; the loops and the aircraft are looked at one by one.
-        let flown = matches!(judgement.requirement.measure.family(), Family::Step | Family::Flight);
+        let flown = matches!(
+            judgement.requirement.measure.family(),
+            Family::Step | Family::Flight | Family::Aircraft
+        );
         let is_linear_unstable = place.spectral_radius.is_some() || judgement.found.is_err();
         let plant = place.plant.filter(|_| !flown || is_linear_unstable).map(|plant| plant.index);
         let sign = scenario.plant.linear().map(LinearPlant::elevator_sign);

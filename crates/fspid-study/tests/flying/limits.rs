@@ -120,7 +120,7 @@ fn a_trace_has_the_columns_of_its_flight_and_no_others() {
     let aircraft = study(NAVION, &[]);
     let csv = Simulation::of(&aircraft).expect("it flies").csv();
     let head = csv.lines().next().expect("a head");
-    assert!(head.ends_with("kd,airspeed_m_s,altitude_m,alpha_deg,bank_deg,aileron_deg,load_factor,air_forward_m_s,air_right_m_s,air_down_m_s,north_m,east_m,heading_deg,attitude_deg,sideslip_deg,p_deg_s,r_deg_s,throttle,flight_path_deg,air_roll_deg_s,air_pitch_deg_s,air_yaw_deg_s,energy_height_m"), "{head}");
+    assert!(head.ends_with("kd,airspeed_m_s,altitude_m,alpha_deg,bank_deg,aileron_deg,load_factor,air_forward_m_s,air_right_m_s,air_down_m_s,north_m,east_m,heading_deg,attitude_deg,sideslip_deg,p_deg_s,r_deg_s,throttle,flight_path_deg,climb_m_s,air_roll_deg_s,air_pitch_deg_s,air_yaw_deg_s,energy_height_m"), "{head}");
     let widths: Vec<usize> = csv.lines().map(|line| line.split(',').count()).collect();
     assert!(widths.iter().all(|width| *width == widths[0]));
     let linear = flown(NAVION, &["aircraft.model=linear"]);

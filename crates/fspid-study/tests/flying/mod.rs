@@ -12,6 +12,7 @@ mod lqi;
 mod moving_air;
 mod one_verdict;
 mod outer_loops;
+mod requirements;
 
 use fspid_scenario::file::{self, Study};
 use fspid_sim::Trace;

@@ -13,7 +13,11 @@ use crate::requirements::{JUMBO, repository, verified, written};
 /// Every measure without a limit that anything could miss.
 fn every_measure() -> String {
     let requirement = |measure: Measure| {
-        let conditions = if measure == Measure::RecoveryTime { "within_deg = 2.0\n" } else { "" };
+        let conditions = match measure {
+            Measure::RecoveryTime => "within_deg = 2.0\n",
+            Measure::AltitudeOvershoot => "target_ft = 0.0\n",
+            _ => "",
+        };
         let limit = if measure.is_yes_or_no() { "" } else { "least = 0.0\n" };
         format!("[[requirement]]\nmeasure = \"{}\"\n{limit}{conditions}\n", measure.name())
     };

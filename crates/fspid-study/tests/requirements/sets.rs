@@ -14,13 +14,13 @@ fn lines(name: &str, choices: &str) -> Vec<Requirement> {
 
 #[test]
 fn every_set_says_what_it_is_and_every_line_where_it_is_from_and_how_sure() {
-    assert_eq!(SET_NAMES, ["mil-f-9490d", "mil-f-8785c", "ctms"]);
+    assert_eq!(SET_NAMES, ["mil-f-9490d", "mil-f-8785c", "ctms", "mil-f-9490d-altitude", "rvsm"]);
     for name in SET_NAMES {
         let set = set(name).unwrap_or_else(|| panic!("{name} cannot be read"));
         assert_eq!(set.name, name);
         assert!(set.title.len() > 20 && set.source.len() > 10 && set.notes.len() > 50, "{name}");
         let lines = lines(name, "");
-        assert!(lines.len() >= 4, "{name}");
+        assert!(lines.len() >= 2, "{name}");
         for line in lines {
             assert!(line.id.starts_with(&format!("{name}/")), "{}", line.id);
             let origin = &line.origin;

@@ -5,11 +5,12 @@ use std::ops::RangeInclusive;
 use fspid_sim::air::WindKind;
 use fspid_sim::{Timing, Trace};
 
+use super::aircraft;
 use crate::judgement::{Case, CasePlace, NotEvaluated, StepAt};
 use crate::metrics::{Absent, CommandEffort, EdgeMetrics, ErrorIntegrals, FlightMetrics};
 use crate::simulation::ControllerResult;
 use fspid_scenario::file::Study;
-use fspid_scenario::measure::Measure;
+use fspid_scenario::measure::{Family, Measure};
 use fspid_scenario::requirement::{Air, Conditions, Requirement};
 use fspid_scenario::units::degrees;
 
@@ -23,6 +24,10 @@ pub(super) fn cases(
     let flown =
         Flown { trace: &result.trace, metrics: &result.metrics, timing: study.scenario.timing };
     match requirement.measure {
+        measure if measure.family() == Family::Aircraft => {
+            let time = flown.time(&requirement.conditions)?;
+            aircraft::case(study, &result.trace, requirement, time).map(|case| vec![case])
+        }
         Measure::RecoveryTime => flown.recovery(&requirement.conditions),
         Measure::FinalErrorAngle => flown.final_errors(&requirement.conditions),
         Measure::Overshoot | Measure::RiseTime | Measure::SettlingTime | Measure::FinalError => {

@@ -1,5 +1,6 @@
 //! What answers requirements: one controller's flight, its linear loops, and the aircraft alone.
 
+mod aircraft;
 mod airframe;
 mod flown;
 mod frozen;
@@ -72,7 +73,7 @@ impl<'a> Evidence<'a> {
             return Err(NotEvaluated::OwnWord);
         }
         match requirement.measure.family() {
-            Family::Step | Family::Flight => {
+            Family::Step | Family::Flight | Family::Aircraft => {
                 // Where the loop says it of each plant, it says of which.
                 if self.is_unstable_beyond_fixed_gains() {
                     self.require_stability()?;

@@ -1,0 +1,148 @@
+//! What the flight of a nonlinear aircraft shows beyond pitch.
+
+use std::ops::RangeInclusive;
+
+use fspid_aircraft::ForceModel;
+use fspid_sim::{AircraftPlant, Trace};
+
+use crate::judgement::{Case, CasePlace, NotEvaluated};
+use fspid_scenario::file::Study;
+use fspid_scenario::measure::Measure;
+use fspid_scenario::requirement::Requirement;
+use fspid_scenario::units::{FOOT_M, KNOT_M_S, degrees};
+
+/// Two altitudes this close are one: nothing is overshot between them, m.
+const SAME_ALTITUDE_M: f64 = 1e-3;
+
+/// The case of a measure over some samples of a flight that was flown to its end.
+pub(super) fn case(
+    study: &Study,
+    trace: &Trace,
+    requirement: &Requirement,
+    time: RangeInclusive<usize>,
+) -> Result<Case, NotEvaluated> {
+    let measure = requirement.measure;
+    let none = || NotEvaluated::NoAircraft { measure: measure.name() };
+    let plant = study.scenario.plant.aircraft().ok_or_else(none)?;
+    let seen = Seen { plant, trace, time, target_m: requirement.conditions.target_altitude_m() };
+    match measure {
+        Measure::LargestLoadFactor => seen.largest("load_factor", |value| value),
+        Measure::LeastLoadFactor => seen.least("load_factor", |value| value),
+        Measure::AltitudeLoss => {
+            let from_m = seen.reference_m()?;
+            seen.largest("altitude_m", |altitude_m| ((from_m - altitude_m) / FOOT_M).max(0.0))
+        }
+        Measure::AltitudeOvershoot => seen.overshoot(),
+        Measure::AltitudeDeviation => {
+            let from_m = seen.reference_m()?;
+            seen.largest("altitude_m", |altitude_m| (altitude_m - from_m).abs() / FOOT_M)
+        }
+        Measure::LargestAirspeed => seen.largest("airspeed_m_s", |value| value / KNOT_M_S),
+        Measure::LeastAirspeed => seen.least("airspeed_m_s", |value| value / KNOT_M_S),
+        Measure::AirspeedDeviation => {
+            let trim_m_s = plant.trim().target.airspeed_m_s;
+            seen.largest("airspeed_m_s", |value| (value - trim_m_s).abs() / KNOT_M_S)
+        }
+        Measure::LargestAlpha => seen.largest("alpha_rad", degrees),
+        Measure::AlphaMargin => seen.alpha_margin(),
+        Measure::LargestBank => seen.largest("bank_rad", |bank_rad| degrees(bank_rad.abs())),
+        Measure::LargestSink => seen.largest("climb_m_s", |climb| sink_ft_min(climb).max(0.0)),
+        // The descent at the end, and nothing else comes here.
+        _ => seen.at_end("climb_m_s", sink_ft_min),
+    }
+}
+
+fn sink_ft_min(climb_m_s: f64) -> f64 {
+    // Plus zero, so that level flight sinks by 0 and not by -0.
+    -climb_m_s / FOOT_M * 60.0 + 0.0
+}
+
+/// A part of a flight.
+struct Seen<'a> {
+    plant: &'a AircraftPlant,
+    trace: &'a Trace,
+    time: RangeInclusive<usize>,
+    target_m: Option<f64>,
+}
+
+impl Seen<'_> {
+    /// The values of a column in the time that counts.
+    fn column(&self, name: &'static str) -> Result<&[f64], NotEvaluated> {
+        let values = self.trace.column(name).and_then(|column| column.get(self.time.clone()));
+        values
+            .filter(|values| !values.is_empty())
+            .ok_or(NotEvaluated::Absent(crate::metrics::Absent::NotFinite))
+    }
+
+    /// The altitude that others are compared with, m: the target, or that of the start.
+    fn reference_m(&self) -> Result<f64, NotEvaluated> {
+        match self.target_m {
+            Some(target_m) => Ok(target_m),
+            None => self.start_m(),
+        }
+    }
+
+    fn start_m(&self) -> Result<f64, NotEvaluated> {
+        let first = self.trace.column("altitude_m").and_then(|column| column.first());
+        first.copied().ok_or(NotEvaluated::Absent(crate::metrics::Absent::NotFinite))
+    }
+
+    /// A value at the place where it is the worst; NaN is worse than anything.
+    fn worst(
+        &self,
+        name: &'static str,
+        of: impl Fn(f64) -> f64,
+        is_worse: fn(f64, f64) -> bool,
+    ) -> Result<Case, NotEvaluated> {
+        let values = (*self.time.start()..).zip(self.column(name)?.iter().map(|value| of(*value)));
+        let worst = values.reduce(|worst, next| {
+            let taken = !worst.1.is_nan() && (next.1.is_nan() || is_worse(next.1, worst.1));
+            if taken { next } else { worst }
+        });
+        let (sample, value) =
+            worst.ok_or(NotEvaluated::Absent(crate::metrics::Absent::NotFinite))?;
+        Ok(Case { value, place: self.place(sample) })
+    }
+
+    fn largest(&self, name: &'static str, of: impl Fn(f64) -> f64) -> Result<Case, NotEvaluated> {
+        self.worst(name, of, |next, worst| next > worst)
+    }
+
+    fn least(&self, name: &'static str, of: impl Fn(f64) -> f64) -> Result<Case, NotEvaluated> {
+        self.worst(name, of, |next, worst| next < worst)
+    }
+
+    fn at_end(&self, name: &'static str, of: fn(f64) -> f64) -> Result<Case, NotEvaluated> {
+        let last = self.column(name)?.last().copied().unwrap_or(f64::NAN);
+        Ok(Case { value: of(last), place: self.place(*self.time.end()) })
+    }
+
+    fn place(&self, sample: usize) -> CasePlace {
+        CasePlace { at_s: self.trace.time_s.get(sample).copied(), ..CasePlace::default() }
+    }
+
+    /// Beyond the target, on the side where the flight does not start. A flight that does not get there overshoots
+    /// nothing, and is not praised for it.
+    fn overshoot(&self) -> Result<Case, NotEvaluated> {
+        let target_m = self.target_m.ok_or(NotEvaluated::NoTarget)?;
+        let way_m = target_m - self.start_m()?;
+        if !(way_m.abs() > SAME_ALTITUDE_M) {
+            return Err(NotEvaluated::AtTarget { target_ft: target_m / FOOT_M });
+        }
+        let beyond_m = |altitude_m: f64| (altitude_m - target_m) * way_m.signum();
+        let found = self.largest("altitude_m", |altitude_m| beyond_m(altitude_m) / FOOT_M)?;
+        if found.value < 0.0 {
+            let left_ft = -found.value;
+            return Err(NotEvaluated::TargetNotReached { target_ft: target_m / FOOT_M, left_ft });
+        }
+        Ok(found)
+    }
+
+    fn alpha_margin(&self) -> Result<Case, NotEvaluated> {
+        let most_rad = self.plant.aircraft().model().validity().alpha_rad.max;
+        if !most_rad.is_finite() {
+            return Err(NotEvaluated::NoAlphaLimit);
+        }
+        self.least("alpha_rad", |alpha_rad| degrees(most_rad - alpha_rad))
+    }
+}
