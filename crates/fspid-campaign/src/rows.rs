@@ -25,6 +25,9 @@ pub const CONTROLLER_LOST: &str = "controller lost";
 /// The verdict on a flight whose autopilot waited in vain for a mode to begin.
 pub const MODE_NEVER_BEGAN: &str = "mode never began";
 
+/// The verdict of a flight whose simulator gave no answer.
+pub const PLANT_LOST: &str = "plant lost";
+
 /// Version of the rows.
 pub const FORMAT: u32 = 2;
 

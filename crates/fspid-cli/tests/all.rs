@@ -23,6 +23,8 @@ mod learn;
 mod no_clock;
 mod one_verdict;
 #[cfg(unix)]
+mod other_simulators;
+#[cfg(unix)]
 mod own_files;
 mod packages;
 mod reports;

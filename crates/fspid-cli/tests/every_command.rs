@@ -30,7 +30,7 @@ fn commands(folder: &Path) -> Vec<Vec<String>> {
 }
 
 /// A command that answers, the exit codes that are well, and a key of its answer. They run in this order in one folder.
-const ANSWERS: [(&str, &[i32], &str); 48] = [
+const ANSWERS: [(&str, &[i32], &str); 50] = [
     ("init pitch.toml", &[0], "file"),
     ("init --list", &[0], "templates"),
     ("init --template tuning tuning.toml", &[0], "next"),
@@ -42,6 +42,8 @@ const ANSWERS: [(&str, &[i32], &str); 48] = [
     ("check pitch.toml --paths", &[0], "paths"),
     ("check rules.toml", &[0], "rules"),
     ("simulate pitch.toml", &[0, 1], "controllers"),
+    ("simulate pitch.toml --trace flown.csv", &[0, 1], "controllers"),
+    ("show flown.csv --controller FSPID --x-plane --speed 1000", &[0], "sent"),
     ("analyse pitch.toml", &[0, 1], "controllers"),
     ("certify pitch.toml --controller FSPID", &[0, 1], "controllers"),
     ("verify pitch.toml --set ctms", &[0, 1], "requirements"),

@@ -1,10 +1,11 @@
-//! Systems on which no controller can be started.
+//! Systems on which no controller and no simulator can be started.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use fspid_sim::external::{Answers, Host};
-use fspid_sim::{External, SimError};
+use fspid_sim::external_plant::{PlantHost, Simulates};
+use fspid_sim::{External, ExternalPlant, SimError};
 
 /// What would start external controllers.
 #[derive(Clone, Debug)]
@@ -45,4 +46,32 @@ impl Host for ProcessHost {
 #[must_use]
 pub fn serve(_: &str, _: &Path, _: f64, _: &[String]) -> ExitCode {
     ExitCode::FAILURE
+}
+
+/// What would start other simulators.
+#[derive(Clone, Debug)]
+pub struct SimulatorHost;
+
+impl SimulatorHost {
+    /// Starts nothing here.
+    #[must_use]
+    pub fn new(_: PathBuf) -> Self {
+        Self
+    }
+
+    /// Starts nothing here.
+    #[must_use]
+    pub fn starting_within(self, _: std::time::Duration) -> Self {
+        self
+    }
+}
+
+impl PlantHost for SimulatorHost {
+    fn start(&self, plant: &ExternalPlant, _: f64, _: u32) -> Result<Box<dyn Simulates>, SimError> {
+        Err(SimError::PlantHost {
+            name: plant.simulator.name().to_owned(),
+            reason: "other simulators talk over a socket of Unix, which this system has not"
+                .to_owned(),
+        })
+    }
 }

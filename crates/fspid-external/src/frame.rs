@@ -52,7 +52,7 @@ impl Start {
     }
 }
 
-fn text(from: &mut impl Read) -> io::Result<String> {
+pub(crate) fn text(from: &mut impl Read) -> io::Result<String> {
     let length = u32::from_ne_bytes(read(from)?) as usize;
     let mut bytes = vec![0; length.min(LONGEST_TEXT)];
     from.read_exact(&mut bytes)?;
@@ -66,7 +66,7 @@ pub(crate) fn read<const N: usize>(from: &mut impl Read) -> io::Result<[u8; N]> 
 }
 
 /// Numbers, one behind the other.
-fn numbers<const N: usize>(bytes: &[u8]) -> [f64; N] {
+pub(crate) fn numbers<const N: usize>(bytes: &[u8]) -> [f64; N] {
     let mut found = [0.0; N];
     for (number, bytes) in found.iter_mut().zip(bytes.chunks_exact(8)) {
         *number = f64::from_ne_bytes(bytes.try_into().unwrap_or_default());

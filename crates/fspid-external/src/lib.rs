@@ -21,16 +21,21 @@ mod process;
 #[cfg(unix)]
 mod serve;
 #[cfg(unix)]
+mod simulator;
+#[cfg(unix)]
 mod timed;
 #[cfg(unix)]
 mod variables;
+pub mod view;
 
 #[cfg(unix)]
 pub use process::ProcessHost;
 #[cfg(unix)]
 pub use serve::serve;
+#[cfg(unix)]
+pub use simulator::SimulatorHost;
 
 #[cfg(not(unix))]
 mod elsewhere;
 #[cfg(not(unix))]
-pub use elsewhere::{ProcessHost, serve};
+pub use elsewhere::{ProcessHost, SimulatorHost, serve};

@@ -230,6 +230,30 @@ fn is_period(period_s: f64, dt_s: f64) -> bool {
     period_s == 0.0 || (period_s - dt_s).abs() <= SAME_PERIOD * dt_s
 }
 
+/// What a process ended with: its socket closes a moment before that is known. None for one that goes on without it.
+pub(crate) fn ended(child: &Child) -> Option<ControllerLoss> {
+    let mut pause = FIRST_PAUSE;
+    for _ in 0..ENDING_LOOKS {
+        if let Some(ending) = ending(child) {
+            return Some(ending);
+        }
+        std::thread::sleep(pause);
+        pause *= 2;
+    }
+    None
+}
+
+/// What a process ended with, if it has. Its number stays its own, which is also that of its group.
+pub(crate) fn ending(child: &Child) -> Option<ControllerLoss> {
+    let options = WaitIdOptions::EXITED | WaitIdOptions::NOHANG | WaitIdOptions::NOWAIT;
+    let status = waitid(WaitId::Pid(Pid::from_child(child)), options);
+    let Ok(status) = status else { return Some(ControllerLoss::Gone) };
+    let status = status?;
+    let code = status.exit_status().unwrap_or_default();
+    let crashed = |signal| ControllerLoss::Crashed { signal };
+    Some(status.terminating_signal().map_or(ControllerLoss::Ended { code }, crashed))
+}
+
 /// What is told of controllers that were done with a flight, once each.
 #[derive(Debug, Default)]
 struct Notes {
@@ -294,32 +318,12 @@ impl Process {
         }
     }
 
-    /// What it ended with: its socket closes a moment before that is known. None for one that goes on without it.
     fn ended(&self) -> Option<ControllerLoss> {
-        let mut pause = FIRST_PAUSE;
-        for _ in 0..ENDING_LOOKS {
-            if let Some(ending) = self.ending() {
-                return Some(ending);
-            }
-            std::thread::sleep(pause);
-            pause *= 2;
-        }
-        None
+        ended(&self.child)
     }
 
-    /// What it ended with, if it has. Its number stays its own, which is also that of its group.
     fn ending(&self) -> Option<ControllerLoss> {
-        let options = WaitIdOptions::EXITED | WaitIdOptions::NOHANG | WaitIdOptions::NOWAIT;
-        let status = waitid(WaitId::Pid(Pid::from_child(&self.child)), options);
-        let Ok(status) = status else { return Some(ControllerLoss::Gone) };
-        let status = status?;
-        let code = status.exit_status().unwrap_or_default();
-        let signal = status.terminating_signal();
-        Some(
-            signal.map_or(ControllerLoss::Ended { code }, |signal| ControllerLoss::Crashed {
-                signal,
-            }),
-        )
+        ending(&self.child)
     }
 
     /// Lets it end once nobody asks any more, and tells how if that is not as it should be.

@@ -52,7 +52,7 @@ pub fn left_out_of(scenario: &Scenario) -> Vec<LeftOut> {
     let noisy = sensors().any(is_noisy) || disturbances.iter().any(|one| one.is_noise());
     let present = |what: LeftOut| match what {
         LeftOut::Rounding | LeftOut::MovingSetpoint => true,
-        LeftOut::NonlinearAircraft => matches!(plant, Plant::Aircraft(_)),
+        LeftOut::NonlinearAircraft => matches!(plant, Plant::Aircraft(_) | Plant::External(_)),
         LeftOut::PlantChange => !plant_changes.is_empty(),
         LeftOut::MovingAir => weather.as_ref().is_some_and(moves),
         LeftOut::Noise => noisy,

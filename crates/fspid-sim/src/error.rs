@@ -100,6 +100,31 @@ pub enum SimError {
         /// What is wrong with the machine, or with the file since it was read.
         reason: String,
     },
+    /// A question about equations, of an aircraft that another simulator flies.
+    OtherSimulator {
+        /// The simulator.
+        name: &'static str,
+    },
+    /// A change in flight of an aircraft that another simulator flies.
+    OtherSimulatorChanges,
+    /// An aircraft of another simulator in a program that starts none.
+    NoPlantHost,
+    /// An aircraft of another simulator that cannot fly.
+    PlantNotStarted {
+        /// The simulator and the aircraft.
+        name: String,
+        /// What is wrong.
+        reason: String,
+        /// What would be right.
+        allowed: String,
+    },
+    /// Another simulator that could not be asked, for a reason that is not its aircraft's.
+    PlantHost {
+        /// The simulator.
+        name: String,
+        /// What is wrong with the machine.
+        reason: String,
+    },
     /// The linear model is refused.
     Linear(LtiError),
     /// The controller is refused.
@@ -167,6 +192,22 @@ impl fmt::Display for SimError {
                 f,
                 "external controller {file} could not be asked, which says nothing of it: {reason}"
             ),
+            Self::OtherSimulator { name } => write!(
+                f,
+                "{name} flies the aircraft, so that there are no equations of it here; allowed are questions of flights, or its linear model at this condition, which `fspid aircraft import` writes"
+            ),
+            Self::OtherSimulatorChanges => f.write_str(
+                "an aircraft of another simulator cannot be changed in flight; allowed are changes of linear plants",
+            ),
+            Self::NoPlantHost => f.write_str(
+                "this program starts no other simulators; allowed are a plant or an aircraft, or a program that calls `fspid_sim::external_plant::set_plant_host`, as `fspid` does",
+            ),
+            Self::PlantNotStarted { name, reason, allowed } => {
+                write!(f, "{name}: {reason}; allowed is {allowed}")
+            }
+            Self::PlantHost { name, reason } => {
+                write!(f, "{name} could not be asked, which says nothing of the flight: {reason}")
+            }
             Self::Linear(error) => error.fmt(f),
             Self::Controller(error) => error.fmt(f),
             Self::Supervisor(error) => error.fmt(f),
@@ -177,10 +218,13 @@ impl fmt::Display for SimError {
 impl std::error::Error for SimError {}
 
 impl SimError {
-    /// True where this machine or this program is what is wrong, so that there is nothing to say of any controller.
+    /// True where this machine or this program is what is wrong, so that there is nothing to say of any controller or aircraft.
     #[must_use]
     pub fn is_of_host(&self) -> bool {
-        matches!(self, Self::NoHost | Self::Host { .. })
+        matches!(
+            self,
+            Self::NoHost | Self::Host { .. } | Self::NoPlantHost | Self::PlantHost { .. }
+        )
     }
 }
 

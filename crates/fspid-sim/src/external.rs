@@ -169,7 +169,7 @@ impl ControllerLoss {
 }
 
 /// Signals that programs crash with; all but one have the same number on every system.
-const SIGNALS: [(i32, &str); 10] = [
+pub(crate) const SIGNALS: [(i32, &str); 10] = [
     (1, "SIGHUP"),
     (2, "SIGINT"),
     (4, "SIGILL"),

@@ -1,6 +1,6 @@
 #![doc = include_str!("../README.md")]
 //!
-//! What flies is a [`LinearPlant`] or an [`AircraftPlant`] behind an [`Actuator`], what answers a [`Controller`]. Units are
+//! What flies is a [`LinearPlant`], an [`AircraftPlant`] or, in another simulator, an [`ExternalPlant`] behind an [`Actuator`], what answers a [`Controller`]. Units are
 //! SI and radians; degrees exist in files and reports only.
 //!
 //! [`Surroundings`] adds what a real flight has: moving [`air`], sensors
@@ -24,6 +24,7 @@ mod controller;
 pub mod describing;
 mod error;
 pub mod external;
+pub mod external_plant;
 pub mod flown;
 mod generator;
 mod gust_entry;
@@ -55,6 +56,7 @@ pub use closed_loop::{Flight, fly, fly_commanded, fly_perturbed, simulate};
 pub use controller::Controller;
 pub use error::SimError;
 pub use external::{ControllerLoss, External, ExternalSource, NamedExternal};
+pub use external_plant::{ExternalPlant, PlantLoss, Simulator};
 pub use flown::{AllPass, Perturbation};
 pub use in_flight::{InFlight, ModePoles, Seen, mode_poles};
 pub use instant::Instant;

@@ -89,6 +89,7 @@ pub fn constant_load(
     gains: Gains<f64>,
     config: &PidConfig<f64>,
 ) -> Result<Option<ConstantLoad>, SimError> {
+    scenario.plant.require_equations()?;
     let trimmed = scenario.plant.aircraft().map(AircraftPlant::linear).transpose()?;
     let lasting = scenario.lasting_plants().into_iter().map(|(_, plant)| plant);
     let mut worst: Option<ConstantLoad> = None;

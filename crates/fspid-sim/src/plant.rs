@@ -1,9 +1,10 @@
-//! What flies: a linear model from elevator to pitch angle, or a nonlinear aircraft.
+//! What flies: a linear model from elevator to pitch angle, a nonlinear aircraft, or one of another simulator.
 
 use fspid_lti::{StateSpace, TransferFunction};
 
 use crate::aircraft::AircraftPlant;
 use crate::error::{SimError, not_negative};
+use crate::external_plant::ExternalPlant;
 use crate::gust_entry::GustEntry;
 
 /// Which way the elevator of a plant's file is counted.
@@ -33,6 +34,8 @@ pub enum Plant {
     Linear(LinearPlant),
     /// A nonlinear aircraft in six degrees of freedom.
     Aircraft(Box<AircraftPlant>),
+    /// An aircraft that another simulator flies.
+    External(Box<ExternalPlant>),
 }
 
 impl Plant {
@@ -41,7 +44,7 @@ impl Plant {
     pub fn linear(&self) -> Option<&LinearPlant> {
         match self {
             Self::Linear(plant) => Some(plant),
-            Self::Aircraft(_) => None,
+            Self::Aircraft(_) | Self::External(_) => None,
         }
     }
 
@@ -49,8 +52,28 @@ impl Plant {
     #[must_use]
     pub fn aircraft(&self) -> Option<&AircraftPlant> {
         match self {
-            Self::Linear(_) => None,
+            Self::Linear(_) | Self::External(_) => None,
             Self::Aircraft(plant) => Some(plant),
+        }
+    }
+
+    /// The aircraft of another simulator, if it is one.
+    #[must_use]
+    pub fn external(&self) -> Option<&ExternalPlant> {
+        match self {
+            Self::Linear(_) | Self::Aircraft(_) => None,
+            Self::External(plant) => Some(plant),
+        }
+    }
+
+    /// `Ok` for a plant that has equations here.
+    ///
+    /// # Errors
+    /// [`SimError::OtherSimulator`] for one that has none.
+    pub fn require_equations(&self) -> Result<(), SimError> {
+        match self.external() {
+            None => Ok(()),
+            Some(plant) => Err(SimError::OtherSimulator { name: plant.simulator.name() }),
         }
     }
 }
@@ -58,6 +81,12 @@ impl Plant {
 impl From<LinearPlant> for Plant {
     fn from(plant: LinearPlant) -> Self {
         Self::Linear(plant)
+    }
+}
+
+impl From<ExternalPlant> for Plant {
+    fn from(plant: ExternalPlant) -> Self {
+        Self::External(Box::new(plant))
     }
 }
 

@@ -1,10 +1,11 @@
-//! The ways from one sample to the next: plant and actuator as one linear system, leg by leg of the actuator, or in
-//! an aircraft. All stages of a flight are of one kind, so that a motion always meets its own.
+//! The ways from one sample to the next: plant and actuator as one linear system, leg by leg of the actuator, in an
+//! aircraft, or in another simulator. All stages of a flight are of one kind, so that a motion always meets its own.
 
 use crate::actuated::{Actuated, ActuatedState, Held};
 use crate::aircraft::{AircraftFlight, AircraftMotion, AircraftSample};
 use crate::autopilot::Cut;
 use crate::error::SimError;
+use crate::external_plant::{ExternalFlight, ExternalMotion, PlantLoss};
 use crate::in_flight::BEYOND;
 use crate::law::LinearStep;
 use crate::loop_model::SampledPlant;
@@ -27,6 +28,8 @@ pub(crate) enum Propagation {
     ByLegs(Actuated),
     /// A nonlinear aircraft with an actuator, in moving air.
     Aircraft(Box<AircraftFlight>),
+    /// An aircraft that another simulator flies, with an actuator.
+    External(Box<ExternalFlight>),
 }
 
 /// Where plant and elevator are.
@@ -35,6 +38,7 @@ pub(crate) enum Motion {
     AsOne(PlantState),
     ByLegs(ActuatedState),
     Aircraft(Box<AircraftMotion>),
+    External(Box<ExternalMotion>),
 }
 
 impl Motion {
@@ -43,6 +47,7 @@ impl Motion {
             Self::AsOne(state) => state.theta_rad(),
             Self::ByLegs(state) => state.theta_rad(),
             Self::Aircraft(state) => state.theta_rad(),
+            Self::External(state) => state.theta_rad(),
         }
     }
 
@@ -52,16 +57,28 @@ impl Motion {
         // Written so that NaN is lost.
         !(self.theta_rad().abs() <= DIVERGED_RAD)
             || matches!(self, Self::Aircraft(state) if state.is_lost())
+            || matches!(self, Self::External(state) if state.is_lost())
+    }
+
+    /// How another simulator was lost, if it was.
+    #[inline(always)]
+    pub(crate) fn plant_loss(&self) -> Option<PlantLoss> {
+        match self {
+            Self::External(state) => state.loss(),
+            _ => None,
+        }
     }
 }
 
 impl Propagation {
-    pub(crate) fn at_rest(&self) -> Motion {
-        match self {
+    /// Where a flight begins; another simulator is started.
+    pub(crate) fn start(&self) -> Result<Motion, SimError> {
+        Ok(match self {
             Self::AsOne(propagator) => Motion::AsOne(PlantState::at_rest(propagator.order())),
             Self::ByLegs(actuated) => Motion::ByLegs(actuated.at_rest()),
             Self::Aircraft(flight) => Motion::Aircraft(Box::new(flight.at_rest())),
-        }
+            Self::External(flight) => Motion::External(Box::new(flight.start()?)),
+        })
     }
 
     /// True for an aircraft at or below the ground; a linear plant has no height.
@@ -69,6 +86,7 @@ impl Propagation {
     pub(crate) fn is_at_ground(&self, motion: &Motion) -> bool {
         match (self, motion) {
             (Self::Aircraft(it), Motion::Aircraft(state)) => it.is_at_ground(state),
+            (_, Motion::External(state)) => state.is_at_ground(),
             _ => false,
         }
     }
@@ -80,6 +98,7 @@ impl Propagation {
             (Self::AsOne(it), Motion::AsOne(state)) => it.rate_rad_s(state, disturbance_rad),
             (Self::ByLegs(it), Motion::ByLegs(state)) => it.rate_rad_s(state, disturbance_rad),
             (_, Motion::Aircraft(state)) => state.rate_rad_s(),
+            (_, Motion::External(state)) => state.rate_rad_s(),
             _ => 0.0,
         }
     }
@@ -94,6 +113,7 @@ impl Propagation {
             (Self::Aircraft(it), Motion::Aircraft(state)) => {
                 it.elevator_rad(state, disturbance_rad)
             }
+            (_, Motion::External(state)) => state.elevator_rad(),
             _ => 0.0,
         }
     }
@@ -104,6 +124,7 @@ impl Propagation {
             (Self::Aircraft(it), Motion::Aircraft(state)) => {
                 Some(it.sample(state, it.elevator_rad(state, disturbance_rad)))
             }
+            (_, Motion::External(state)) => Some(state.sample()),
             _ => None,
         }
     }
@@ -115,6 +136,7 @@ impl Propagation {
             (Self::AsOne(it), Motion::AsOne(state)) => it.settle_ideal_servo(state, command_rad),
             (Self::ByLegs(it), Motion::ByLegs(state)) => it.settle(state, command_rad),
             (Self::Aircraft(it), Motion::Aircraft(state)) => it.settle(state, command_rad),
+            (Self::External(it), Motion::External(state)) => it.settle(state, command_rad),
             _ => {}
         }
     }
@@ -133,6 +155,9 @@ impl Propagation {
             (Self::ByLegs(it), Motion::ByLegs(state)) => it.advance(state, command_rad, held),
             (Self::Aircraft(it), Motion::Aircraft(state)) => {
                 it.advance(state, command_rad, held);
+            }
+            (Self::External(it), Motion::External(state)) => {
+                it.advance(state, command_rad, held.elevator_rad);
             }
             _ => {}
         }
@@ -158,7 +183,7 @@ impl Propagation {
     }
 
     /// The states that a linear model of the coming sample has: those of
-    /// [`linear_step`](Self::linear_step), or pitch, u, w, q and actuator of an aircraft.
+    /// [`linear_step`](Self::linear_step), or pitch, u, w, q and actuator of an aircraft; none of another simulator.
     pub(crate) fn values(&self, motion: &Motion) -> Vec<f64> {
         match (self, motion) {
             (Self::AsOne(_), Motion::AsOne(state)) => state.values().to_vec(),
@@ -241,7 +266,7 @@ impl Propagation {
         match self {
             Self::AsOne(it) => it.linear_change(plant).map(Some),
             Self::ByLegs(it) => it.linear_change(plant).map(Some),
-            Self::Aircraft(_) => Ok(None),
+            Self::Aircraft(_) | Self::External(_) => Ok(None),
         }
     }
 
@@ -249,7 +274,7 @@ impl Propagation {
         match self {
             Self::AsOne(it) => Some(it.linear_step()),
             Self::ByLegs(it) => Some(it.linear_step()),
-            Self::Aircraft(_) => None,
+            Self::Aircraft(_) | Self::External(_) => None,
         }
     }
 }

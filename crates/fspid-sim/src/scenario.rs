@@ -7,6 +7,7 @@ use crate::autopilot::Autopilot;
 use crate::controller::Controller;
 use crate::error::SimError;
 use crate::external::{External, NamedExternal};
+use crate::external_plant::{ExternalFlight, ExternalPlant};
 use crate::gust_response;
 use crate::plant::{LinearPlant, Plant, PlantChange};
 use crate::propagation::Propagation;
@@ -137,11 +138,14 @@ impl Scenario {
         self.controllers.iter().map(Flyer::Own).chain(externals)
     }
 
-    /// Starts every external controller once and lets it go.
+    /// Starts another simulator and every external controller once and lets it go.
     ///
     /// # Errors
     /// [`SimError`] names the first that cannot fly.
     pub fn start_externals(&self) -> Result<(), SimError> {
+        if let Plant::External(plant) = &self.plant {
+            ExternalFlight::new(plant, self.actuator, self.timing).start()?;
+        }
         self.externals.iter().try_for_each(|named| named.external.start().map(drop))
     }
 
@@ -248,11 +252,21 @@ impl Scenario {
         Ok(vec![Stage { from: 0, propagation: Propagation::Aircraft(Box::new(flight)) }])
     }
 
+    /// The one stage of a flight that another simulator flies.
+    fn external_stages(&self, plant: &ExternalPlant) -> Result<Vec<Stage>, SimError> {
+        if !self.plant_changes.is_empty() {
+            return Err(SimError::OtherSimulatorChanges);
+        }
+        let flight = ExternalFlight::new(plant, self.actuator, self.timing);
+        Ok(vec![Stage { from: 0, propagation: Propagation::External(Box::new(flight)) }])
+    }
+
     /// The plant's discretisations, each with the sample from which it holds.
     fn stages(&self) -> Result<Vec<Stage>, SimError> {
         match &self.plant {
             Plant::Linear(plant) => self.linear_stages(plant),
             Plant::Aircraft(plant) => self.aircraft_stages(plant),
+            Plant::External(plant) => self.external_stages(plant),
         }
     }
 
@@ -358,10 +372,12 @@ impl Prepared {
         self.autopilot.is_some()
     }
 
-    /// True for a flight in six degrees of freedom.
+    /// True for a flight in six degrees of freedom, here or in another simulator.
     #[must_use]
     pub fn is_aircraft(&self) -> bool {
-        self.stages.iter().any(|stage| matches!(stage.propagation, Propagation::Aircraft(_)))
+        self.stages.iter().any(|stage| {
+            matches!(stage.propagation, Propagation::Aircraft(_) | Propagation::External(_))
+        })
     }
 
     /// The air's velocity forward and down, m/s, and its pitch rate, rad/s, at each sample of a linear

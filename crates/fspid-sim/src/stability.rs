@@ -49,6 +49,7 @@ pub fn instability(
     scenario: &Scenario,
     controller: &Controller,
 ) -> Result<Option<Unstable>, SimError> {
+    scenario.plant.require_equations()?;
     let Controller::Fixed(pid) = controller else {
         return Ok(None);
     };
@@ -140,6 +141,7 @@ pub fn growth_at_rest(
     controller: &Controller,
     gains: Gains<f64>,
 ) -> Result<GrowthAtRest, SimError> {
+    scenario.plant.require_equations()?;
     let trimmed = scenario.plant.aircraft().map(AircraftPlant::linear).transpose()?;
     let around_trim = trimmed.iter().map(|plant| (0.0, plant));
     let mut found = GrowthAtRest::default();
@@ -204,6 +206,7 @@ pub fn loop_spectral_radius(
     gains: Gains<f64>,
     config: &PidConfig<f64>,
 ) -> Result<f64, SimError> {
+    scenario.plant.require_equations()?;
     let plant = scenario.plant.linear().ok_or(SimError::NotLinear)?;
     Ok(spectral_radius(&closed_loop(scenario, plant, gains, config)?)?)
 }
@@ -217,6 +220,7 @@ pub fn loop_poles(
     gains: Gains<f64>,
     config: &PidConfig<f64>,
 ) -> Result<Vec<Complex>, SimError> {
+    scenario.plant.require_equations()?;
     let plant = scenario.plant.linear().ok_or(SimError::NotLinear)?;
     Ok(eigenvalues(&closed_loop(scenario, plant, gains, config)?)?)
 }

@@ -6,6 +6,7 @@ use fspid_core::{Faults, Gains};
 use crate::aircraft::AIRCRAFT_COLUMNS;
 use crate::autopilot::AUTOPILOT_COLUMNS;
 use crate::external::ControllerLoss;
+use crate::external_plant::PlantLoss;
 use crate::instant::Instant;
 use crate::scenario::Prepared;
 use crate::timing::Timing;
@@ -37,6 +38,13 @@ pub enum Outcome {
         at_s: f64,
         /// How it was lost.
         loss: ControllerLoss,
+    },
+    /// Another simulator, which flies the aircraft, gave no answer; the trace ends before.
+    PlantLost {
+        /// Time of the first sample without an answer, s.
+        at_s: f64,
+        /// How it was lost.
+        loss: PlantLoss,
     },
 }
 

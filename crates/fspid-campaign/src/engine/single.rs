@@ -1,9 +1,11 @@
 //! Flights that no lane can fly: nonlinear aircraft, actuators that are no first-order servo, gusts, sensors, external
-//! controllers.
+//! controllers, other simulators.
 
 use std::ops::ControlFlow;
 
-use fspid_sim::{ControllerLoss, Exit, Flyer, Outcome, Perturbation, Prepared, SimError, Trace};
+use fspid_sim::{
+    ControllerLoss, Exit, Flyer, Outcome, Perturbation, PlantLoss, Prepared, SimError, Trace,
+};
 
 /// One flight, recorded in an empty trace as far as measures need it. An external controller that cannot be started is
 /// lost: whoever flies beside it has nothing to do with that.
@@ -33,6 +35,10 @@ pub(super) fn record(
     trace.outcome = match outcome {
         Err(SimError::NotStarted { .. }) => {
             Outcome::ControllerLost { at_s: 0.0, loss: ControllerLoss::NotStarted }
+        }
+        // Which conditions can be trimmed is a result.
+        Err(SimError::PlantNotStarted { .. }) => {
+            Outcome::PlantLost { at_s: 0.0, loss: PlantLoss::NotStarted }
         }
         outcome => outcome?,
     };

@@ -86,6 +86,7 @@ fn worst(controller: &ControllerSummary) -> Vec<u64> {
             Severity::Diverged
                 | Severity::HitGround
                 | Severity::ControllerLost
+                | Severity::PlantLost
                 | Severity::Unstable
                 | Severity::ModeNeverBegan
         )

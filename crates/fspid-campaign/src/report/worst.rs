@@ -64,6 +64,7 @@ fn severity(run: &FailedRun) -> String {
         (Severity::Diverged, None) => "diverged".to_owned(),
         (Severity::HitGround, _) => "hit the ground".to_owned(),
         (Severity::ControllerLost, _) => "controller lost".to_owned(),
+        (Severity::PlantLost, _) => "plant lost".to_owned(),
         (Severity::Unstable, _) => "unstable loop".to_owned(),
         (Severity::ModeNeverBegan, _) => MODE_NEVER_BEGAN.to_owned(),
         (Severity::LeftRange, _) => "left the range".to_owned(),

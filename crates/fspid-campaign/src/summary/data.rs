@@ -274,6 +274,8 @@ pub enum Severity {
     HitGround,
     /// The external controller gave no answer.
     ControllerLost,
+    /// The simulator that flies the aircraft gave no answer.
+    PlantLost,
     /// The loop is unstable at rest, which did not show in the flight.
     Unstable,
     /// Its autopilot waited in vain for a mode to begin.

@@ -8,13 +8,13 @@ use super::data::{FailedRun, Severity, VerdictCount};
 use super::source::Source;
 use super::{FAILED_RUNS, NotMerged, SummaryError};
 use crate::rows::{
-    CONTROLLER, CONTROLLER_LOST, DIVERGED_AT, FAILED, HIT_GROUND, MODE_NEVER_BEGAN, REASONS,
-    REFUSED, RUN, STABILITY, UNDECIDED, VERDICT,
+    CONTROLLER, CONTROLLER_LOST, DIVERGED_AT, FAILED, HIT_GROUND, MODE_NEVER_BEGAN, PLANT_LOST,
+    REASONS, REFUSED, RUN, STABILITY, UNDECIDED, VERDICT,
 };
 use crate::table::{ColumnTable, Kind, TableError, Values};
 
 /// Verdicts from good to bad.
-const VERDICTS: [&str; 9] = [
+const VERDICTS: [&str; 10] = [
     "settled",
     "flown",
     "not settled",
@@ -22,6 +22,7 @@ const VERDICTS: [&str; 9] = [
     MODE_NEVER_BEGAN,
     "unstable",
     CONTROLLER_LOST,
+    PLANT_LOST,
     HIT_GROUND,
     "diverged",
 ];
@@ -178,6 +179,7 @@ impl Flights {
             "diverged" => Severity::Diverged,
             HIT_GROUND => Severity::HitGround,
             CONTROLLER_LOST => Severity::ControllerLost,
+            PLANT_LOST => Severity::PlantLost,
             "unstable" => Severity::Unstable,
             MODE_NEVER_BEGAN => Severity::ModeNeverBegan,
             REFUSED => Severity::Refused,

@@ -143,6 +143,7 @@ impl Severity {
             Self::Diverged => "diverged",
             Self::HitGround => crate::rows::HIT_GROUND,
             Self::ControllerLost => crate::rows::CONTROLLER_LOST,
+            Self::PlantLost => crate::rows::PLANT_LOST,
             Self::Unstable => "unstable",
             Self::Refused => "refused",
             Self::ModeNeverBegan => crate::rows::MODE_NEVER_BEGAN,

@@ -8,10 +8,11 @@ use clap::Args;
 
 use crate::argument::NamedFile;
 use crate::exit::{Failure, note};
-use fspid_external::{ProcessHost, serve};
+use fspid_external::{ProcessHost, SimulatorHost, serve};
 use fspid_scenario::file::unread_in_words;
 use fspid_sim::Scenario;
 use fspid_sim::external::set_host;
+use fspid_sim::external_plant::set_plant_host;
 
 /// The name of this command.
 const NAME: &str = "external-controller";
@@ -141,9 +142,14 @@ fn toml_text(text: &str) -> String {
 /// The program that runs, whatever lies at its path by now: Linux keeps it there, also once it is removed.
 const RUNNING: &str = "/proc/self/exe";
 
-/// Lets this program start itself for external controllers. Of what they print beside a stream of commands as much is
+/// Names the Python that flies other simulators; without it, the `python3` of the path.
+const PYTHON: &str = "FSPID_PYTHON";
+
+/// Lets this program start itself for external controllers, and Python for other simulators. Of what they print beside a stream of commands as much is
 /// passed on as a client need not read.
 pub(crate) fn host(beside_a_stream: bool) {
+    let python = std::env::var_os(PYTHON).filter(|name| !name.is_empty());
+    set_plant_host(SimulatorHost::new(python.unwrap_or_else(|| "python3".into()).into()));
     let running = Some(PathBuf::from(RUNNING)).filter(|path| path.exists());
     let Some(program) = running.or_else(|| std::env::current_exe().ok()) else { return };
     let host = ProcessHost::new(program, &[NAME]).telling(|words| note(words));

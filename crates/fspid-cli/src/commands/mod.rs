@@ -25,6 +25,7 @@ mod progress;
 pub(crate) mod reproduce;
 pub(crate) mod schema;
 pub(crate) mod serve;
+pub(crate) mod show;
 pub(crate) mod simulate;
 pub(crate) mod surface;
 pub(crate) mod tune;

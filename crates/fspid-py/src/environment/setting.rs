@@ -263,6 +263,7 @@ pub(super) fn in_words(outcome: Outcome) -> String {
         Outcome::HitGround { at_s } => Verdict::HitGround { at_s },
         Outcome::ModeNeverBegan { mode } => Verdict::ModeNeverBegan { mode },
         Outcome::ControllerLost { at_s, loss } => Verdict::ControllerLost { at_s, loss },
+        Outcome::PlantLost { at_s, loss } => Verdict::PlantLost { at_s, loss },
     };
     verdict.to_string()
 }

@@ -190,6 +190,37 @@ impl<'a> Files<'a> {
         Ok((path, bytes))
     }
 
+    /// Where a folder of JSBSim's files lies, from the root. What is there of the aircraft, and all engines and systems, goes
+    /// into the digest, each with its name.
+    pub(crate) fn model_folder(&mut self, path: &str, aircraft: &str) -> Result<PathBuf, String> {
+        let folder = self.folder.ok_or(NO_FOLDER)?;
+        let main = format!("{path}/aircraft/{aircraft}/{aircraft}.xml");
+        let said = |reason: String| format!("{main}: {reason}");
+        self.kept.read(folder.join(&main), read_program).map_err(said)?;
+        for part in [
+            format!("{path}/aircraft/{aircraft}"),
+            format!("{path}/engine"),
+            format!("{path}/systems"),
+        ] {
+            let mut names: Vec<String> = match std::fs::read_dir(folder.join(&part)) {
+                Ok(entries) => entries
+                    .flatten()
+                    .filter_map(|entry| entry.file_name().into_string().ok())
+                    .collect(),
+                Err(_) => Vec::new(),
+            };
+            names.sort();
+            for name in names.iter().filter(|name| name.ends_with(".xml")) {
+                let file = format!("{part}/{name}");
+                self.name(&file);
+                let (_, bytes) = self.kept.read(folder.join(&file), read_program)?;
+                self.digest(name);
+                self.digest_bytes(&bytes);
+            }
+        }
+        folder.join(path).canonicalize().map_err(|error| unread_in_words(&error))
+    }
+
     /// The text of a file that is referred to.
     // A page has no files: what only they can say is not even compiled for it.
     #[inline(always)]

@@ -72,7 +72,7 @@ impl Lane {
 fn in_lane(propagation: &Propagation) -> Option<&Propagator> {
     match propagation {
         Propagation::AsOne(propagator) => Some(propagator),
-        Propagation::ByLegs(_) | Propagation::Aircraft(_) => None,
+        Propagation::ByLegs(_) | Propagation::Aircraft(_) | Propagation::External(_) => None,
     }
 }
 

@@ -276,6 +276,7 @@ fn course(flight: usize, prepared: &Prepared) -> Result<Course<'_>, Refusal> {
             Propagation::AsOne(propagator) => stages.push(Stage { from: stage.from, propagator }),
             Propagation::ByLegs(_) => return Err(refused("an actuator or gusts")),
             Propagation::Aircraft(_) => return Err(refused("a nonlinear aircraft")),
+            Propagation::External(_) => return Err(refused("another simulator")),
         }
     }
     Ok(Course { stages, now: 0 })

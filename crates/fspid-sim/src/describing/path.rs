@@ -45,10 +45,11 @@ impl LimitedPath {
     /// The path of a scenario behind a controller.
     ///
     /// # Errors
-    /// None: what a scenario has, an actuator allows.
+    /// [`SimError::OtherSimulator`] where another simulator flies: what a scenario has, an actuator allows.
     pub fn of(scenario: &Scenario, config: &PidConfig<f64>) -> Result<Self, SimError> {
+        scenario.plant.require_equations()?;
         let travel_rad = match &scenario.plant {
-            Plant::Linear(_) => None,
+            Plant::Linear(_) | Plant::External(_) => None,
             Plant::Aircraft(plant) => {
                 let trim_rad = plant.trim().point.elevator_rad;
                 let range = plant.aircraft().model().travel().elevator_rad;

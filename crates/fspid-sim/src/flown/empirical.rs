@@ -200,6 +200,7 @@ pub fn plant_around_rest(scenario: &Scenario) -> Result<LinearPlant, SimError> {
     match &scenario.plant {
         Plant::Linear(plant) => Ok(plant.clone()),
         Plant::Aircraft(plant) => plant.linear(),
+        Plant::External(_) => scenario.plant.require_equations().and(Err(SimError::NotLinear)),
     }
 }
 
@@ -262,7 +263,11 @@ impl Trials<'_> {
             failure = envelope.failure(self.criterion, length.floor_rad);
             let [middle_rad, last_rad] = envelope.oscillations_rad;
             match failure {
-                Some(Failure::Diverged { .. } | Failure::ControllerLost { .. }) => break,
+                Some(
+                    Failure::Diverged { .. }
+                    | Failure::ControllerLost { .. }
+                    | Failure::PlantLost { .. },
+                ) => break,
                 None if last_rad <= length.floor_rad => break,
                 None if last_rad > DYING * middle_rad => {
                     failure = Some(Failure::Oscillates { middle_rad, last_rad });

@@ -6,6 +6,7 @@ use std::ops::ControlFlow;
 use super::Perturbation;
 use crate::error::SimError;
 use crate::external::ControllerLoss;
+use crate::external_plant::PlantLoss;
 use crate::scenario::{Prepared, Respondent, Scenario};
 use crate::sensor::Sensor;
 use crate::trace::Outcome;
@@ -80,6 +81,13 @@ pub enum Failure {
         /// How it was lost.
         loss: ControllerLoss,
     },
+    /// Another simulator gave no answer.
+    PlantLost {
+        /// When, s.
+        at_s: f64,
+        /// How it was lost.
+        loss: PlantLoss,
+    },
     /// The error swings as far as before, or further.
     Swings {
         /// Swing of the middle third, rad.
@@ -103,6 +111,9 @@ impl fmt::Display for Failure {
             Self::HitGround { at_s } => write!(f, "hit the ground at t = {at_s:.2} s"),
             Self::ControllerLost { at_s, loss } => {
                 write!(f, "the controller {loss} at t = {at_s:.2} s")
+            }
+            Self::PlantLost { at_s, loss } => {
+                write!(f, "the simulator {loss} at t = {at_s:.2} s")
             }
             Self::Swings { .. } => {
                 f.write_str("in its last third the error swings as far as in its middle one")
@@ -150,6 +161,7 @@ impl Envelope {
             Outcome::ControllerLost { at_s, loss } => {
                 return Some(Failure::ControllerLost { at_s, loss });
             }
+            Outcome::PlantLost { at_s, loss } => return Some(Failure::PlantLost { at_s, loss }),
             // What a mode waits for says nothing of the pitch loop.
             Outcome::Completed | Outcome::ModeNeverBegan { .. } => {}
         }

@@ -56,7 +56,7 @@ impl<P: Borrow<Prepared>> InFlight<P> {
     /// At the first sample.
     ///
     /// # Errors
-    /// [`SimError::Number`] for sensors whose delay is too long for memory.
+    /// [`SimError::Number`] for sensors whose delay is too long for memory; where another simulator cannot be started.
     pub fn start(prepared: P) -> Result<Self, SimError> {
         let mut course = Course::start(prepared, &Perturbation::NONE)?;
         let seen = course.look();
@@ -155,7 +155,7 @@ impl<P: Borrow<Prepared>> Course<P> {
         Ok(Self {
             k: 0,
             stage: 0,
-            plant: all.stages[0].propagation.at_rest(),
+            plant: all.stages[0].propagation.start()?,
             sensors: Sensors::start(all)?,
             path: perturbation.start()?,
             delayed: Delay::of(all.delay_samples),
@@ -202,6 +202,9 @@ impl<P: Borrow<Prepared>> Course<P> {
         }
         let propagation = &prepared.stages[self.stage].propagation;
         let at_s = || prepared.timing.time_s(k);
+        if let Some(loss) = self.plant.plant_loss() {
+            return Err(Outcome::PlantLost { at_s: at_s(), loss });
+        }
         if self.plant.is_lost() {
             return Err(Outcome::Diverged { at_s: at_s() });
         }

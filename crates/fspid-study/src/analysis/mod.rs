@@ -108,6 +108,7 @@ impl Analysis {
     /// # Errors
     /// As [`of`](Self::of).
     pub fn of_scenario(scenario: &Scenario, question: Question) -> Result<Self, SimError> {
+        scenario.plant.require_equations()?;
         let loops = scenario
             .controllers
             .iter()

@@ -4,7 +4,7 @@ use std::fmt;
 
 use fspid_sim::signal::Edge;
 use fspid_sim::stability::Unstable;
-use fspid_sim::{ControllerLoss, Exit, Outcome, Timing, Trace};
+use fspid_sim::{ControllerLoss, Exit, Outcome, PlantLoss, Timing, Trace};
 
 use super::{
     Absent, CommandEffort, ErrorIntegrals, Measured, StepMetrics, StepWindow, left_validity, short,
@@ -40,6 +40,13 @@ pub enum Verdict {
         /// How it was lost.
         loss: ControllerLoss,
     },
+    /// Another simulator, which flies the aircraft, crashed, hung, ended or answered nothing that is a flight.
+    PlantLost {
+        /// When, s.
+        at_s: f64,
+        /// How it was lost.
+        loss: PlantLoss,
+    },
     /// The loop is unstable at the gains that it has at rest, although the flight did not diverge in its window.
     Unstable {
         /// Spectral radius of the sampled closed loop.
@@ -74,6 +81,7 @@ impl Verdict {
             Self::Diverged { .. }
             | Self::HitGround { .. }
             | Self::ControllerLost { .. }
+            | Self::PlantLost { .. }
             | Self::Unstable { .. }
             | Self::ModeNeverBegan { .. }
             | Self::LeftRange(_) => true,
@@ -90,6 +98,7 @@ impl Verdict {
             Self::Diverged { .. } => "diverged",
             Self::HitGround { .. } => "hit the ground",
             Self::ControllerLost { .. } => "controller lost",
+            Self::PlantLost { .. } => "plant lost",
             Self::Unstable { .. } => "unstable at rest",
             Self::ModeNeverBegan { .. } => "mode never began",
             Self::LeftRange(_) => "left the range",
@@ -102,6 +111,7 @@ impl Verdict {
             Self::Diverged { at_s } => Some(Absent::Diverged { at_s }),
             Self::HitGround { at_s } => Some(Absent::HitGround { at_s }),
             Self::ControllerLost { at_s, loss } => Some(Absent::ControllerLost { at_s, loss }),
+            Self::PlantLost { at_s, loss } => Some(Absent::PlantLost { at_s, loss }),
             Self::Unstable { spectral_radius, .. } => Some(Absent::Unstable { spectral_radius }),
             Self::Settled
             | Self::NotSettled { .. }
@@ -122,6 +132,9 @@ impl fmt::Display for Verdict {
             Self::HitGround { at_s } => write!(f, "hit the ground at t = {} s", short(*at_s)),
             Self::ControllerLost { at_s, loss } => {
                 write!(f, "the controller {loss} at t = {} s", short(*at_s))
+            }
+            Self::PlantLost { at_s, loss } => {
+                write!(f, "the simulator {loss} at t = {} s", short(*at_s))
             }
             Self::Unstable { spectral_radius, doubling_s } => {
                 write!(f, "unstable at rest (")?;
@@ -188,6 +201,7 @@ impl FlightMetrics {
             (Outcome::ControllerLost { at_s, loss }, _) => {
                 Some(Verdict::ControllerLost { at_s, loss })
             }
+            (Outcome::PlantLost { at_s, loss }, _) => Some(Verdict::PlantLost { at_s, loss }),
             (Outcome::Completed | Outcome::ModeNeverBegan { .. }, Some(unstable)) => {
                 Some(Verdict::Unstable {
                     spectral_radius: unstable.spectral_radius,

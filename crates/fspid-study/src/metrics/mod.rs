@@ -12,7 +12,7 @@ pub use flight::{EdgeMetrics, FlightMetrics, Verdict};
 pub use step::{StepMetrics, StepWindow};
 
 use fspid_diagnostics::digits::without_zeros;
-use fspid_sim::ControllerLoss;
+use fspid_sim::{ControllerLoss, PlantLoss};
 
 /// Why a measure has no value.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -37,6 +37,14 @@ pub enum Absent {
         at_s: f64,
         /// How it was lost.
         loss: ControllerLoss,
+    },
+    /// Another simulator gave no answer.
+    #[error("the simulator {loss} at t = {} s", short(*at_s))]
+    PlantLost {
+        /// When, s.
+        at_s: f64,
+        /// How it was lost.
+        loss: PlantLoss,
     },
     /// The loop is unstable, whatever the window shows.
     #[error("the loop is unstable: spectral radius {spectral_radius:.6} of the sampled loop")]

@@ -1,7 +1,7 @@
 //! The report of a user's own scenario: verdict first.
 
 use fspid_core::{GainCoupling, InputSets, SecondInput, TunerSettings};
-use fspid_sim::Controller;
+use fspid_sim::{Controller, Plant};
 use serde::Serialize;
 
 use super::supervisor;
@@ -70,6 +70,7 @@ fn outcome(result: &ControllerResult) -> Outcome {
         Verdict::Diverged { .. } => ("bad", "\u{2717} DIVERGED"),
         Verdict::HitGround { .. } => ("bad", "\u{2717} HIT THE GROUND"),
         Verdict::ControllerLost { .. } => ("bad", "\u{2717} CONTROLLER LOST"),
+        Verdict::PlantLost { .. } => ("bad", "\u{2717} PLANT LOST"),
         Verdict::Unstable { .. } => ("bad", "\u{2717} UNSTABLE AT REST"),
         Verdict::LeftRange(_) => ("bad", "\u{2717} LEFT THE RANGE OF ITS DATA"),
         Verdict::ModeNeverBegan { .. } => ("bad", "\u{2717} MODE NEVER BEGAN"),
@@ -83,7 +84,7 @@ fn outcome(result: &ControllerResult) -> Outcome {
             "The aircraft came down to the ground at t = {} s, where the flight ends. Nothing can be measured in it.",
             fixed(at_s, 3)
         ),
-        Verdict::ControllerLost { .. } => format!(
+        Verdict::ControllerLost { .. } | Verdict::PlantLost { .. } => format!(
             "{}, where the flight ends. Nothing can be measured in it.",
             capital(&verdict.to_string())
         ),
@@ -188,9 +189,14 @@ impl User<'_> {
         let ended = self.simulation.results.iter().filter(|result| is_cut_short(result));
         let ended: Vec<&str> = ended.map(|result| result.name.as_str()).collect();
         let leaving = drawing.leaving();
-        let aircraft = match self.study.scenario.plant.aircraft() {
-            Some(_) => " Pitch counts from the trim; the elevator is the whole deflection.",
-            None => "",
+        let aircraft = match &self.study.scenario.plant {
+            Plant::Linear(_) => "",
+            Plant::Aircraft(_) => {
+                " Pitch counts from the trim; the elevator is the whole deflection."
+            }
+            Plant::External(_) => {
+                " Pitch counts from the trim; the elevator is the whole deflection, as the simulator has it at each sample."
+            }
         };
         let part = |(n, (words, svg)): (usize, (String, Svg))| match n {
             0 => {

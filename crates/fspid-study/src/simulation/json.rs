@@ -90,6 +90,9 @@ fn outcome(verdict: Verdict) -> Value {
         Verdict::ControllerLost { at_s, loss } => {
             json!({ "kind": kind, "at_s": finite(at_s), "loss": loss.kind() })
         }
+        Verdict::PlantLost { at_s, loss } => {
+            json!({ "kind": kind, "at_s": finite(at_s), "loss": loss.kind() })
+        }
         Verdict::Unstable { spectral_radius, doubling_s } => json!({
             "kind": kind,
             "spectral_radius": finite(spectral_radius),

@@ -88,6 +88,7 @@ fn step(step: &StepMetrics) -> String {
         reason @ (Absent::Diverged { .. }
         | Absent::HitGround { .. }
         | Absent::ControllerLost { .. }
+        | Absent::PlantLost { .. }
         | Absent::Unstable { .. }
         | Absent::NotFinite),
     ) = step.overshoot_pct

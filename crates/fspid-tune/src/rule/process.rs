@@ -107,6 +107,7 @@ impl Process {
 
 /// The plant at the start, an aircraft's linear model at its trim in its place.
 fn first_plant(scenario: &Scenario) -> Result<LinearPlant, SimError> {
+    scenario.plant.require_equations()?;
     match (scenario.plant.linear(), scenario.plant.aircraft()) {
         (Some(plant), _) => Ok(plant.clone()),
         (None, Some(aircraft)) => AircraftPlant::linear(aircraft),

@@ -176,8 +176,11 @@ pub(super) fn experiment(
     match outcome {
         Outcome::Diverged { at_s } => return Err(RuleError::RelayDiverged { at_s }),
         Outcome::HitGround { at_s } => return Err(RuleError::RelayHitGround { at_s }),
-        // A relay is no program that could be lost.
-        Outcome::Completed | Outcome::ModeNeverBegan { .. } | Outcome::ControllerLost { .. } => {}
+        // A relay is no program that could be lost, and what another simulator flies is not asked.
+        Outcome::Completed
+        | Outcome::ModeNeverBegan { .. }
+        | Outcome::ControllerLost { .. }
+        | Outcome::PlantLost { .. } => {}
     }
     let cycles = relay.borrow().cycles.len();
     let Some((settled, k)) = found else {

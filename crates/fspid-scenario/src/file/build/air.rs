@@ -27,6 +27,10 @@ pub(super) fn weather(
     files: &mut Files<'_>,
     (section, flown): (&Section, &Flown),
 ) -> Option<Weather> {
+    // Another simulator has its own, and what the file lets move was refused.
+    if flown.plant.external().is_some() {
+        return None;
+    }
     let parts = [WIND, TURBULENCE].map(|key| section.get(key));
     let parts = parts.into_iter().flatten().chain(section.sections(GUST));
     let silent = flown.plant.linear().is_some_and(|plant| !plant.feels_gusts());

@@ -41,7 +41,13 @@ pub(super) fn airframes(
             airspeed_m_s: (!way.assumed).then_some(way.course.airspeed_m_s),
             gravity_m_s2: way.gravity_m_s2,
         }),
-        None => section.get(keys::PLANT).map(of_file),
+        None => match section.get(keys::PLANT) {
+            Some(part) => Some(of_file(part)),
+            // How fast another simulator flies is its own to say.
+            None => section
+                .get(keys::SIMULATOR)
+                .map(|_| Airframe { airspeed_m_s: None, gravity_m_s2: STANDARD_GRAVITY_M_S2 }),
+        },
     };
     first.into_iter().chain(section.sections(keys::PLANT_CHANGE).iter().map(of_file)).collect()
 }

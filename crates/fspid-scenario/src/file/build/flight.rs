@@ -8,7 +8,7 @@ use fspid_aircraft::{Aircraft, Environment, ForceModel, Quantity, TrimFailure, T
 use fspid_sim::aircraft::Forces;
 use fspid_sim::{AircraftPlant, Course, Plant, SimError};
 
-use super::{data, judged, linear_aircraft, loading, rad};
+use super::{data, judged, linear_aircraft, loading, rad, simulator};
 use crate::aircraft::{AircraftFailure, Units};
 use crate::carried::aircraft_text;
 use crate::file::aircraft::{Given, aircraft_data, quantity};
@@ -16,12 +16,12 @@ use crate::file::files::Files;
 use crate::file::spec::AIRCRAFT_FILE;
 use crate::file::spec::flight as keys;
 use crate::file::spec::flight::{AtmosphereWord, ModelWord};
-use crate::file::spec::scenario::{AIRCRAFT, PLANT};
+use crate::file::spec::scenario::{AIRCRAFT, PLANT, SIMULATOR};
 use crate::flyer::flyer;
 use crate::keyed::{Key, Section};
 use fspid_diagnostics::Report;
 
-/// What flies, of the scenario's `plant` or `aircraft`.
+/// What flies, of the scenario's `plant`, `aircraft` or `simulator`.
 pub(super) fn flown(
     report: &mut Report,
     files: &mut Files<'_>,
@@ -30,6 +30,9 @@ pub(super) fn flown(
     let sound = |key| section.get(key).filter(|part: &&Section| part.sound);
     if let Some(part) = sound(AIRCRAFT) {
         return aircraft(report, files, part);
+    }
+    if let Some(part) = sound(SIMULATOR) {
+        return simulator::flown(report, files, section, part);
     }
     let plant = data::plant(report, files, sound(PLANT)?)?;
     Some(Flown { plant: plant.into(), way: None })

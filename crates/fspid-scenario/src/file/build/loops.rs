@@ -22,6 +22,10 @@ const LARGE_GAIN: f64 = 1e20;
 
 /// Asks of every loop what its flight asks before it begins.
 pub(in crate::file) fn check(report: &mut Report, section: &Section, scenario: &Scenario) {
+    // Loops around another simulator are not asked at rest.
+    if scenario.plant.external().is_some() {
+        return;
+    }
     let trimmed = scenario.plant.aircraft().map(AircraftPlant::linear).transpose();
     let sampled = trimmed.and_then(|trimmed| {
         let plant = trimmed.as_ref().map(|plant| SampledPlant::of(scenario, plant));

@@ -20,6 +20,7 @@ mod range_rule;
 mod schedule;
 mod sensor;
 mod signal;
+mod simulator;
 mod supervisor;
 mod timing;
 

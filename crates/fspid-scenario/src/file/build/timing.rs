@@ -9,6 +9,7 @@ use crate::file::files::Files;
 use crate::file::spec::flight;
 use crate::file::spec::scenario as keys;
 use crate::file::spec::signal::FREQUENCY_HZ;
+use crate::file::spec::simulator;
 use crate::keyed::{KeyName, Section};
 use fspid_diagnostics::Report;
 
@@ -88,6 +89,9 @@ pub(super) fn place_of_plant(section: &Section) -> Option<(&Section, KeyName)> {
     if let Some(part) = section.get(keys::PLANT) {
         return Some((part, key_of(part)));
     }
+    if let Some(part) = section.get(keys::SIMULATOR) {
+        return Some((part, simulator::AIRCRAFT.into()));
+    }
     let part = section.get(keys::AIRCRAFT)?;
     let key = if part.given(flight::FILE) { flight::FILE } else { flight::NAME };
     Some((part, key.into()))
@@ -107,7 +111,7 @@ pub(super) fn plant_changes(
     plant: Option<&Plant>,
     sampling: Option<Sampling>,
 ) -> Vec<PlantChange> {
-    if let Some(Plant::Aircraft(_)) = plant {
+    if let Some(Plant::Aircraft(_) | Plant::External(_)) = plant {
         parts.iter().for_each(|part| refuse_change(report, part));
         return Vec::new();
     }
@@ -153,7 +157,7 @@ pub(super) fn plant_changes(
 }
 
 fn refuse_change(report: &mut Report, part: &Section) {
-    let message = "a nonlinear aircraft cannot be changed in flight";
+    let message = "an aircraft that is not linear cannot be changed in flight";
     report.value(part.place, &part.path, message, "changes of a `plant`");
 }
 

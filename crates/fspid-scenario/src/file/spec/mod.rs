@@ -17,6 +17,7 @@ pub(crate) mod scenario;
 pub(crate) mod schedule;
 pub(crate) mod sensor;
 pub(crate) mod signal;
+pub(crate) mod simulator;
 pub(crate) mod tables;
 pub(crate) mod tuning;
 

@@ -20,6 +20,7 @@ use super::dispersion::DISPERSION_TABLE;
 use super::flight::AIRCRAFT_TABLE;
 use super::sensor::SENSOR_TABLE;
 use super::signal::{DISTURBANCE_TABLE, SETPOINT_TABLE};
+use super::simulator::SIMULATOR_TABLE;
 use super::tuning::{CONTEST_TABLE, TUNING_TABLE};
 use crate::carried::plant_names;
 use crate::file::overrides;
@@ -33,6 +34,11 @@ pub(crate) const AIRCRAFT: Key<Section> = optional(
     "aircraft",
     table(&AIRCRAFT_TABLE),
     "In place of a plant: an aircraft from its data, at a speed and an altitude.",
+);
+pub(crate) const SIMULATOR: Key<Section> = optional(
+    "simulator",
+    table(&SIMULATOR_TABLE),
+    "In place of a plant: an aircraft that another simulator flies.",
 );
 pub(crate) const ACTUATOR: Key<Section> = optional(
     "actuator",
@@ -116,12 +122,12 @@ pub(crate) const SET: Key<Item> = optional(
 pub(crate) static SCENARIO: Table = choosing(
     "A flight to be simulated, once for each controller.",
     &[
-        &[&SCHEMA, &NAME, &PLANT, &AIRCRAFT, &ACTUATOR, &LOOP, &SETPOINT, &SENSOR],
+        &[&SCHEMA, &NAME, &PLANT, &AIRCRAFT, &SIMULATOR, &ACTUATOR, &LOOP, &SETPOINT, &SENSOR],
         &[&ENGINE, &LATERAL, &GLIDE_SLOPE, &OUTER_LOOP, &TOTAL_ENERGY, &MODE],
         &[&WIND, &GUST, &TURBULENCE, &DISTURBANCE, &PLANT_CHANGE, &CONTROLLER],
         &[&REQUIREMENT, &DISPERSION, &TUNING, &CONTEST, &SET],
     ],
-    &[one_of!(PLANT, AIRCRAFT)],
+    &[one_of!(PLANT, AIRCRAFT, SIMULATOR)],
 );
 
 words_of!(ElevatorSign {

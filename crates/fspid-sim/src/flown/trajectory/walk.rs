@@ -73,6 +73,7 @@ pub(super) fn walk(
     {
         return Err(SimError::Structure);
     }
+    scenario.plant.require_equations()?;
     let prepared = scenario.prepare()?;
     let system = match controller {
         Controller::SelfTuning(fspid) => system_of(fspid.tuner().supervisor()),
@@ -269,7 +270,7 @@ fn faults(prepared: &Prepared, controller: &Controller) -> Result<Faults, SimErr
 }
 
 fn is_linear(propagation: &Propagation) -> bool {
-    !matches!(propagation, Propagation::Aircraft(_))
+    !matches!(propagation, Propagation::Aircraft(_) | Propagation::External(_))
 }
 
 fn padded(row: &[f64], size: usize) -> Vec<f64> {

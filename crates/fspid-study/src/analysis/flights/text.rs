@@ -56,7 +56,9 @@ fn between(margin: &Margin, way: &str, shown: impl Fn(f64) -> String) -> String 
         Margin::Between { holds, fails, failure } => {
             // Who reads "fails" thinks of the loop.
             let lost = match failure {
-                Failure::ControllerLost { .. } => format!(" ({failure})"),
+                Failure::ControllerLost { .. } | Failure::PlantLost { .. } => {
+                    format!(" ({failure})")
+                }
                 _ => String::new(),
             };
             format!("holds at {}, fails at {}{lost}", shown(*holds), shown(*fails))

@@ -27,6 +27,7 @@ pub(super) fn cases(study: &Study, requirement: &Requirement) -> Result<Vec<Case
 
 /// The linear plants, an aircraft's model at its trim in its place.
 fn plants(scenario: &Scenario) -> Result<Vec<(PlantAt, LinearPlant)>, SimError> {
+    scenario.plant.require_equations()?;
     let first = match (scenario.plant.linear(), scenario.plant.aircraft()) {
         (Some(plant), _) => plant.clone(),
         (None, Some(aircraft)) => aircraft.linear()?,

@@ -113,7 +113,8 @@ fn diverged(result: &ControllerResult) -> Option<Case> {
         fspid_sim::Outcome::Completed
         | fspid_sim::Outcome::ModeNeverBegan { .. }
         | fspid_sim::Outcome::HitGround { .. }
-        | fspid_sim::Outcome::ControllerLost { .. } => None,
+        | fspid_sim::Outcome::ControllerLost { .. }
+        | fspid_sim::Outcome::PlantLost { .. } => None,
     }
 }
 

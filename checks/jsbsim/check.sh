@@ -1,0 +1,14 @@
+#!/usr/bin/env bash
+# JSBSim flies: trims of published models, the same bits twice and on any number of threads, errors by name, and how fast.
+# check.sh [fspid]; installs jsbsim 1.3.3 from PyPI into a folder of its own.
+set -euo pipefail
+here="$(cd "$(dirname "$0")" && pwd)"
+root="$(cd "$here/../.." && pwd)"
+fspid="${1:-$root/target/release/fspid}"
+work="$(mktemp -d)"
+trap 'rm -rf "$work"' EXIT
+
+python3 -m venv "$work/python"
+"$work/python/bin/pip" install --quiet --disable-pip-version-check jsbsim==1.3.3
+export FSPID_PYTHON="$work/python/bin/python"
+"$FSPID_PYTHON" "$here/flights.py" "$fspid" "$work"

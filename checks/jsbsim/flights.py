@@ -1,0 +1,185 @@
+"""What `fspid` makes of JSBSim's flights; called by check.sh with the program and a folder."""
+
+import csv
+import json
+import math
+import os
+import subprocess
+import sys
+import time
+
+import jsbsim
+
+FSPID, WORK = (os.path.abspath(name) for name in sys.argv[1:3])
+
+SCENARIO = """schema = 1
+name = "{aircraft}"
+[simulator]
+kind = "jsbsim"
+aircraft = "{aircraft}"
+{speed}
+altitude_ft = {altitude}
+{more}
+[actuator]
+time_constant_s = 0.1
+[loop]
+sample_period_s = {period}
+duration_s = {duration}
+[setpoint]
+kind = "step"
+at_s = 1.0
+amplitude_deg = 2.0
+[[controller]]
+name = "PID"
+kind = "pid"
+kp = {kp}
+ki = {ki}
+kd = 0.1
+{behind}
+"""
+
+# Trims of JSBSim 1.3.3 with the wheels in, found by hand: angle of attack and elevator, deg, and true airspeed, ft/s.
+TRIMS = [
+    ("B747", "mach = 0.65", 20000, 1.982, -3.993, 674.0),
+    ("B747", "mach = 0.40", 5000, 4.104, -5.998, 438.8),
+    ("737", "mach = 0.65", 20000, 1.627, -2.396, 674.0),
+    ("A320", "mach = 0.65", 20000, 1.397, -3.133, 674.0),
+    ("MD11", "mach = 0.78", 30000, 2.778, -2.217, 776.0),
+    ("L17", "calibrated_kt = 104", 1000, 2.967, -2.495, 178.1),
+    ("L17", "calibrated_kt = 120", 3000, 1.080, -0.904, 211.6),
+    ("c172x", "calibrated_kt = 100", 4000, 0.795, 5.142, 179.0),
+    ("c172p", "calibrated_kt = 100", 4000, 0.385, 4.305, 179.0),
+]
+
+
+def write(name, aircraft, speed, altitude, **more):
+    values = {"more": "", "behind": "", "period": 0.01, "duration": 10.0, "kp": 1.0, "ki": 0.8, **more}
+    path = f"{WORK}/{name}.toml"
+    with open(path, "w") as file:
+        file.write(SCENARIO.format(aircraft=aircraft, speed=speed, altitude=altitude, **values))
+    return path
+
+
+def fspid(*arguments, codes=(0,)):
+    done = subprocess.run([FSPID, *arguments], capture_output=True, text=True, cwd=WORK)
+    assert done.returncode in codes, (arguments, done.returncode, done.stdout, done.stderr)
+    return done
+
+
+def rows(name):
+    with open(f"{WORK}/{name}") as file:
+        return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
+
+
+def trims():
+    for aircraft, speed, altitude, alpha, elevator, true_ft_s in TRIMS:
+        path = write("trim", aircraft, speed, altitude, duration=3.0)
+        fspid("simulate", path, "--trace", "trim.csv", codes=(0, 1))
+        first = rows("trim.csv")[0]
+        found = (first["alpha_deg"], first["elevator_deg"], first["airspeed_m_s"] / 0.3048)
+        for value, wanted, near in zip(found, (alpha, elevator, true_ft_s), (6e-4, 6e-4, 0.06)):
+            assert abs(value - wanted) < near, (aircraft, found, (alpha, elevator, true_ft_s))
+        assert abs(first["load_factor"] - math.cos(math.radians(alpha))) < 0.01, first
+    print(f"trims: {len(TRIMS)} conditions as JSBSim's own")
+
+
+def same_bits():
+    path = write("same", "c172x", "calibrated_kt = 100", 4000)
+    for name in ("one.csv", "two.csv"):
+        fspid("simulate", path, "--trace", name)
+    one, two = (open(f"{WORK}/{name}", "rb").read() for name in ("one.csv", "two.csv"))
+    assert one == two
+    behind = """[[dispersion]]
+path = "simulator.calibrated_kt"
+distribution = "uniform"
+lower = 0.8
+upper = 1.2
+"""
+    path = write("campaign", "B747", "calibrated_kt = 300", 20000, behind=behind, duration=5.0)
+    for threads in ("1", "2"):
+        fspid("campaign", "run", path, "--runs", "6", "--quiet", "--threads", threads, "--out", threads)
+    one, two = (open(f"{WORK}/{threads}/campaign.parquet", "rb").read() for threads in "12")
+    assert one == two
+    print("the same bits: a flight twice, a campaign of 6 flights on 1 and 2 threads")
+
+
+def turbulence():
+    """Turbulence shakes, and its seed is what it depends on."""
+    more = """seed = {seed}
+[[simulator.property]]
+name = "atmosphere/turb-type"
+value = 4
+[[simulator.property]]
+name = "atmosphere/turbulence/milspec/windspeed_at_20ft_AGL-fps"
+value = 50.0
+[[simulator.property]]
+name = "atmosphere/turbulence/milspec/severity"
+value = 4
+"""
+    texts = []
+    for seed in (1, 1, 2):
+        path = write("rough", "c172x", "calibrated_kt = 100", 4000, more=more.format(seed=seed), duration=20.0)
+        fspid("simulate", path, "--trace", "rough.csv", codes=(0, 1))
+        texts.append(open(f"{WORK}/rough.csv").read())
+    assert texts[0] == texts[1] and texts[0] != texts[2]
+    felt = [row["load_factor"] for row in rows("rough.csv")]
+    bank = [abs(row["bank_deg"]) for row in rows("rough.csv")]
+    assert max(felt) - min(felt) > 0.05 and max(bank) < 20.0, (max(felt), min(felt), max(bank))
+    print(f"turbulence: load factor {min(felt):.2f} to {max(felt):.2f}, bank up to {max(bank):.1f} deg")
+
+
+def told():
+    wrong = [
+        (("c172y", "calibrated_kt = 100", 4000), {}, "there is no aircraft c172y; allowed is one of its aircraft, such as c172"),
+        (("B747", "calibrated_kt = 60", 40000), {}, "cannot trim B747 at this condition"),
+        (("B747", "calibrated_kt = 60", 40000), {}, "wdot"),
+        (("B747", "mach = 0.65", 20000), {"more": 'version = "1.2.1"'}, "version 1.3.3 is installed, and the scenario flies version 1.2.1"),
+        (("B747", "mach = 0.65", 20000), {"more": '[[simulator.property]]\nname = "no/such"\nvalue = 1'}, "B747 has no property no/such"),
+    ]
+    for condition, more, words in wrong:
+        done = fspid("simulate", write("wrong", *condition, **more), codes=(2,))
+        assert words in done.stderr, done.stderr
+    print(f"errors: {len(wrong)} by name")
+
+
+def bare(steps):
+    """JSBSim alone, as fast as its Python package flies the same aircraft."""
+    executive = jsbsim.FGFDMExec(jsbsim.get_default_root_dir())
+    executive.set_output_path(WORK)
+    executive.load_model("c172x")
+    executive.disable_output()
+    executive.set_dt(0.01)
+    executive["ic/h-sl-ft"], executive["ic/vc-kts"] = 4000, 100
+    executive["propulsion/set-running"] = -1
+    executive.run_ic()
+    executive.do_trim(1)
+    begun = time.perf_counter()
+    for _ in range(steps):
+        executive.run()
+    return time.perf_counter() - begun
+
+
+def speed():
+    """Of 300 s of flight less 100 s, so that what starting takes is in neither."""
+    times = {}
+    for period in (0.01, 0.05):
+        spent = []
+        for duration in (100.0, 300.0):
+            path = write("long", "c172x", "calibrated_kt = 100", 4000, period=period, duration=duration, kp=0.5, ki=0.4)
+            begun = time.perf_counter()
+            fspid("simulate", path, "--format", "json", codes=(0, 1))
+            spent.append(time.perf_counter() - begun)
+        times[period] = spent[1] - spent[0]
+    alone = bare(20000)
+    for period, flown in times.items():
+        print(f"speed: 20000 steps, a sample each {period} s: {flown:.2f} s, bare JSBSim {alone:.2f} s, ratio {alone / flown:.2f}")
+
+
+def main():
+    jsbsim.FGJSBBase().debug_lvl = 0
+    for part in (trims, same_bits, turbulence, told, speed):
+        part()
+    print("c172x:", json.loads(fspid("simulate", "same.toml", "--format", "json", codes=(0, 1)).stdout)["controllers"][0]["verdict"])
+
+
+main()

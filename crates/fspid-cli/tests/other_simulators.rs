@@ -1,0 +1,291 @@
+//! Aircraft that another simulator flies: verdicts, campaigns and refusals, with a stand-in for the simulator's process.
+//! JSBSim itself flies in `checks/jsbsim`.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+use crate::common::{code, json, text};
+
+/// Speaks as the bridge to JSBSim does, and flies $\ddot\theta = -4 \theta - 2.4 \dot\theta - 4 (\delta_e - \delta_0)$, or
+/// does what its aircraft is called.
+const STAND_IN: &str = r#"
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <signal.h>
+#include <unistd.h>
+static void all(const void *from, size_t size) {
+    const char *bytes = from;
+    while (size > 0) { ssize_t put = write(0, bytes, size); if (put <= 0) _exit(0); bytes += put; size -= (size_t)put; }
+}
+static void words(const char *text) { uint32_t size = (uint32_t)strlen(text); all(&size, 4); all(text, size); }
+static void sample(uint64_t number, double theta, double q, double elevator) {
+    double n[16] = { 0.02 + theta, q, 0, 100, 1000, 1000, 0.02, elevator, 0, 0, 0, 0, 0, 0, -1, 0 };
+    all(&number, 8); all(n, sizeof n);
+}
+static const char *of(int count, char **arguments, const char *key) {
+    for (int i = 1; i < count; i++)
+        if (!strncmp(arguments[i], key, strlen(key)) && arguments[i][strlen(key)] == '=') return arguments[i] + strlen(key) + 1;
+    return "";
+}
+int main(int count, char **arguments) {
+    const char *does = of(count, arguments, "aircraft");
+    int steps = atoi(of(count, arguments, "steps"));
+    double step_s = atof(of(count, arguments, "step_s")), trim = -0.05, theta = 0, q = 0;
+    double bias = atof(of(count, arguments, "altitude_m")) * 1e-6;
+    char kind = 0;
+    if (!strcmp(does, "refused")) { kind = 1; all(&kind, 1); printf("wdot cannot be trimmed\n"); fflush(stdout);
+        words("cannot trim refused at this condition: {said}"); words("a speed at which it flies"); return 0; }
+    if (!strcmp(does, "other-version")) { kind = 2; all(&kind, 1); words("version 0.1 is installed, and the scenario flies version 1.3.3"); words(""); return 0; }
+    if (!strcmp(does, "mute")) { printf("Traceback: no module\n"); return 3; }
+    all(&kind, 1); words("1.3.3"); sample(0, theta, q, trim);
+    for (uint64_t number = 1;; number++) {
+        double elevator = trim;
+        for (int i = 0; i < steps; i++) {
+            if (read(0, &elevator, 8) != 8) return 0;
+            q += step_s * (-4 * theta - 2.4 * q - 4 * (elevator - trim) + bias);
+            theta += step_s * q;
+        }
+        if (number == 50) {
+            if (!strcmp(does, "crashes")) raise(SIGKILL);
+            if (!strcmp(does, "ends")) exit(7);
+            if (!strcmp(does, "hangs")) for (;;) pause();
+            if (!strcmp(does, "nan")) theta = NAN;
+            if (!strcmp(does, "skips")) number++;
+            if (!strcmp(does, "gives-up")) number = UINT64_MAX;
+            if (!strcmp(does, "half")) { all(&number, 5); return 0; }
+        }
+        sample(number, theta, q, elevator);
+    }
+}
+"#;
+
+/// A folder with the stand-in, and a scenario that flies the aircraft of that name.
+fn folder(aircraft: &str) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scenario = format!(
+        r#"schema = 1
+name = "another simulator"
+[simulator]
+kind = "jsbsim"
+aircraft = "{aircraft}"
+airspeed_m_s = 100.0
+altitude_m = 1000.0
+answer_limit_s = 0.5
+[loop]
+sample_period_s = 0.02
+duration_s = 10.0
+[setpoint]
+kind = "step"
+at_s = 0.5
+amplitude_deg = 2.0
+[[controller]]
+name = "PID"
+kind = "pid"
+kp = 1.0
+ki = 1.5
+kd = 0.2
+"#
+    );
+    std::fs::write(folder.path().join("flown.toml"), scenario).expect("a scenario");
+    std::fs::write(folder.path().join("stand-in.c"), STAND_IN).expect("a source");
+    let built = Command::new("cc")
+        .args(["-std=gnu99", "-O1", "-o", "stand-in", "stand-in.c", "-lm"])
+        .current_dir(&folder)
+        .status();
+    assert!(built.expect("a compiler").success());
+    folder
+}
+
+fn fspid(folder: &Path, python: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_fspid"))
+        .args(arguments)
+        .current_dir(folder)
+        .env("FSPID_PYTHON", python)
+        .output()
+        .expect("it runs")
+}
+
+fn asked(aircraft: &str, arguments: &[&str]) -> Output {
+    let folder = folder(aircraft);
+    fspid(folder.path(), &folder.path().join("stand-in"), arguments)
+}
+
+/// The end of the only controller's flight.
+fn ending(output: &Output) -> Value {
+    json(output)["controllers"][0].clone()
+}
+
+const SIMULATE: &[&str] = &["simulate", "flown.toml", "--format", "json"];
+
+#[test]
+fn what_another_simulator_flies_is_measured_and_judged() {
+    let output = asked("flies", SIMULATE);
+    assert_eq!(code(&output), 0, "{}", text(&output.stderr));
+    assert_eq!(ending(&output)["verdict"], "settled");
+}
+
+/// The sums of the stand-in, made here: our loop with an ideal servo asks for the trim less the command.
+#[test]
+fn the_trace_is_that_of_the_simulator_and_its_elevator_is_the_one_that_it_shows() {
+    let folder = folder("flies");
+    let python = folder.path().join("stand-in");
+    let output = fspid(folder.path(), &python, &["simulate", "flown.toml", "--trace", "t.csv"]);
+    assert_eq!(code(&output), 0, "{}", text(&output.stderr));
+    let csv = std::fs::read_to_string(folder.path().join("t.csv")).expect("a trace");
+    let mut lines = csv.lines();
+    let names: Vec<&str> = lines.next().expect("a head").split(',').collect();
+    let place = |name: &str| {
+        names.iter().position(|it| it.contains(name)).unwrap_or_else(|| panic!("{name}: {names:?}"))
+    };
+    let rows: Vec<Vec<f64>> = lines
+        .map(|line| line.split(',').map(|it| it.parse().expect("a number")).collect())
+        .collect();
+    let (theta, command, elevator) = (place("theta"), place("command"), place("elevator"));
+    let degree = std::f64::consts::PI / 180.0;
+    let (mut theta_rad, mut q_rad_s) = (0.0, 0.0);
+    for two in rows.windows(2) {
+        let [now, next] = two else { continue };
+        let command_rad = now[command] * degree;
+        for _ in 0..2 {
+            let acceleration = -4.0 * theta_rad - 2.4 * q_rad_s + 4.0 * command_rad + 1e-3;
+            q_rad_s += 0.01 * acceleration;
+            theta_rad += 0.01 * q_rad_s;
+        }
+        assert!((next[theta] * degree - theta_rad).abs() < 1e-9, "{now:?} {next:?}");
+        assert!((next[elevator] * degree - (-0.05 - command_rad)).abs() < 1e-9);
+    }
+    assert!(names.contains(&"load_factor") || names.iter().any(|it| it.contains("load")));
+}
+
+#[test]
+fn a_simulator_that_is_lost_ends_its_flight_as_a_verdict_and_never_as_a_hang() {
+    let lost = [
+        ("crashes", "crashed", "crashed with SIGKILL"),
+        ("ends", "ended", "ended its process with code 7"),
+        ("hangs", "silent", "gave no answer within 0.5 s"),
+        ("nan", "not finite", "a number that is not finite"),
+        ("skips", "no answer", "wrote something else than an answer"),
+        ("gives-up", "refused", "said that it cannot go on"),
+        ("half", "ended", "ended its process with code 0"),
+    ];
+    for (aircraft, loss, words) in lost {
+        let output = asked(aircraft, SIMULATE);
+        assert_eq!(code(&output), 1, "{aircraft}: {}", text(&output.stderr));
+        let outcome = ending(&output)["outcome"].clone();
+        assert_eq!(
+            (outcome["kind"].as_str(), outcome["loss"].as_str()),
+            (Some("plant lost"), Some(loss))
+        );
+        let told = text(&asked(aircraft, &["simulate", "flown.toml"]).stdout);
+        assert!(told.contains("the simulator ") && told.contains(words), "{aircraft}: {told}");
+    }
+}
+
+#[test]
+fn what_cannot_be_flown_ends_with_2_and_says_why_and_what_would_be_right() {
+    let refused = [
+        (
+            "refused",
+            "cannot trim refused at this condition: wdot cannot be trimmed; allowed is a speed",
+        ),
+        ("other-version", "version 0.1 is installed, and the scenario flies version 1.3.3"),
+        ("mute", "ended its process with code 3 before its flight, and said: Traceback: no module"),
+    ];
+    for (aircraft, words) in refused {
+        let output = asked(aircraft, SIMULATE);
+        assert_eq!(code(&output), 2, "{aircraft}");
+        let message = json(&output)["error"]["message"].to_string();
+        assert!(message.contains("JSBSim") && message.contains(words), "{aircraft}: {message}");
+    }
+    let folder = folder("flies");
+    let nowhere = fspid(folder.path(), Path::new("/no/python"), SIMULATE);
+    assert_eq!(code(&nowhere), 2);
+    let message = json(&nowhere)["error"]["message"].to_string();
+    assert!(
+        message.contains("there is no Python at /no/python; install one, or name one in"),
+        "{message}"
+    );
+}
+
+#[test]
+fn what_asks_equations_is_refused_and_says_what_to_do_instead() {
+    let questions: [&[&str]; 3] = [
+        &["analyse", "flown.toml"],
+        &["certify", "flown.toml"],
+        &["analyse", "flown.toml", "--fly"],
+    ];
+    for question in questions {
+        let output = asked("flies", question);
+        let told = text(&output.stderr) + &text(&output.stdout);
+        assert_eq!(code(&output), 2, "{question:?}: {told}");
+        assert!(
+            told.contains("JSBSim flies the aircraft") && told.contains("fspid aircraft import"),
+            "{question:?}: {told}"
+        );
+    }
+}
+
+#[test]
+fn a_flight_of_another_simulator_is_not_called_stable_at_rest() {
+    let output = asked("flies", &["simulate", "flown.toml"]);
+    let told = text(&output.stdout);
+    assert!(told.contains("the loop at rest could not be asked: JSBSim flies"), "{told}");
+    let json = json(&asked("flies", SIMULATE)).to_string();
+    assert!(!json.contains("\"stable\""), "{json}");
+}
+
+#[test]
+fn a_campaign_flies_and_has_the_same_rows_on_any_number_of_threads() {
+    let folder = folder("flies");
+    let python = folder.path().join("stand-in");
+    let path = folder.path().join("flown.toml");
+    let scenario = std::fs::read_to_string(&path).expect("it is there")
+        + "[[dispersion]]\npath = \"simulator.altitude_m\"\ndistribution = \"uniform\"\nlower = 0.5\nupper = 3.0\n";
+    std::fs::write(&path, scenario).expect("it is written");
+    for threads in ["1", "3"] {
+        let campaign = [
+            "campaign",
+            "run",
+            "flown.toml",
+            "--runs",
+            "6",
+            "--quiet",
+            "--threads",
+            threads,
+            "--out",
+            threads,
+        ];
+        let output = fspid(folder.path(), &python, &campaign);
+        assert_eq!(code(&output), 0, "{}", text(&output.stderr));
+    }
+    let rows = |threads| {
+        std::fs::read(folder.path().join(threads).join("campaign.parquet")).expect("rows")
+    };
+    assert_eq!(rows("1"), rows("3"));
+}
+
+#[test]
+fn moving_air_and_changes_of_the_plant_are_refused_by_name() {
+    let folder = folder("flies");
+    let path = folder.path().join("flown.toml");
+    let written = std::fs::read_to_string(&path).expect("it is there");
+    let with = [
+        ("[turbulence]\nintensity = \"light\"\n", "another simulator flies, whose air is its own"),
+        (
+            "[[plant_change]]\nat_s = 1.0\npreset = \"navion\"\n",
+            "an aircraft that is not linear cannot be changed in flight",
+        ),
+        ("[plant]\npreset = \"navion\"\n", "simulator"),
+    ];
+    for (more, words) in with {
+        std::fs::write(&path, format!("{written}{more}")).expect("it is written");
+        let output = fspid(folder.path(), Path::new("/no/python"), &["check", "flown.toml"]);
+        assert_eq!(code(&output), 2);
+        assert!(text(&output.stderr).contains(words), "{}", text(&output.stderr));
+    }
+}

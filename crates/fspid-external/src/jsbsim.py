@@ -1,0 +1,277 @@
+"""Flies one JSBSim aircraft for fspid: settings as arguments, samples over the socket that is standard input.
+
+A fresh executive for each flight, and a process for each: a reset of one does not repeat for several aircraft. All that
+JSBSim prints goes to standard error. Frames are in the order of bytes of the machine, as fspid writes them.
+"""
+import os
+import struct
+import sys
+
+# Nothing of the folder in which fspid was called is part of this program.
+sys.path[:] = [path for path in sys.path if path]
+import socket  # noqa: E402
+import threading  # noqa: E402
+
+FOOT_M = 0.3048
+KNOT_M_S = 1852.0 / 3600.0
+READY, REFUSED, HOST = 0, 1, 2
+# Of the elevator's map: points of the normalised command, and samples until its surface stands.
+MAP_POINTS, MAP_RUNS = 200, 4
+# Of the law that levels the wings: normalised aileron for a radian of bank, and for a radian a second of roll.
+BANK_GAIN, ROLL_RATE_GAIN = 1.0, 0.3
+
+
+class Refusal(Exception):
+    def __init__(self, kind, reason, allowed):
+        super().__init__(reason)
+        self.kind, self.reason, self.allowed = kind, reason, allowed
+
+
+def text(words):
+    data = words.encode("utf-8", "replace")[:4096]
+    return struct.pack("=I", len(data)) + data
+
+
+def load_jsbsim(asked):
+    try:
+        import jsbsim
+    except ImportError as error:
+        raise Refusal(
+            HOST,
+            f"{sys.executable} has no package jsbsim ({error}); pip install jsbsim=={asked['version']}, or name another "
+            "Python in the environment variable FSPID_PYTHON",
+            "",
+        ) from error
+    if jsbsim.__version__ != asked["version"]:
+        raise Refusal(
+            HOST,
+            f"version {jsbsim.__version__} is installed, and the scenario flies version {asked['version']}: another one flies "
+            f"another flight; pip install jsbsim=={asked['version']}, or version = \"{jsbsim.__version__}\" in the scenario",
+            "",
+        )
+    return jsbsim
+
+
+def near(name, names):
+    import difflib
+
+    found = difflib.get_close_matches(name.lower(), [known.lower() for known in names], 3, 0.5)
+    found = [known for known in names if known.lower() in found]
+    return found or sorted(names)[:8]
+
+
+def loaded(jsbsim, asked):
+    """The aircraft in a fresh executive, trimmed."""
+    jsbsim.FGJSBBase().debug_lvl = 0
+    package = jsbsim.get_default_root_dir()
+    root = asked.get("folder", package)
+    executive = jsbsim.FGFDMExec(root)
+    for part, of in (("engine", executive.set_engine_path), ("systems", executive.set_systems_path)):
+        own = os.path.join(root, part)
+        of(own if os.path.isdir(own) else os.path.join(package, part))
+    # Nothing is written beside the flight: logs of a model's own go where nothing is kept.
+    executive.set_output_path(asked["scratch"])
+    name = asked["aircraft"]
+    folder = os.path.join(root, "aircraft")
+    if not os.path.isfile(os.path.join(folder, name, name + ".xml")):
+        names = os.listdir(folder) if os.path.isdir(folder) else []
+        names = [known for known in names if os.path.isfile(os.path.join(folder, known, known + ".xml"))]
+        raise Refusal(REFUSED, f"there is no aircraft {name}", "one of its aircraft, such as " + ", ".join(near(name, names)))
+    # Read by L17, and made by nobody.
+    executive["fcs/flaps-pos-deg"] = 0.0
+    if not executive.load_model(name):
+        raise Refusal(REFUSED, f"cannot load {name}: " + "{said}", "an aircraft that JSBSim loads")
+    executive.disable_output()
+    executive.disable_input()
+    executive.set_dt(asked["step_s"])
+    executive["simulation/randomseed"] = asked["seed"]
+    executive["ic/h-sl-ft"] = asked["altitude_m"] / FOOT_M
+    kind, speed = asked["speed"]
+    if kind == "mach":
+        executive["ic/mach"] = speed
+    else:
+        executive["ic/vt-kts" if kind == "true" else "ic/vc-kts"] = speed / KNOT_M_S
+    executive["ic/gamma-rad"] = asked["climb_rad"]
+    executive["ic/psi-true-rad"] = asked["heading_rad"]
+    executive["propulsion/set-running"] = -1
+    for node in ("gear/gear-cmd-norm", "gear/gear-pos-norm"):
+        executive[node] = asked["gear"]
+    if not executive.run_ic():
+        raise Refusal(REFUSED, f"cannot begin a flight of {name}: " + "{said}", "a speed and an altitude that JSBSim takes")
+    try:
+        executive.do_trim(1)
+    except Exception as error:
+        words = f"cannot trim {name} at this condition: " + "{said}"
+        raise Refusal(REFUSED, words, "a speed and an altitude at which JSBSim can trim it") from error
+    return executive
+
+
+def elevator_map(executive):
+    """Where the elevator stands for each normalised command, with the trim as it is: rad, by the command."""
+    cmd, pos = "fcs/elevator-cmd-norm", "fcs/elevator-pos-rad"
+    trim = executive["fcs/pitch-trim-cmd-norm"] if known(executive, "fcs/pitch-trim-cmd-norm") else 0.0
+    rest = executive[cmd]
+    points = {-1.0 + 2.0 * k / MAP_POINTS for k in range(MAP_POINTS + 1)} | {rest}
+    # Ranges up and down are unequal, and meet where command and trim are zero together.
+    points |= {-trim} if abs(trim) < 1.0 else set()
+    executive.suspend_integration()
+    executive.set_trim_status(True)
+    rows = []
+    for command in sorted(points):
+        executive[cmd] = command
+        for _ in range(MAP_RUNS):
+            executive.run()
+        rows.append((executive[pos], command))
+    for (before, _), (after, command) in zip(rows, rows[1:]):
+        if after < before - 1e-6:
+            words = f"the elevator turns back where its command is {command:.2f}, so that no command stands for a deflection"
+            raise Refusal(REFUSED, words, "an aircraft whose elevator follows its command")
+    if rows[-1][0] - rows[0][0] < 1e-3:
+        raise Refusal(REFUSED, "the elevator does not follow fcs/elevator-cmd-norm", "an aircraft whose elevator does")
+    return rows
+
+
+def known(executive, name):
+    try:
+        executive[name]
+    except KeyError:
+        return False
+    return True
+
+
+def knots(rows, rest):
+    """The map without what is flat, so that each deflection has one command; the command at rest is kept."""
+    kept = [rows[0]]
+    for row in rows[1:]:
+        if row[0] > kept[-1][0] + 1e-9:
+            kept.append(row)
+        elif abs(row[1] - rest) < abs(kept[-1][1] - rest):
+            kept[-1] = (kept[-1][0], row[1])
+    return [row[0] for row in kept], [row[1] for row in kept]
+
+
+def flight(asked, wire):
+    jsbsim = load_jsbsim(asked)
+    # Measured in an executive of its own: nothing of it is left in the flight's.
+    measured = loaded(jsbsim, asked)
+    rows = elevator_map(measured)
+    positions, commands = knots(rows, measured["fcs/elevator-cmd-norm"])
+    del measured
+    executive = loaded(jsbsim, asked)
+    for name, value in asked["properties"]:
+        if not known(executive, name):
+            raise Refusal(REFUSED, f"{asked['aircraft']} has no property {name}", "a property that JSBSim lists for it")
+        executive[name] = value
+    manager = executive.get_property_manager()
+
+    def node(name, unit=1.0):
+        found = manager.get_node(name) if known(executive, name) else None
+        return found, unit
+
+    places = [
+        node("attitude/theta-rad"), node("velocities/q-rad_sec"), node("attitude/phi-rad"),
+        node("velocities/vt-fps", FOOT_M), node("position/h-sl-ft", FOOT_M), node("position/h-agl-ft", FOOT_M),
+        node("aero/alpha-rad"), node("fcs/elevator-pos-rad"), node("fcs/left-aileron-pos-rad"),
+    ]
+    axes = [(node(f"velocities/{axis}-fps"), node(f"velocities/{axis}-aero-fps")) for axis in "uvw"]
+    forces = [node(f"forces/fb{axis}-total-lbs") for axis in "xyz"]
+    weight, wow = node("inertia/weight-lbs")[0], node("gear/wow")[0]
+    roll = node("velocities/p-rad_sec")[0]
+    bank = places[2][0]
+    elevator, aileron = (manager.get_node(f"fcs/{name}-cmd-norm") for name in ("elevator", "aileron"))
+    level = aileron.get_double_value() if asked["levels_wings"] else None
+
+    def sample():
+        numbers = [0.0 if it is None else it.get_double_value() * unit for it, unit in places]
+        for (ground, _), (air, _) in axes:
+            # How the air moves is how the body moves less how it moves through the air.
+            numbers.append((ground.get_double_value() - air.get_double_value()) * FOOT_M)
+        heavy = weight.get_double_value()
+        numbers.extend(it.get_double_value() / heavy for it, _ in forces)
+        numbers.append(0.0 if wow is None else wow.get_double_value())
+        return numbers
+
+    frame = struct.Struct("=Q16d")
+    steps = asked["steps"]
+    ask = struct.Struct(f"={steps}d")
+    wire.sendall(struct.pack("=B", READY) + text(jsbsim.__version__) + frame.pack(0, *sample()))
+    from bisect import bisect_right
+
+    least, most, last = positions[0], positions[-1], len(positions) - 2
+    buffer = bytearray(ask.size)
+    view = memoryview(buffer)
+    run, receive, send = executive.run, wire.recv_into, wire.sendall
+    get_bank, get_roll, set_aileron = bank.get_double_value, roll.get_double_value, aileron.set_double_value
+    set_elevator = elevator.set_double_value
+    number = 1
+    while True:
+        got = 0
+        while got < ask.size:
+            more = receive(view[got:])
+            if more == 0:
+                return
+            got += more
+        for wanted in ask.unpack(buffer):
+            if wanted <= least:
+                set_elevator(commands[0])
+            elif wanted >= most:
+                set_elevator(commands[-1])
+            else:
+                k = min(bisect_right(positions, wanted) - 1, last)
+                share = (wanted - positions[k]) / (positions[k + 1] - positions[k])
+                set_elevator(commands[k] + share * (commands[k + 1] - commands[k]))
+            if level is not None:
+                turned = level - (BANK_GAIN * get_bank() + ROLL_RATE_GAIN * get_roll())
+                set_aileron(-1.0 if turned < -1.0 else 1.0 if turned > 1.0 else turned)
+            if not run():
+                # No number of a sample: it says that it cannot go on.
+                send(frame.pack(0xFFFF_FFFF_FFFF_FFFF, *([0.0] * 16)))
+                return
+        send(frame.pack(number, *sample()))
+        number += 1
+
+
+def end_with(parent):
+    """Ends this process once nobody asks any more, of whatever the one died that did."""
+    while os.getppid() == parent:
+        threading.Event().wait(0.1)
+    os._exit(0)
+
+
+def settings(arguments):
+    asked = {"properties": []}
+    for argument in arguments:
+        key, _, value = argument.partition("=")
+        if key == "property":
+            name, _, number = value.partition("=")
+            asked["properties"].append((name, float(number)))
+        elif key == "speed":
+            kind, _, number = value.partition("=")
+            asked["speed"] = (kind, float(number))
+        elif key in ("steps", "seed", "levels_wings", "parent"):
+            asked[key] = int(value)
+        elif key in ("aircraft", "folder", "version", "scratch"):
+            asked[key] = value
+        else:
+            asked[key] = float(value)
+    return asked
+
+
+def main():
+    asked = settings(sys.argv[1:])
+    threading.Thread(target=end_with, args=(asked["parent"],), daemon=True).start()
+    wire = socket.socket(fileno=os.dup(0))
+    try:
+        flight(asked, wire)
+    except Refusal as refusal:
+        sys.stdout.flush()
+        wire.sendall(struct.pack("=B", refusal.kind) + text(refusal.reason) + text(refusal.allowed))
+    except (BrokenPipeError, ConnectionResetError):
+        pass
+    wire.close()
+    sys.stdout.flush()
+    # Nothing of the simulator is left to be taken down.
+    os._exit(0)
+
+
+main()

@@ -1,0 +1,316 @@
+//! Aircraft of other simulators: a process for each flight, in which a small program of Python flies JSBSim.
+
+use std::io::{self, PipeReader, Read as _, Write as _};
+use std::net::Shutdown;
+use std::os::fd::OwnedFd;
+use std::os::unix::net::UnixStream;
+use std::os::unix::process::CommandExt as _;
+use std::path::PathBuf;
+use std::process::{Child, Command, Stdio};
+use std::sync::mpsc::{Receiver, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use fspid_sim::external_plant::{
+    Jsbsim, JsbsimSpeed, PLANT_SAMPLE_NUMBERS, PlantHost, PlantSample, Simulates,
+};
+use fspid_sim::{ControllerLoss, ExternalPlant, PlantLoss, SimError, Simulator};
+use rustix::process::{Pid, Signal, kill_process_group};
+use tempfile::TempDir;
+
+use crate::frame::{numbers, read, text};
+use crate::process::{ended, ending};
+use crate::timed::Timed;
+
+/// The program that flies JSBSim.
+const JSBSIM: &str = include_str!("jsbsim.py");
+/// What starting may take beyond the time for an answer: Python, its package and two aircraft take a fifth of a second on
+/// an idle machine.
+const START_LIMIT: Duration = Duration::from_secs(30);
+/// How long a process has to end once nobody asks any more.
+const END_LIMIT: Duration = Duration::from_secs(1);
+/// Bytes of what a simulator prints that are kept: the last.
+const MOST_KEPT: usize = 4096;
+/// Lines of it that are told.
+const MOST_TOLD: usize = 12;
+/// The number of no sample: the simulator cannot go on.
+const CANNOT: u64 = u64::MAX;
+/// Bytes of a sample: its number, and the numbers.
+const SAMPLE: usize = 8 + 8 * PLANT_SAMPLE_NUMBERS;
+
+/// Starts a process of Python for each flight of another simulator.
+#[derive(Clone, Debug)]
+pub struct SimulatorHost {
+    python: PathBuf,
+    start_limit: Duration,
+}
+
+impl SimulatorHost {
+    /// With this Python, whose packages are asked for the simulator.
+    #[must_use]
+    pub fn new(python: PathBuf) -> Self {
+        Self { python, start_limit: START_LIMIT }
+    }
+
+    /// The same with another time for a start.
+    #[must_use]
+    pub fn starting_within(self, start_limit: Duration) -> Self {
+        Self { start_limit, ..self }
+    }
+
+    fn spawn(&self, arguments: &[String], limit_s: f64) -> io::Result<Process> {
+        let (stream, theirs) = UnixStream::pair()?;
+        let scratch = tempfile::Builder::new().prefix("fspid-simulator-").tempdir()?;
+        let (reader, writer) = io::pipe()?;
+        let mut command = Command::new(&self.python);
+        command
+            .args(["-u", "-c", JSBSIM])
+            .args(arguments)
+            .arg(format!("parent={}", std::process::id()))
+            .arg(format!("scratch={}", scratch.path().display()))
+            // Messages are the same everywhere.
+            .env("PYTHONIOENCODING", "utf-8")
+            .stdin(Stdio::from(OwnedFd::from(theirs)))
+            .stdout(Stdio::from(writer.try_clone()?))
+            .stderr(Stdio::from(writer))
+            // Ctrl-C is for us: a flight that was begun is no crash of its simulator.
+            .process_group(0);
+        let child = command.spawn()?;
+        // Its ends of socket and pipe.
+        drop(command);
+        Ok(Process {
+            child,
+            stream,
+            said: Said::of(reader),
+            sample: 0,
+            limit: Duration::from_secs_f64(limit_s),
+            is_lost: false,
+            start: PlantSample::default(),
+            _scratch: scratch,
+        })
+    }
+}
+
+/// What a flight is told.
+fn arguments(jsbsim: &Jsbsim, step_s: f64, steps: u32) -> Vec<String> {
+    let speed = match jsbsim.speed {
+        JsbsimSpeed::True(m_s) => format!("true={m_s:?}"),
+        JsbsimSpeed::Calibrated(m_s) => format!("calibrated={m_s:?}"),
+        JsbsimSpeed::Mach(mach) => format!("mach={mach:?}"),
+    };
+    let mut all = vec![
+        format!("aircraft={}", jsbsim.aircraft),
+        format!("version={}", jsbsim.version),
+        format!("speed={speed}"),
+        format!("altitude_m={:?}", jsbsim.altitude_m),
+        format!("climb_rad={:?}", jsbsim.climb_rad),
+        format!("heading_rad={:?}", jsbsim.heading_rad),
+        format!("gear={}", u8::from(jsbsim.gear_is_down)),
+        format!("levels_wings={}", u8::from(jsbsim.levels_wings)),
+        format!("seed={}", jsbsim.seed),
+        format!("step_s={step_s:?}"),
+        format!("steps={steps}"),
+    ];
+    all.extend(jsbsim.folder.iter().map(|folder| format!("folder={}", folder.display())));
+    all.extend(jsbsim.properties.iter().map(|(name, value)| format!("property={name}={value:?}")));
+    all
+}
+
+impl PlantHost for SimulatorHost {
+    fn start(
+        &self,
+        plant: &ExternalPlant,
+        step_s: f64,
+        steps: u32,
+    ) -> Result<Box<dyn Simulates>, SimError> {
+        let Simulator::Jsbsim(jsbsim) = &plant.simulator;
+        let simulator = plant.simulator.name().to_owned();
+        let of_host = |reason: String| SimError::PlantHost { name: simulator.clone(), reason };
+        let begun = self.spawn(&arguments(jsbsim, step_s, steps), plant.answer_limit_s);
+        let mut process = begun.map_err(|error| of_host(self.unstarted(&error)))?;
+        match process.begin(self.start_limit) {
+            Ok(Begin::Ready) => Ok(Box::new(process)),
+            Ok(Begin::Refused { reason, allowed }) => {
+                let reason = reason.replace("{said}", &process.said.told());
+                let name = format!("{simulator}, {}", jsbsim.aircraft);
+                Err(SimError::PlantNotStarted { name, reason, allowed })
+            }
+            Ok(Begin::Host { reason }) => Err(of_host(reason)),
+            Err(loss) => {
+                let said = process.said.told();
+                let python = self.python.display();
+                Err(of_host(format!("{python} {loss} before its flight, and said: {said}")))
+            }
+        }
+    }
+}
+
+impl SimulatorHost {
+    fn unstarted(&self, error: &io::Error) -> String {
+        let python = self.python.display();
+        match error.kind() {
+            io::ErrorKind::NotFound => format!(
+                "there is no Python at {python}; install one, or name one in the environment variable FSPID_PYTHON"
+            ),
+            _ => format!("{python} cannot be started: {error}"),
+        }
+    }
+}
+
+/// The first words of a simulator's process.
+enum Begin {
+    Ready,
+    Refused { reason: String, allowed: String },
+    Host { reason: String },
+}
+
+/// The last of what a simulator prints.
+#[derive(Debug)]
+struct Said {
+    bytes: Arc<Mutex<Vec<u8>>>,
+    ended: Receiver<()>,
+}
+
+impl Said {
+    fn of(mut reader: PipeReader) -> Self {
+        let bytes = Arc::new(Mutex::new(Vec::new()));
+        let (tell, ended) = channel();
+        let kept = Arc::clone(&bytes);
+        std::thread::spawn(move || {
+            let mut some = [0; 1024];
+            while let Ok(read @ 1..) = reader.read(&mut some) {
+                let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
+                kept.extend(some.get(..read).unwrap_or_default());
+                let before = kept.len().saturating_sub(MOST_KEPT);
+                kept.drain(..before);
+            }
+            let _ = tell.send(());
+        });
+        Self { bytes, ended }
+    }
+
+    /// Its last lines as one, once all is printed.
+    fn told(&self) -> String {
+        let _ = self.ended.recv_timeout(END_LIMIT);
+        let kept = self.bytes.lock().unwrap_or_else(PoisonError::into_inner);
+        let text = String::from_utf8_lossy(&kept);
+        let words = |line: &str| line.split_whitespace().collect::<Vec<_>>().join(" ");
+        let has_words = |line: &String| line.chars().any(char::is_alphanumeric);
+        let lines: Vec<String> = text.lines().map(words).filter(has_words).collect();
+        let last = lines.get(lines.len().saturating_sub(MOST_TOLD)..).unwrap_or_default();
+        if last.is_empty() { "nothing".to_owned() } else { last.join(" / ") }
+    }
+}
+
+/// A simulator in flight.
+#[derive(Debug)]
+struct Process {
+    child: Child,
+    stream: UnixStream,
+    said: Said,
+    /// Number of the last sample.
+    sample: u64,
+    limit: Duration,
+    /// True once there is nothing more to wait for.
+    is_lost: bool,
+    start: PlantSample,
+    /// Where files of its own go, removed behind it.
+    _scratch: TempDir,
+}
+
+impl Process {
+    fn begin(&mut self, start_limit: Duration) -> Result<Begin, PlantLoss> {
+        let limit = start_limit + self.limit;
+        let first = first(&mut Timed::new(&self.stream, limit));
+        let (begin, start) = first.map_err(|error| self.lost(&error, limit))?;
+        if let Some(start) = start {
+            self.start = sample_of(&start).ok_or(PlantLoss::NotFinite)?;
+        } else {
+            self.is_lost = true;
+        }
+        Ok(begin)
+    }
+
+    /// What an error of the conversation means.
+    fn lost(&mut self, error: &io::Error, limit: Duration) -> PlantLoss {
+        use io::ErrorKind::{BrokenPipe, ConnectionReset, TimedOut, UnexpectedEof, WouldBlock};
+        self.is_lost = true;
+        let silent = ControllerLoss::Silent { limit_s: limit.as_secs_f64() };
+        let loss = match error.kind() {
+            WouldBlock | TimedOut => ending(&self.child).unwrap_or(silent),
+            UnexpectedEof | BrokenPipe | ConnectionReset => {
+                ended(&self.child).unwrap_or(ControllerLoss::NoAnswer)
+            }
+            _ => ControllerLoss::NoAnswer,
+        };
+        loss.into()
+    }
+
+    fn asked(&mut self, elevators_rad: &[f64]) -> io::Result<[u8; SAMPLE]> {
+        let mut timed = Timed::new(&self.stream, self.limit);
+        let bytes: Vec<u8> = elevators_rad.iter().flat_map(|rad| rad.to_ne_bytes()).collect();
+        timed.write_all(&bytes)?;
+        read(&mut timed)
+    }
+}
+
+/// What a process begins with: a kind, and the version and the first sample, or what is wrong.
+fn first(from: &mut impl io::Read) -> io::Result<(Begin, Option<[u8; SAMPLE]>)> {
+    Ok(match read::<1>(from)? {
+        [0] => {
+            text(from)?;
+            (Begin::Ready, Some(read(from)?))
+        }
+        [1] => (Begin::Refused { reason: text(from)?, allowed: text(from)? }, None),
+        [2] => {
+            let reason = text(from)?;
+            text(from)?;
+            (Begin::Host { reason }, None)
+        }
+        _ => return Err(io::ErrorKind::InvalidData.into()),
+    })
+}
+
+fn number_of(frame: &[u8; SAMPLE]) -> u64 {
+    let [number, ..] = numbers::<1>(frame);
+    number.to_bits()
+}
+
+fn sample_of(frame: &[u8; SAMPLE]) -> Option<PlantSample> {
+    PlantSample::of(&numbers(frame.get(8..)?))
+}
+
+impl Simulates for Process {
+    fn start(&self) -> PlantSample {
+        self.start
+    }
+
+    fn advance(&mut self, elevators_rad: &[f64]) -> Result<PlantSample, PlantLoss> {
+        let asked = self.asked(elevators_rad);
+        let frame = asked.map_err(|error| self.lost(&error, self.limit))?;
+        self.sample += 1;
+        let found = match number_of(&frame) {
+            CANNOT => Err(PlantLoss::Refused),
+            number if number != self.sample => Err(PlantLoss::NoAnswer),
+            _ => sample_of(&frame).ok_or(PlantLoss::NotFinite),
+        };
+        self.is_lost = found.is_err();
+        found
+    }
+}
+
+impl Drop for Process {
+    /// Lets it end; one that does not is ended, and so is what it left behind in its group.
+    fn drop(&mut self) {
+        let _ = self.stream.shutdown(Shutdown::Write);
+        if !self.is_lost {
+            let _ = io::copy(&mut Timed::new(&self.stream, END_LIMIT), &mut io::sink());
+        }
+        // Before it is waited for, while nobody else can have its number.
+        if ending(&self.child) != Some(ControllerLoss::Gone) {
+            let _ = kill_process_group(Pid::from_child(&self.child), Signal::KILL);
+        }
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
