@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use fspid_sim::external::{Answers, Host};
-use fspid_sim::external_plant::{PlantHost, Simulates};
+use fspid_sim::external_plant::{JsbsimLinear, PlantHost, Simulates};
 use fspid_sim::{External, ExternalPlant, SimError};
 
 /// What would start external controllers.
@@ -68,10 +68,15 @@ impl SimulatorHost {
 
 impl PlantHost for SimulatorHost {
     fn start(&self, plant: &ExternalPlant, _: f64, _: u32) -> Result<Box<dyn Simulates>, SimError> {
-        Err(SimError::PlantHost {
-            name: plant.simulator.name().to_owned(),
-            reason: "other simulators talk over a socket of Unix, which this system has not"
-                .to_owned(),
-        })
+        Err(nowhere(plant))
     }
+
+    fn linear_model(&self, plant: &ExternalPlant) -> Result<JsbsimLinear, SimError> {
+        Err(nowhere(plant))
+    }
+}
+
+fn nowhere(plant: &ExternalPlant) -> SimError {
+    let reason = "other simulators talk over a socket of Unix, which this system has not";
+    SimError::PlantHost { name: plant.simulator.name().to_owned(), reason: reason.to_owned() }
 }

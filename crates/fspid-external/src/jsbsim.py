@@ -14,7 +14,7 @@ import threading  # noqa: E402
 
 FOOT_M = 0.3048
 KNOT_M_S = 1852.0 / 3600.0
-READY, REFUSED, HOST = 0, 1, 2
+READY, REFUSED, HOST, LINEAR = 0, 1, 2, 3
 # Of the elevator's map: points of the normalised command, and samples until its surface stands.
 MAP_POINTS, MAP_RUNS = 200, 4
 # Of the law that levels the wings: normalised aileron for a radian of bank, and for a radian a second of roll.
@@ -150,8 +150,72 @@ def knots(rows, rest):
     return [row[0] for row in kept], [row[1] for row in kept]
 
 
+def linearised(jsbsim, asked, wire):
+    """The longitudinal motion around the trim by central differences: what moves, by u, w, q, theta and the elevator; beside
+    it what JSBSim's own linearisation says of the same. Engines and propellers turn steadily at each point, as there."""
+    executive = loaded(jsbsim, asked)
+    outs = (
+        "accelerations/udot-ft_sec2", "accelerations/wdot-ft_sec2", "accelerations/qdot-rad_sec2",
+        "velocities/thetadot-rad_sec",
+    )
+    rest = {
+        axis: executive[name]
+        for axis, name in (
+            ("ic/phi-rad", "attitude/phi-rad"), ("ic/theta-rad", "attitude/theta-rad"),
+            ("ic/psi-true-rad", "attitude/psi-rad"), ("ic/u-fps", "velocities/u-fps"),
+            ("ic/v-fps", "velocities/v-fps"), ("ic/w-fps", "velocities/w-fps"),
+            ("ic/p-rad_sec", "velocities/p-rad_sec"), ("ic/q-rad_sec", "velocities/q-rad_sec"),
+            ("ic/r-rad_sec", "velocities/r-rad_sec"),
+        )
+    }
+    speed, alpha = executive["velocities/vt-fps"], executive["aero/alpha-rad"]
+    elevator, theta = executive["fcs/elevator-pos-rad"], executive["attitude/theta-rad"]
+    mach, span = executive["velocities/mach"], executive["metrics/bw-ft"]
+    command = executive["fcs/elevator-cmd-norm"]
+
+    def rates(axis=None, by=0.0, more=0.0):
+        executive["fcs/elevator-cmd-norm"] = command + more
+        # Angles first: JSBSim keeps the velocity over the ground where they are set.
+        for name, value in rest.items():
+            executive[name] = value + (by if name == axis else 0.0)
+        # Where it is trimmed, lags of its flight control system let through what they get.
+        executive.set_trim_status(more != 0.0)
+        executive.run_ic()
+        executive.get_propulsion().get_steady_state()
+        executive.suspend_integration()
+        for _ in range(10):
+            executive.run()
+        executive.resume_integration()
+        executive.set_trim_status(False)
+        return [executive[name] for name in outs], executive["fcs/elevator-pos-rad"]
+
+    columns = []
+    steps = (("ic/u-fps", 1e-3 * speed), ("ic/w-fps", 1e-3 * speed), ("ic/q-rad_sec", 1e-3), ("ic/theta-rad", 1e-3))
+    for axis, half in steps:
+        (more, _), (less, _) = rates(axis, half), rates(axis, -half)
+        columns.append([(a - b) / (2.0 * half) for a, b in zip(more, less)])
+    (more, down), (less, up) = rates(more=0.02), rates(more=-0.02)
+    if abs(down - up) < 1e-6:
+        raise Refusal(REFUSED, "the elevator does not follow fcs/elevator-cmd-norm", "an aircraft whose elevator does")
+    by_elevator = [(a - b) / (down - up) for a, b in zip(more, less)]
+    del executive
+    fresh = loaded(jsbsim, asked)
+    own = jsbsim.FGLinearization(fresh)
+    names, inputs = list(own.x_names), list(own.u_names)
+    places = [names.index(name) for name in ("Vt", "Alpha", "Q", "Theta")]
+    check = [float(own.system_matrix[row][column]) for row in places for column in places]
+    slope = (down - up) / 0.04
+    check += [float(own.input_matrix[row][inputs.index("DeCmd")]) / slope for row in places]
+    numbers = [columns[column][row] for row in range(4) for column in range(4)] + by_elevator + check
+    numbers += [speed, alpha, elevator, theta, mach, span]
+    wire.sendall(struct.pack("=B", LINEAR) + struct.pack(f"=I{len(numbers)}d", len(numbers), *numbers))
+
+
 def flight(asked, wire):
     jsbsim = load_jsbsim(asked)
+    if asked["linear"]:
+        linearised(jsbsim, asked, wire)
+        return
     # Measured in an executive of its own: nothing of it is left in the flight's.
     measured = loaded(jsbsim, asked)
     rows = elevator_map(measured)
@@ -248,7 +312,7 @@ def settings(arguments):
         elif key == "speed":
             kind, _, number = value.partition("=")
             asked["speed"] = (kind, float(number))
-        elif key in ("steps", "seed", "levels_wings", "parent"):
+        elif key in ("steps", "seed", "levels_wings", "linear", "parent"):
             asked[key] = int(value)
         elif key in ("aircraft", "folder", "version", "scratch"):
             asked[key] = value

@@ -12,7 +12,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use fspid_sim::external_plant::{
-    Jsbsim, JsbsimSpeed, PLANT_SAMPLE_NUMBERS, PlantHost, PlantSample, Simulates,
+    Jsbsim, JsbsimLinear, JsbsimSpeed, LongitudinalRates, PLANT_SAMPLE_NUMBERS, PlantHost,
+    PlantSample, Simulates,
 };
 use fspid_sim::{ControllerLoss, ExternalPlant, PlantLoss, SimError, Simulator};
 use rustix::process::{Pid, Signal, kill_process_group};
@@ -35,6 +36,11 @@ const MOST_KEPT: usize = 4096;
 const MOST_TOLD: usize = 12;
 /// The number of no sample: the simulator cannot go on.
 const CANNOT: u64 = u64::MAX;
+/// Numbers of a linear model: twice four rows and a column, and the trim.
+const LINEAR: usize = 46;
+/// Of a step that is never made, s.
+const LINEAR_STEP_S: f64 = 0.01;
+const FOOT_M: f64 = 0.3048;
 /// Bytes of a sample: its number, and the numbers.
 const SAMPLE: usize = 8 + 8 * PLANT_SAMPLE_NUMBERS;
 
@@ -123,25 +129,76 @@ impl PlantHost for SimulatorHost {
         step_s: f64,
         steps: u32,
     ) -> Result<Box<dyn Simulates>, SimError> {
+        let (process, begun) = self.begun(plant, step_s, steps, false)?;
+        match begun {
+            Begin::Ready => Ok(Box::new(process)),
+            _ => Err(self.no_answer(plant, PlantLoss::NoAnswer, &process)),
+        }
+    }
+
+    fn linear_model(&self, plant: &ExternalPlant) -> Result<JsbsimLinear, SimError> {
+        let (process, begun) = self.begun(plant, LINEAR_STEP_S, 1, true)?;
+        match begun {
+            Begin::Linear(numbers) => Ok(linear(&numbers)),
+            _ => Err(self.no_answer(plant, PlantLoss::NoAnswer, &process)),
+        }
+    }
+}
+
+impl SimulatorHost {
+    /// A process with its first words, where they are no refusal.
+    fn begun(
+        &self,
+        plant: &ExternalPlant,
+        step_s: f64,
+        steps: u32,
+        is_linear: bool,
+    ) -> Result<(Process, Begin), SimError> {
         let Simulator::Jsbsim(jsbsim) = &plant.simulator;
         let simulator = plant.simulator.name().to_owned();
         let of_host = |reason: String| SimError::PlantHost { name: simulator.clone(), reason };
-        let begun = self.spawn(&arguments(jsbsim, step_s, steps), plant.answer_limit_s);
-        let mut process = begun.map_err(|error| of_host(self.unstarted(&error)))?;
+        let mut arguments = arguments(jsbsim, step_s, steps);
+        arguments.push(format!("linear={}", u8::from(is_linear)));
+        let spawned = self.spawn(&arguments, plant.answer_limit_s);
+        let mut process = spawned.map_err(|error| of_host(self.unstarted(&error)))?;
         match process.begin(self.start_limit) {
-            Ok(Begin::Ready) => Ok(Box::new(process)),
             Ok(Begin::Refused { reason, allowed }) => {
                 let reason = reason.replace("{said}", &process.said.told());
                 let name = format!("{simulator}, {}", jsbsim.aircraft);
                 Err(SimError::PlantNotStarted { name, reason, allowed })
             }
             Ok(Begin::Host { reason }) => Err(of_host(reason)),
-            Err(loss) => {
-                let said = process.said.told();
-                let python = self.python.display();
-                Err(of_host(format!("{python} {loss} before its flight, and said: {said}")))
-            }
+            Ok(begun) => Ok((process, begun)),
+            Err(loss) => Err(self.no_answer(plant, loss, &process)),
         }
+    }
+
+    fn no_answer(&self, plant: &ExternalPlant, loss: PlantLoss, process: &Process) -> SimError {
+        let (python, said) = (self.python.display(), process.said.told());
+        let reason = format!("{python} {loss} before its flight, and said: {said}");
+        SimError::PlantHost { name: plant.simulator.name().to_owned(), reason }
+    }
+}
+
+/// The model of numbers in the order of the bridge, in feet.
+fn linear(numbers: &[f64; LINEAR]) -> JsbsimLinear {
+    let of = |place: usize| numbers.get(place).copied().unwrap_or(f64::NAN);
+    // Of a state and of a rate, in feet a second, how many metres a second they are.
+    let rates = |from: usize, sizes: [f64; 4]| LongitudinalRates {
+        by_states: std::array::from_fn(|row| {
+            std::array::from_fn(|column| of(from + 4 * row + column) * sizes[row] / sizes[column])
+        }),
+        by_elevator: std::array::from_fn(|row| of(from + 16 + row) * sizes[row]),
+    };
+    JsbsimLinear {
+        by_differences: rates(0, [FOOT_M, FOOT_M, 1.0, 1.0]),
+        own: rates(20, [FOOT_M, 1.0, 1.0, 1.0]),
+        airspeed_m_s: of(40) * FOOT_M,
+        alpha_rad: of(41),
+        elevator_rad: of(42),
+        theta_rad: of(43),
+        mach: of(44),
+        span_m: of(45) * FOOT_M,
     }
 }
 
@@ -162,6 +219,7 @@ enum Begin {
     Ready,
     Refused { reason: String, allowed: String },
     Host { reason: String },
+    Linear(Box<[f64; LINEAR]>),
 }
 
 /// The last of what a simulator prints.
@@ -266,6 +324,15 @@ fn first(from: &mut impl io::Read) -> io::Result<(Begin, Option<[u8; SAMPLE]>)> 
             let reason = text(from)?;
             text(from)?;
             (Begin::Host { reason }, None)
+        }
+        [3] => {
+            let count = u32::from_ne_bytes(read(from)?);
+            let numbers = numbers::<LINEAR>(&read::<{ 8 * LINEAR }>(from)?);
+            let is_model = count as usize == LINEAR && numbers.iter().all(|it| it.is_finite());
+            if !is_model {
+                return Err(io::ErrorKind::InvalidData.into());
+            }
+            (Begin::Linear(Box::new(numbers)), None)
         }
         _ => return Err(io::ErrorKind::InvalidData.into()),
     })

@@ -253,6 +253,43 @@ pub trait PlantHost: Send + Sync {
         step_s: f64,
         steps: u32,
     ) -> Result<Box<dyn Simulates>, SimError>;
+
+    /// The linear model around its trim.
+    ///
+    /// # Errors
+    /// As [`start`](Self::start).
+    fn linear_model(&self, plant: &ExternalPlant) -> Result<JsbsimLinear, SimError>;
+}
+
+/// A longitudinal motion around a trim: rates of change of its states by each of them, and by the elevator, trailing edge
+/// down positive, in rad.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LongitudinalRates {
+    /// A row for each state.
+    pub by_states: [[f64; 4]; 4],
+    /// One number a state.
+    pub by_elevator: [f64; 4],
+}
+
+/// The linear model of an aircraft of JSBSim around its trim, found twice.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JsbsimLinear {
+    /// Of u, w, m/s, q, rad/s, and pitch, rad, by central differences.
+    pub by_differences: LongitudinalRates,
+    /// Of airspeed, m/s, angle of attack, rad, q, rad/s, and pitch, rad, by JSBSim's own linearisation.
+    pub own: LongitudinalRates,
+    /// True airspeed, m/s.
+    pub airspeed_m_s: f64,
+    /// Angle of attack, rad.
+    pub alpha_rad: f64,
+    /// Elevator, trailing edge down positive, rad.
+    pub elevator_rad: f64,
+    /// Pitch, rad.
+    pub theta_rad: f64,
+    /// Mach number.
+    pub mach: f64,
+    /// Wing span, m.
+    pub span_m: f64,
 }
 
 static HOST: OnceLock<Box<dyn PlantHost>> = OnceLock::new();
@@ -269,6 +306,14 @@ impl ExternalPlant {
     /// [`SimError::NoPlantHost`] in a program that starts none, and what the host says.
     pub fn start(&self, step_s: f64, steps: u32) -> Result<Box<dyn Simulates>, SimError> {
         HOST.get().ok_or(SimError::NoPlantHost)?.start(self, step_s, steps)
+    }
+
+    /// Its linear model around the trim, which the simulator is asked for.
+    ///
+    /// # Errors
+    /// As [`start`](Self::start).
+    pub fn linear_model(&self) -> Result<JsbsimLinear, SimError> {
+        HOST.get().ok_or(SimError::NoPlantHost)?.linear_model(self)
     }
 }
 

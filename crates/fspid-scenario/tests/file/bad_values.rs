@@ -59,6 +59,15 @@ const FLIGHTS: [[&str; 4]; 5] = [
     ],
 ];
 
+/// Speed and altitude of the file that another simulator flies.
+const CONDITIONS: [[&str; 2]; 5] = [
+    ["mach = 0.65", "altitude_ft = 20000.0"],
+    ["calibrated_kt = 300.0", "altitude_m = 6000.0"],
+    ["airspeed_m_s = 200.0", "altitude_m = 6000.0"],
+    ["airspeed_kt = 400.0", "altitude_m = 6000.0"],
+    ["airspeed_ft_s = 674.0", "altitude_m = 6000.0"],
+];
+
 /// The files with every key, once for each set-point, and once for each speed, altitude and wind.
 pub(crate) fn texts() -> Vec<String> {
     let whole = text("crates/fspid-scenario/tests/scenarios/every-key.toml");
@@ -68,7 +77,12 @@ pub(crate) fn texts() -> Vec<String> {
         let parts = FLIGHTS[0].into_iter().zip(flight);
         parts.fold(flying.clone(), |text, (from, to)| text.replace(from, to))
     });
-    commands.into_iter().chain(flights).collect()
+    let simulated = text("crates/fspid-scenario/tests/scenarios/every-key-simulator.toml");
+    let simulated = CONDITIONS.map(|condition| {
+        let parts = CONDITIONS[0].into_iter().zip(condition);
+        parts.fold(simulated.clone(), |text, (from, to)| text.replace(from, to))
+    });
+    commands.into_iter().chain(flights).chain(simulated).collect()
 }
 
 /// A controller whose file is not here: a text with it is never good, but its numbers are asked.

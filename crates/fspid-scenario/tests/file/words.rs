@@ -91,3 +91,35 @@ fn compares(line: &str) -> bool {
     let of_text = line.contains(".get(") && line.contains("Some(\"");
     of_text || of_kind.iter().any(|it| line.contains(it))
 }
+
+/// What another simulator is asked to fly is all of what the file says, and in SI.
+#[test]
+fn every_key_of_a_simulator_arrives_at_it() {
+    use fspid_sim::external_plant::{JsbsimSpeed, Simulator};
+    let text = crate::file::text("crates/fspid-scenario/tests/scenarios/every-key-simulator.toml");
+    let asked = |set: &[&str]| {
+        let set: Vec<String> = set.iter().map(|it| (*it).to_owned()).collect();
+        let study = file::parse(&text, "mine.toml", None, &set).expect("a scenario");
+        let plant = study.scenario.plant.external().expect("a simulator").clone();
+        let Simulator::Jsbsim(jsbsim) = plant.simulator;
+        (jsbsim, plant.answer_limit_s, study.digest)
+    };
+    let (jsbsim, limit_s, digest) = asked(&[]);
+    assert_eq!(
+        (jsbsim.aircraft.as_str(), jsbsim.version.as_str(), limit_s),
+        ("B747", "1.3.3", 2.0)
+    );
+    assert_eq!((jsbsim.speed, jsbsim.seed), (JsbsimSpeed::Mach(0.65), 7));
+    assert!((jsbsim.altitude_m - 6096.0).abs() < 1e-9);
+    assert!((jsbsim.heading_rad - std::f64::consts::FRAC_PI_2).abs() < 1e-15);
+    assert!(jsbsim.gear_is_down && !jsbsim.levels_wings);
+    assert_eq!(jsbsim.properties, [("atmosphere/turb-type".to_owned(), 4.0)]);
+    let (other, _, changed) = asked(&["simulator.gear=up", "simulator.wings=levelled"]);
+    assert!(!other.gear_is_down && other.levels_wings && digest != changed);
+    let refused = |set: &str| {
+        let problems = file::parse(&text, "mine.toml", None, &[set.to_owned()]);
+        problems.expect_err(set).to_string()
+    };
+    assert!(refused("simulator.aircraft=\"../x\"").contains("no name of an aircraft"));
+    assert!(refused("simulator.calibrated_kt=200").contains("mach"));
+}

@@ -9,6 +9,7 @@ mod derive;
 mod envelope;
 mod facts;
 mod import;
+mod import_simulator;
 mod limits;
 mod linearise;
 mod list;
@@ -33,6 +34,7 @@ pub use condition::{AirChoice, DragChoice, Flight, Question, ThrustChoice, fligh
 pub use derive::{Derivation, derive};
 pub use envelope::{Envelope, EnvelopeQuestion, envelope};
 pub use import::{ImportFailure, Imported, import};
+pub use import_simulator::{NoModel, SimulatorModel, import_simulator};
 pub use linearise::{Linear, linearise};
 pub use list::{List, list};
 pub use load::load;

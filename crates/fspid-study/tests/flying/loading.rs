@@ -14,7 +14,7 @@ const LIGHT: &str = "aircraft.mass_kg=906.4536";
 fn trimmed(set: &[&str]) -> AircraftPlant {
     match study(NAVION, set).scenario.plant {
         Plant::Aircraft(plant) => *plant,
-        Plant::Linear(_) => panic!("it flies nonlinear"),
+        Plant::Linear(_) | Plant::External(_) => panic!("it flies nonlinear"),
     }
 }
 
