@@ -77,7 +77,9 @@ fn main() -> ExitCode {
 fn run(command: Command) -> Result<(), Failure> {
     // Who has a server's token may save a scenario: no program that one names is started there.
     if !matches!(command, Command::Serve(_)) {
-        commands::external_controller::host(matches!(command, Command::Fly(_)));
+        let in_real_time =
+            matches!(&command, Command::Simulate(arguments) if arguments.in_real_time());
+        commands::external_controller::host(matches!(command, Command::Fly(_)), in_real_time);
     }
     match command {
         Command::Reproduce(arguments) => commands::reproduce::run(&arguments),

@@ -53,6 +53,7 @@ int main(int count, char **arguments) {
         if (number == 50) {
             if (!strcmp(does, "crashes")) raise(SIGKILL);
             if (!strcmp(does, "ends")) exit(7);
+            if (!strcmp(does, "slow")) usleep(100000);
             if (!strcmp(does, "hangs")) for (;;) pause();
             if (!strcmp(does, "nan")) theta = NAN;
             if (!strcmp(does, "skips")) number++;
@@ -288,4 +289,20 @@ fn moving_air_and_changes_of_the_plant_are_refused_by_name() {
         assert_eq!(code(&output), 2);
         assert!(text(&output.stderr).contains(words), "{}", text(&output.stderr));
     }
+}
+
+/// The simulator sleeps 0.1 s at its 50th sample, of 0.02 s; what else is late on a busy machine is told as well.
+#[test]
+fn a_flight_in_real_time_names_the_samples_that_come_late() {
+    let real_time = ["simulate", "flown.toml", "--set", "loop.duration_s=1.2", "--real-time"];
+    let output = asked("slow", &real_time);
+    let told = text(&output.stderr);
+    assert!(told.contains("real time: ") && told.contains("t = 1.000 s by "), "{told}");
+    let folder = folder("flies");
+    std::fs::write(folder.path().join("own.toml"), fspid_scenario::file::starter())
+        .expect("written");
+    let output =
+        fspid(folder.path(), Path::new("python3"), &["simulate", "own.toml", "--real-time"]);
+    assert_eq!(code(&output), 2);
+    assert!(text(&output.stderr).contains("--real-time goes with a scenario that has [simulator]"));
 }

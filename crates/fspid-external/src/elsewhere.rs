@@ -59,6 +59,12 @@ impl SimulatorHost {
         Self
     }
 
+    /// Tells nothing here.
+    #[must_use]
+    pub fn in_real_time(self, _: fn(&str)) -> Self {
+        self
+    }
+
     /// Starts nothing here.
     #[must_use]
     pub fn starting_within(self, _: std::time::Duration) -> Self {

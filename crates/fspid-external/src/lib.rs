@@ -17,6 +17,8 @@ mod frame;
 #[cfg(unix)]
 mod library;
 #[cfg(unix)]
+mod pace;
+#[cfg(unix)]
 mod process;
 #[cfg(unix)]
 mod serve;

@@ -20,6 +20,7 @@ use rustix::process::{Pid, Signal, kill_process_group};
 use tempfile::TempDir;
 
 use crate::frame::{numbers, read, text};
+use crate::pace::Pace;
 use crate::process::{ended, ending};
 use crate::timed::Timed;
 
@@ -49,19 +50,27 @@ const SAMPLE: usize = 8 + 8 * PLANT_SAMPLE_NUMBERS;
 pub struct SimulatorHost {
     python: PathBuf,
     start_limit: Duration,
+    /// Who is told how a flight kept to real time, where it is to.
+    real_time: Option<fn(&str)>,
 }
 
 impl SimulatorHost {
     /// With this Python, whose packages are asked for the simulator.
     #[must_use]
     pub fn new(python: PathBuf) -> Self {
-        Self { python, start_limit: START_LIMIT }
+        Self { python, start_limit: START_LIMIT, real_time: None }
     }
 
     /// The same with another time for a start.
     #[must_use]
     pub fn starting_within(self, start_limit: Duration) -> Self {
         Self { start_limit, ..self }
+    }
+
+    /// The same whose samples take as long as they are; says of each flight which came late.
+    #[must_use]
+    pub fn in_real_time(self, tell: fn(&str)) -> Self {
+        Self { real_time: Some(tell), ..self }
     }
 
     fn spawn(&self, arguments: &[String], limit_s: f64) -> io::Result<Process> {
@@ -92,6 +101,7 @@ impl SimulatorHost {
             limit: Duration::from_secs_f64(limit_s),
             is_lost: false,
             start: PlantSample::default(),
+            pace: None,
             _scratch: scratch,
         })
     }
@@ -131,7 +141,12 @@ impl PlantHost for SimulatorHost {
     ) -> Result<Box<dyn Simulates>, SimError> {
         let (process, begun) = self.begun(plant, step_s, steps, false)?;
         match begun {
-            Begin::Ready => Ok(Box::new(process)),
+            Begin::Ready => {
+                let mut process = process;
+                process.pace =
+                    self.real_time.map(|tell| Pace::new(step_s * f64::from(steps), tell));
+                Ok(Box::new(process))
+            }
             _ => Err(self.no_answer(plant, PlantLoss::NoAnswer, &process)),
         }
     }
@@ -272,6 +287,7 @@ struct Process {
     /// True once there is nothing more to wait for.
     is_lost: bool,
     start: PlantSample,
+    pace: Option<Pace>,
     /// Where files of its own go, removed behind it.
     _scratch: TempDir,
 }
@@ -362,6 +378,9 @@ impl Simulates for Process {
             _ => sample_of(&frame).ok_or(PlantLoss::NotFinite),
         };
         self.is_lost = found.is_err();
+        if let Some(pace) = &mut self.pace {
+            pace.wait(self.sample);
+        }
         found
     }
 }

@@ -19,8 +19,10 @@ pub enum Viewer {
     XPlane,
 }
 
-/// What FlightGear reads of a line, in its order: a property, its type, and the number of a pose.
-const FLIGHTGEAR: [(&str, fn(&Pose) -> f64); 10] = [
+type OfPose = fn(&Pose) -> f64;
+
+/// What FlightGear reads of a line, in its order: a property, and the number of a pose.
+const FLIGHTGEAR: [(&str, OfPose); 10] = [
     ("/position/latitude-deg", |pose| pose.latitude_deg),
     ("/position/longitude-deg", |pose| pose.longitude_deg),
     ("/position/altitude-ft", |pose| pose.altitude_m / FOOT_M),

@@ -149,7 +149,8 @@ impl TuningProblem {
             let at_rest = AtRest::of(&study.scenario, &named.controller);
             let load = at_rest.load_in_words(study.scenario.timing.end_s());
             let load = load.map(|words| format!("{}: {words}", case.name));
-            for words in at_rest.gains_in_words().into_iter().chain(load) {
+            let not_asked = at_rest.not_asked_in_words();
+            for words in at_rest.gains_in_words().into_iter().chain(load).chain(not_asked) {
                 if !told.contains(&words) {
                     told.push(words);
                 }

@@ -21,6 +21,9 @@ pub(crate) struct Arguments {
     overrides: Vec<String>,
     #[command(flatten)]
     beside: Beside,
+    /// Let each sample take as long as it is, for a scenario with `[simulator]`; each late one is told.
+    #[arg(long)]
+    real_time: bool,
     /// How the answer is written.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
@@ -32,11 +35,23 @@ pub(crate) struct Arguments {
     report: Option<OutFile>,
 }
 
+impl Arguments {
+    /// True where a flight shall take as long as it is.
+    pub(crate) fn in_real_time(&self) -> bool {
+        self.real_time
+    }
+}
+
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let overrides = arguments.beside.overrides(&arguments.overrides)?;
     let study = file::load(&arguments.file, &overrides).map_err(Failure::load)?;
     for warning in &study.warnings {
         note(format_args!("warning: {warning}"));
+    }
+    if arguments.real_time && study.scenario.plant.external().is_none() {
+        return Err(Failure::input(
+            "--real-time goes with a scenario that has [simulator]; `fspid show` shows the trace of any flight at its pace",
+        ));
     }
     let simulation = at_work("flying", || Simulation::of(&study)).map_err(Failure::input)?;
     if let Some(path) = &arguments.trace {
