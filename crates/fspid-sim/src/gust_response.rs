@@ -125,9 +125,9 @@ fn corners_s(weather: &Weather) -> Vec<f64> {
     let course = &weather.course;
     let corners = weather.winds.iter().map(Wind::corners);
     let times = corners.flat_map(|corners| {
-        let along = corners.distance_m.map(|at| Some(at? / course.airspeed_m_s));
-        let up = corners.height_m.map(|at| course.time_at_height_s(at?));
-        along.into_iter().chain(up).flatten()
+        let along = corners.distance_m.into_iter().map(|at_m| at_m / course.airspeed_m_s);
+        let up = corners.height_m.into_iter().filter_map(|at_m| course.time_at_height_s(at_m));
+        along.chain(up).chain(corners.time_s).collect::<Vec<f64>>()
     });
     let mut times: Vec<f64> = times.filter(|time_s| time_s.is_finite()).collect();
     times.sort_by(f64::total_cmp);
@@ -159,9 +159,10 @@ impl Walk<'_> {
     fn piece(&self, states: &mut [f64], plant: &PlantAir, k: usize, piece: &Piece, base: [f64; 3]) {
         let sample_s = self.timing.time_s(k);
         let (begin_s, end_s) = (sample_s + piece.from_s, sample_s + piece.from_s + piece.length_s);
-        let inside = |time_s: &f64| *time_s > begin_s + SHORTEST_S && *time_s < end_s - SHORTEST_S;
+        let first = self.corners_s.partition_point(|time_s| *time_s <= begin_s + SHORTEST_S);
+        let later = self.corners_s.get(first..).unwrap_or_default().iter().copied();
         let mut from_s = begin_s;
-        for to_s in self.corners_s.iter().copied().filter(inside).chain([end_s]) {
+        for to_s in later.take_while(|time_s| *time_s < end_s - SHORTEST_S).chain([end_s]) {
             let parts = (plant.norm_1_s * (to_s - from_s) / PART).ceil().max(1.0);
             let length_s = (to_s - from_s) / parts;
             let mut index = 0.0;

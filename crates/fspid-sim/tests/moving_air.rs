@@ -2,6 +2,8 @@
 
 #![allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")]
 
+use std::sync::Arc;
+
 use crate::support;
 
 use fspid_aircraft::aerodynamics::derivatives::{DragLaw, ThrustLaw};
@@ -9,7 +11,8 @@ use fspid_aircraft::data::Laws;
 use fspid_aircraft::{Aircraft, Environment, TrimTarget};
 use fspid_core::{Gains, Pid, PidConfig};
 use fspid_sim::air::{
-    Follows, GRID_S, Intensity, Severity, Specification, Turbulence, Wind, WindKind,
+    Along, Follows, GRID_S, Intensity, Severity, Specification, TableRow, Turbulence, Wind,
+    WindKind, WindTable,
 };
 use fspid_sim::aircraft::Forces;
 use fspid_sim::signal::{Profile, Shape};
@@ -209,4 +212,62 @@ fn a_period_that_does_not_fit_the_grid_flies_through_the_same_air() {
     // Each tenth of a second is a sample of both.
     let off = apart(&other.theta_rad, 12, &fine.theta_rad, 100);
     assert!(off < 1e-10, "{off}");
+}
+
+/// Zigzag winds whose rows lie at no sample of any loop here: north, up and along the body.
+fn zigzag(along: Along, spacing: f64, from: f64) -> Weather {
+    let row = |index: u32| {
+        let swing = if index.is_multiple_of(2) { -1.0 } else { 1.0 };
+        TableRow {
+            at: from + f64::from(index) * spacing,
+            earth_m_s: [2.0 * swing, 0.0, -3.0 * swing],
+            body_m_s: [swing, 0.0, 0.0],
+        }
+    };
+    let table = WindTable::new(along, (0..12).map(row).collect()).expect("allowed");
+    winds(vec![Wind::Table(Arc::new(table))])
+}
+
+/// Half the step is a sixteenth of the error, through the kinks of a table over time, distance and height.
+#[test]
+fn the_error_of_a_step_through_a_table_falls_with_its_fourth_power() {
+    for weather in [
+        zigzag(Along::Time, 0.091_37, 0.012_3),
+        zigzag(Along::Distance, 0.091_37 * SPEED_M_S, 2.345),
+        // Within the few feet that the gusts of the table move it.
+        zigzag(Along::Height, 0.171, ALTITUDE_M - 1.0),
+    ] {
+        let theta = |dt_s: f64| flown(aircraft(), weather.clone(), (dt_s, 1.0)).theta_rad;
+        let exact = theta(0.000_312_5);
+        let error = |dt_s: f64, by: usize| apart(&theta(dt_s), 1, &exact, by);
+        let (ten, five, two) = (error(0.01, 32), error(0.005, 16), error(0.0025, 8));
+        let orders = [ten / five, five / two].map(libm::log2);
+        for order in orders {
+            assert!(order > 3.5, "{orders:?}: {ten} {five} {two}");
+        }
+    }
+}
+
+/// A linear aircraft on its straight course feels what the table says since the start, between its samples too.
+#[test]
+fn a_linear_aircraft_feels_a_table_alike_at_any_period() {
+    for weather in [
+        zigzag(Along::Time, 0.091_37, 0.012_3),
+        zigzag(Along::Distance, 0.091_37 * SPEED_M_S, 2.345),
+    ] {
+        let fine = flown(linear(), weather.clone(), (0.001, 3.0));
+        for (dt_s, by) in [(0.01, 10), (0.05, 50)] {
+            let coarse = flown(linear(), weather.clone(), (dt_s, 3.0));
+            let off = apart(&coarse.theta_rad, 1, &fine.theta_rad, by);
+            // Straight lines between corners are polynomials, which the answer is exact for.
+            assert!(off < 1e-10, "{dt_s}: {off}");
+        }
+        let start = weather.winds[0].at(&weather.course.place(0.0));
+        for (k, gust) in column(&fine, "gust_down_m_s").iter().enumerate() {
+            let here = weather.winds[0].at(&weather.course.place(k as f64 * 0.001));
+            let expected = here.earth_m_s[2] - start.earth_m_s[2];
+            assert!((gust - expected).abs() < 1e-12, "{k}: {gust} {expected}");
+        }
+        assert!(column(&fine, "gust_down_m_s").iter().any(|gust| gust.abs() > 5.0));
+    }
 }

@@ -26,7 +26,7 @@ const INERTIAS: [&str; 3] = [
 ];
 
 /// Speed, altitude, wind and inertia of the flying file: every unit and every kind.
-const FLIGHTS: [[&str; 4]; 5] = [
+const FLIGHTS: [[&str; 4]; 8] = [
     [
         "airspeed_m_s = 54.0",
         "altitude_m = 300.0",
@@ -55,6 +55,24 @@ const FLIGHTS: [[&str; 4]; 5] = [
         "airspeed_m_s = 54.0",
         "altitude_m = 300.0",
         "kind = \"microburst\"\noutflow_m_s = 8.0\nradius_m = 600.0\npeak_height_m = 40.0\nnorth_m = 700.0\neast_m = 50.0\n",
+        INERTIAS[0],
+    ],
+    [
+        "airspeed_m_s = 54.0",
+        "altitude_m = 300.0",
+        "kind = \"table\"\ntime_s = [0.0, 5.0]\nnorth_m_s = [1.0, 2.0]\neast_m_s = [1.0, 2.0]\n",
+        INERTIAS[0],
+    ],
+    [
+        "airspeed_m_s = 54.0",
+        "altitude_m = 300.0",
+        "kind = \"table\"\ndistance_m = [0.0, 50.0]\nforward_m_s = [1.0, 2.0]\nright_m_s = [1.0, 2.0]\n",
+        INERTIAS[0],
+    ],
+    [
+        "airspeed_m_s = 54.0",
+        "altitude_m = 300.0",
+        "kind = \"table\"\nheight_m = [0.0, 500.0]\nup_m_s = [1.0, 2.0]\n",
         INERTIAS[0],
     ],
 ];

@@ -28,8 +28,8 @@ pub use dryden::{Dryden, DrydenState, Follows, Intensity, Severity, Specificatio
 pub use grid::GRID_S;
 pub(crate) use grid::{Grid, Piece};
 pub use wind::{
-    AirMotion, AirPlace, Corners, FullCycle, LogShear, Microburst, RampHold, Steady, Wind,
-    WindField, WindKind, design_gust_m_s, reference_gust_m_s, sum_at,
+    AirMotion, AirPlace, Along, Corners, FullCycle, LogShear, Microburst, RampHold, Steady,
+    TableRow, Wind, WindField, WindKind, WindTable, design_gust_m_s, reference_gust_m_s, sum_at,
 };
 
 /// Metres in a foot, exactly.

@@ -2,57 +2,104 @@
 
 use crate::air::{AirPlace, Wind};
 
-/// How near to a corner a place is on it, m.
-const NEAR_M: f64 = 1e-9;
+/// How near to a corner a place is on it, m or s.
+const NEAR: f64 = 1e-9;
 
-/// A corner: a distance flown, or a height above the ground.
+/// A corner: a distance flown, a height above the ground, or a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Corner {
     /// Distance flown through the air since the start, m.
     Distance(f64),
     /// Height above the ground, m.
     Height(f64),
+    /// Time since the start, s.
+    Time(f64),
 }
 
-/// All corners of the winds.
+/// All corners of the winds, each list in rising order.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Corners(Vec<Corner>);
+pub(super) struct Corners {
+    distance_m: Vec<f64>,
+    height_m: Vec<f64>,
+    time_s: Vec<f64>,
+}
 
 impl Corners {
     pub(super) fn of(winds: &[Wind]) -> Self {
-        let corners = winds.iter().map(Wind::corners);
-        let all = corners.flat_map(|corners| {
-            let along = corners.distance_m.into_iter().flatten().map(Corner::Distance);
-            along.chain(corners.height_m.into_iter().flatten().map(Corner::Height))
-        });
-        Self(all.collect())
+        let mut all = Self::default();
+        for corners in winds.iter().map(Wind::corners) {
+            all.distance_m.extend(corners.distance_m);
+            all.height_m.extend(corners.height_m);
+            all.time_s.extend(corners.time_s);
+        }
+        for list in [&mut all.distance_m, &mut all.height_m, &mut all.time_s] {
+            list.sort_by(f64::total_cmp);
+        }
+        all
     }
 
     /// The one that a straight way from a place to another meets first, if it is not at the first place.
     pub(super) fn first_between(&self, from: &AirPlace, to: &AirPlace) -> Option<Corner> {
-        let share = |corner: &Corner| {
-            let (before_m, after_m) = (corner.past_m(from), corner.past_m(to));
-            let crossed = before_m.abs() > NEAR_M
-                && after_m.abs() > NEAR_M
-                && (before_m < 0.0) != (after_m < 0.0);
-            crossed.then(|| before_m / (before_m - after_m))
-        };
-        let met = self.0.iter().filter_map(|corner| Some((share(corner)?, *corner)));
+        let along = next(&self.distance_m, from.distance_m, to.distance_m).map(Corner::Distance);
+        let up = next(&self.height_m, from.height_m, to.height_m).map(Corner::Height);
+        let later = next(&self.time_s, from.time_s, to.time_s).map(Corner::Time);
+        let met = [along, up, later].into_iter().flatten();
+        let met = met.map(|corner| {
+            let (before, after) = (corner.past(from), corner.past(to));
+            (before / (before - after), corner)
+        });
         met.min_by(|(first, _), (second, _)| first.total_cmp(second)).map(|(_, corner)| corner)
     }
 }
 
+/// The first of some corners on the way from one value to another, at neither end.
+fn next(corners: &[f64], from: f64, to: f64) -> Option<f64> {
+    let found = if to > from {
+        corners.get(corners.partition_point(|at| *at <= from + NEAR))
+    } else {
+        corners
+            .partition_point(|at| *at < from - NEAR)
+            .checked_sub(1)
+            .and_then(|at| corners.get(at))
+    };
+    let is_before = |at: &f64| if to > from { *at < to - NEAR } else { *at > to + NEAR };
+    found.copied().filter(is_before)
+}
+
 impl Corner {
-    /// How far a place is past it, m.
-    pub(super) fn past_m(self, place: &AirPlace) -> f64 {
+    /// How far a place is past it, m or s.
+    pub(super) fn past(self, place: &AirPlace) -> f64 {
         match self {
             Self::Distance(at_m) => place.distance_m - at_m,
             Self::Height(at_m) => place.height_m - at_m,
+            Self::Time(at_s) => place.time_s - at_s,
         }
     }
 
     /// True at the corner.
     pub(super) fn is_at(self, place: &AirPlace) -> bool {
-        self.past_m(place).abs() <= NEAR_M
+        self.past(place).abs() <= NEAR
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::next;
+
+    #[test]
+    fn the_next_corner_is_the_nearest_on_the_way_and_none_at_its_ends() {
+        let corners = [1.0, 2.0, 2.0, 5.0];
+        for (from, to, found) in [
+            (0.0, 6.0, Some(1.0)),
+            (1.0, 6.0, Some(2.0)),
+            (2.0, 5.0, None),
+            (6.0, 0.0, Some(5.0)),
+            (5.0, 1.0, Some(2.0)),
+            (2.0, 1.0, None),
+            (3.0, 3.0, None),
+            (f64::NAN, 3.0, None),
+        ] {
+            assert_eq!(next(&corners, from, to), found, "{from} to {to}");
+        }
     }
 }

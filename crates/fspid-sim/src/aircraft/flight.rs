@@ -27,6 +27,7 @@ pub(crate) struct AircraftFlight {
     leveller: WingLeveller,
     damper: Option<YawDamper>,
     steps: SubSteps,
+    dt_s: f64,
     grid: Grid,
     atmosphere: Atmosphere,
     start: RigidState,
@@ -70,6 +71,8 @@ struct Moving {
     distance_m: f64,
     /// Power of the engine, as its gearing counts it.
     power: f64,
+    /// Time since the start, s.
+    time_s: f64,
     actuator: ActuatorState,
 }
 
@@ -138,6 +141,7 @@ impl AircraftFlight {
             ),
             damper: damper(plant),
             steps: SubSteps::of(timing.dt_s()),
+            dt_s: timing.dt_s(),
             grid: Grid::new(timing.dt_s()),
             trim_theta_rad: start.euler().theta_rad,
             start,
@@ -169,6 +173,7 @@ impl AircraftFlight {
             body: Moving {
                 state: self.start,
                 distance_m: 0.0,
+                time_s: 0.0,
                 power: self.gearing().power(self.plant.trim().controls.throttle),
                 actuator: ActuatorState::default(),
             },
@@ -239,7 +244,7 @@ impl AircraftFlight {
     }
 
     fn place(&self, body: &Moving) -> AirPlace {
-        place(&body.state, &self.atmosphere, body.distance_m)
+        place(&body.state, &self.atmosphere, [body.distance_m, body.time_s])
     }
 
     /// One sample period with command and disturbance held.
@@ -265,6 +270,8 @@ impl AircraftFlight {
             }
             motion.k += 1;
         }
+        // From the sample, not by a running sum.
+        motion.body.time_s = motion.k as f64 * self.dt_s;
         motion.theta_rad = motion.body.state.euler().theta_rad - self.trim_theta_rad;
     }
 
@@ -307,8 +314,8 @@ impl AircraftFlight {
         corner: Corner,
         most_s: f64,
     ) -> (Moving, f64) {
-        let past_m = |body: &Moving| corner.past_m(&self.place(body));
-        let (mut before, mut after) = ((0.0, past_m(body)), (most_s, past_m(beyond)));
+        let past = |body: &Moving| corner.past(&self.place(body));
+        let (mut before, mut after) = ((0.0, past(body)), (most_s, past(beyond)));
         let mut found = (*body, 0.0);
         for _ in 0..MOST_TRIES {
             let step_s = before.0 + (after.0 - before.0) * before.1 / (before.1 - after.1);
@@ -316,7 +323,7 @@ impl AircraftFlight {
             if corner.is_at(&self.place(&found.0)) {
                 break;
             }
-            let here = (step_s, past_m(&found.0));
+            let here = (step_s, past(&found.0));
             if (here.1 < 0.0) == (before.1 < 0.0) {
                 before = here;
             } else {
@@ -336,7 +343,7 @@ impl AircraftFlight {
                 t if t < step_s => &middle,
                 _ => &end,
             };
-            self.rate(values, controls, held)
+            self.rate((values, body.time_s + time_s), controls, held)
         };
         let values = rk4::step(rate, 0.0, &joined(body), step_s);
         let Way { state, distance_m, power } = parted(&values);
@@ -344,14 +351,21 @@ impl AircraftFlight {
             state: RigidState { attitude: state.attitude.normalised(), ..state },
             distance_m,
             power,
+            time_s: body.time_s + step_s,
             ..next
         }
     }
 
     /// Rates of the body's state, of the way through the air, and of the engine's power.
-    fn rate(&self, values: &[f64; STATES], controls: &Controls, held: &Holding) -> [f64; STATES] {
+    fn rate(
+        &self,
+        (values, time_s): (&[f64; STATES], f64),
+        controls: &Controls,
+        held: &Holding,
+    ) -> [f64; STATES] {
         let Way { state, distance_m, power } = parted(values);
-        let air = self.atmosphere.at(&place(&state, &self.atmosphere, distance_m), held.turbulence);
+        let place = place(&state, &self.atmosphere, [distance_m, time_s]);
+        let air = self.atmosphere.at(&place, held.turbulence);
         let throttle = self.acting_throttle(power, held.throttle);
         let instant = self.aircraft().instant(&state, &Controls { throttle, ..*controls }, &air);
         let rates = state.rate(&instant.accelerations);
@@ -584,11 +598,10 @@ fn parted(values: &[f64; STATES]) -> Way {
     Way { state, distance_m, power: values[RIGID_STATES + 1] }
 }
 
-fn place(state: &RigidState, atmosphere: &Atmosphere, distance_m: f64) -> AirPlace {
+fn place(state: &RigidState, atmosphere: &Atmosphere, [distance_m, time_s]: [f64; 2]) -> AirPlace {
     let [north_m, east_m, _] = state.position_ned_m.to_array();
     let height_m = state.altitude_m() - atmosphere.ground_altitude_m();
-    // No wind of the family asks for the time.
-    AirPlace { time_s: 0.0, distance_m, north_m, east_m, height_m }
+    AirPlace { time_s, distance_m, north_m, east_m, height_m }
 }
 
 /// At the course's start and heading, moving with the wind that blows there.
@@ -601,7 +614,7 @@ fn start(plant: &AircraftPlant, atmosphere: &Atmosphere) -> RigidState {
         attitude: Quaternion::from_euler(attitude),
         ..trim.state
     };
-    let wind_ned_m_s = atmosphere.wind(&place(&still, atmosphere, 0.0)).wind_ned_m_s;
+    let wind_ned_m_s = atmosphere.wind(&place(&still, atmosphere, [0.0; 2])).wind_ned_m_s;
     let drift_m_s = still.attitude.to_body(wind_ned_m_s);
     RigidState { velocity_body_m_s: still.velocity_body_m_s + drift_m_s, ..still }
 }

@@ -13,6 +13,7 @@ mod moving_air;
 mod one_verdict;
 mod outer_loops;
 mod requirements;
+mod wind_table;
 
 use fspid_scenario::file::{self, Study};
 use fspid_sim::Trace;

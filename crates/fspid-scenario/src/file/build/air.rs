@@ -1,5 +1,7 @@
 //! Winds, gusts and turbulence around an aircraft.
 
+use std::sync::Arc;
+
 use fspid_sim::air::{
     Follows, FullCycle, Intensity, LogShear, Microburst, RampHold, Severity, Steady, Turbulence,
     Wind,
@@ -8,6 +10,7 @@ use fspid_sim::signal::Noise;
 use fspid_sim::{Plant, Weather};
 
 use super::flown::{Flown, Way};
+use super::wind_table::table;
 use super::{judged, rad};
 use crate::file::aircraft::quantity;
 use crate::file::files::Files;
@@ -41,7 +44,7 @@ pub(super) fn weather(
     let calm = parts.count() == 0;
     let weather = Weather {
         course: way.course,
-        winds: winds(section, way),
+        winds: winds(report, files, (section, way)),
         turbulence: turbulence(report, files, (section.get(TURBULENCE), way)),
     };
     let linear = matches!(flown.plant, Plant::Linear(_));
@@ -67,14 +70,14 @@ fn refuse(report: &mut Report, part: &Section, (is_aircraft, silent): (bool, boo
     report.value(part.place, &part.path, message, allowed);
 }
 
-fn winds(section: &Section, way: Way) -> Vec<Wind> {
+fn winds(report: &mut Report, files: &mut Files<'_>, (section, way): (&Section, Way)) -> Vec<Wind> {
     let sound = |part: &&Section| part.sound;
-    let wind = section.get(WIND).filter(sound).and_then(wind);
+    let wind = section.get(WIND).filter(sound).and_then(|part| wind(report, files, part));
     let gusts = section.sections(GUST).iter().filter(sound);
     wind.into_iter().chain(gusts.filter_map(|part| gust(part, way))).collect()
 }
 
-fn wind(part: &Section) -> Option<Wind> {
+fn wind(report: &mut Report, files: &mut Files<'_>, part: &Section) -> Option<Wind> {
     Some(match part.variant()? {
         WindKind::LogShear => Wind::LogShear(LogShear {
             w20_m_s: quantity(part, keys::W20)?,
@@ -88,6 +91,7 @@ fn wind(part: &Section) -> Option<Wind> {
             axis_m: [part.get(keys::NORTH_M)?, part.get(keys::EAST_M)?],
         }),
         WindKind::Steady => Wind::Steady(steady(part)?),
+        WindKind::Table => Wind::Table(Arc::new(table(report, files, part)?)),
     })
 }
 

@@ -23,6 +23,7 @@ mod signal;
 mod simulator;
 mod supervisor;
 mod timing;
+mod wind_table;
 
 pub use airframe::Airframe;
 pub use derived::{DerivedGains, GainSource};

@@ -2,14 +2,14 @@
 
 use crate::keyed::word::{words, words_of};
 use crate::keyed::{
-    Key, KeyRow, Range, TEXT, Table, choosing, defaulted, finite, not_negative, number, of_kinds,
-    one_of, optional, plain, positive, required, variant, whole, word,
+    FILE_PATH, Key, KeyRow, Range, TEXT, Table, choosing, defaulted, finite, not_negative, number,
+    numbers, of_kinds, one_of, optional, plain, positive, required, variant, whole, word,
 };
-use fspid_sim::air::{Follows, Severity, Specification};
+use fspid_sim::air::{Follows, Severity, Specification, WindTable};
 
 words! {
     /// Winds.
-    WindKind { Steady = "steady", LogShear = "log-shear", Microburst = "microburst" }
+    WindKind { Steady = "steady", LogShear = "log-shear", Microburst = "microburst", Table = "table" }
 }
 
 words! {
@@ -85,6 +85,52 @@ pub(crate) const NORTH_M: Key<f64> = required("north_m", finite("m"), "Axis, nor
 pub(crate) const EAST_M: Key<f64> =
     defaulted("east_m", finite("m"), 0.0, "Axis, east of the start.");
 
+const ROWS: (usize, usize) = (2, WindTable::MOST_ROWS);
+
+pub(crate) const WIND_FILE: Key<str> = optional(
+    "file",
+    FILE_PATH,
+    "A table as CSV, relative to this file: a first line with names that end in units, rows in rising order.",
+);
+pub(crate) const TIME_S: Key<[f64]> = optional(
+    "time_s",
+    numbers("s", Range::Finite, ROWS),
+    "Times since the start, each above the one before.",
+);
+pub(crate) const DISTANCE_M: Key<[f64]> = optional(
+    "distance_m",
+    numbers("m", Range::Finite, ROWS),
+    "Ways through the air since the start, each above the one before.",
+);
+pub(crate) const HEIGHT_M: Key<[f64]> = optional(
+    "height_m",
+    numbers("m", Range::Finite, ROWS),
+    "Heights above the ground, each above the one before.",
+);
+
+const fn velocities(name: &'static str, doc: &'static str) -> Key<[f64]> {
+    optional(name, numbers("m/s", Range::Finite, ROWS), doc)
+}
+
+pub(crate) const NORTH_M_S: Key<[f64]> =
+    velocities("north_m_s", "Speed of the air to the north at each row; 0 if left out.");
+pub(crate) const EAST_M_S: Key<[f64]> =
+    velocities("east_m_s", "Speed of the air to the east at each row; 0 if left out.");
+pub(crate) const ROWS_UP_M_S: Key<[f64]> =
+    velocities("up_m_s", "Speed of the air upward at each row; 0 if left out.");
+pub(crate) const ROWS_FORWARD_M_S: Key<[f64]> = velocities(
+    "forward_m_s",
+    "Speed of the air along the aircraft's own axis at each row; 0 if left out.",
+);
+pub(crate) const ROWS_RIGHT_M_S: Key<[f64]> =
+    velocities("right_m_s", "Speed of the air to the aircraft's right at each row; 0 if left out.");
+
+/// What the rows of a table go by.
+pub(crate) const AXES: [Key<[f64]>; 3] = [TIME_S, DISTANCE_M, HEIGHT_M];
+/// Velocities of a table, in the order of their directions in a file.
+pub(crate) const VELOCITIES: [Key<[f64]>; 5] =
+    [NORTH_M_S, EAST_M_S, ROWS_UP_M_S, ROWS_FORWARD_M_S, ROWS_RIGHT_M_S];
+
 pub(super) static WIND_TABLE: Table = of_kinds(
     "The wind; an aircraft starts trimmed in the wind of its start.",
     &[],
@@ -110,6 +156,17 @@ pub(super) static WIND_TABLE: Table = of_kinds(
             plain(
                 "Air that falls and spreads over the ground.",
                 &[&[&OUTFLOW_M_S, &RADIUS_M, &PEAK_HEIGHT_M, &NORTH_M, &EAST_M]],
+            ),
+        ),
+        variant(
+            WindKind::Table.name(),
+            choosing(
+                "Rows over time, distance or height, here or in a file; between them straight lines, beyond them the first and the last.",
+                &[
+                    &[&WIND_FILE, &TIME_S, &DISTANCE_M, &HEIGHT_M],
+                    &[&NORTH_M_S, &EAST_M_S, &ROWS_UP_M_S, &ROWS_FORWARD_M_S, &ROWS_RIGHT_M_S],
+                ],
+                &[one_of!(WIND_FILE, TIME_S, DISTANCE_M, HEIGHT_M)],
             ),
         ),
     ],

@@ -65,6 +65,6 @@ impl WindField for LogShear {
     }
 
     fn corners(&self) -> Corners {
-        Corners { height_m: [Some(LOWEST_M), Some(HIGHEST_M)], ..Corners::default() }
+        Corners { height_m: vec![LOWEST_M, HIGHEST_M], ..Corners::default() }
     }
 }

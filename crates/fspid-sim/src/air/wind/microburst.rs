@@ -94,6 +94,6 @@ impl WindField for Microburst {
     }
 
     fn corners(&self) -> Corners {
-        Corners { height_m: [Some(0.0), None], ..Corners::default() }
+        Corners { height_m: vec![0.0], ..Corners::default() }
     }
 }

@@ -2,7 +2,7 @@
 //! `winds!`.
 //!
 //! A member brings its name, its parameters with units and ranges, and an example, so that files,
-//! checks and documentation come from one place.
+//! checks and documentation come from one place. A [table](WindTable) is data and no numbers, and stands beside them.
 
 mod full_cycle;
 mod log_shear;
@@ -10,12 +10,16 @@ mod microburst;
 mod one_minus_cosine;
 mod ramp_hold;
 mod steady;
+mod table;
 
 pub use full_cycle::{FullCycle, design_gust_m_s, reference_gust_m_s};
 pub use log_shear::LogShear;
 pub use microburst::Microburst;
 pub use ramp_hold::RampHold;
 pub use steady::Steady;
+pub use table::{Along, TableRow, WindTable};
+
+use std::sync::Arc;
 
 use fspid_fuzzy::membership::{Param, Range};
 
@@ -63,18 +67,20 @@ impl std::ops::Add for AirMotion {
 }
 
 /// Where a wind is not smooth along the way: an integration that ends a step there keeps its order.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Corners {
     /// Distances flown through the air since the start, m.
-    pub distance_m: [Option<f64>; 2],
+    pub distance_m: Vec<f64>,
     /// Heights above the ground, m.
-    pub height_m: [Option<f64>; 2],
+    pub height_m: Vec<f64>,
+    /// Times since the start, s.
+    pub time_s: Vec<f64>,
 }
 
 impl Corners {
     /// Those of a gust that begins at a distance and is that long.
-    pub(super) const fn along(start_m: f64, length_m: f64) -> Self {
-        Self { distance_m: [Some(start_m), Some(start_m + length_m)], height_m: [None; 2] }
+    pub(super) fn along(start_m: f64, length_m: f64) -> Self {
+        Self { distance_m: vec![start_m, start_m + length_m], ..Self::default() }
     }
 }
 
@@ -140,9 +146,11 @@ fn checked<W: WindField>(params: &[f64]) -> Result<W, SimError> {
 macro_rules! winds {
     ($($member:ident),* $(,)?) => {
         /// A wind or gust.
-        #[derive(Clone, Copy, Debug, PartialEq)]
+        #[derive(Clone, Debug, PartialEq)]
         #[non_exhaustive]
         pub enum Wind {
+            /// Rows of data, see [`WindTable`].
+            Table(Arc<WindTable>),
             $(#[doc = concat!("See [`", stringify!($member), "`](struct@", stringify!($member), ").")]
             $member($member),)*
         }
@@ -150,6 +158,8 @@ macro_rules! winds {
         /// What kinds of wind there are.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum WindKind {
+            /// Rows of data, see [`WindTable`]; [`ALL`](Self::ALL) are the kinds that numbers make.
+            Table,
             $(#[doc = concat!("See [`", stringify!($member), "`](struct@", stringify!($member), ").")]
             $member,)*
         }
@@ -158,51 +168,67 @@ macro_rules! winds {
             /// How the air moves at a place.
             #[must_use]
             pub fn at(&self, place: &AirPlace) -> AirMotion {
-                match self { $(Self::$member(wind) => wind.at(place),)* }
+                match self {
+                    Self::Table(table) => table.at(place),
+                    $(Self::$member(wind) => wind.at(place),)*
+                }
             }
 
             /// Where it is not smooth.
             #[must_use]
             pub fn corners(&self) -> Corners {
-                match self { $(Self::$member(wind) => wind.corners(),)* }
+                match self {
+                    Self::Table(table) => table.corners(),
+                    $(Self::$member(wind) => wind.corners(),)*
+                }
             }
 
             /// Which kind it is.
             #[must_use]
             pub fn kind(&self) -> WindKind {
-                match self { $(Self::$member(_) => WindKind::$member,)* }
+                match self {
+                    Self::Table(_) => WindKind::Table,
+                    $(Self::$member(_) => WindKind::$member,)*
+                }
             }
         }
 
         impl WindKind {
-            /// Every kind.
+            /// Every kind that numbers make.
             pub const ALL: &[Self] = &[$(Self::$member),*];
 
             /// Name in files and messages.
             #[must_use]
             pub const fn name(self) -> &'static str {
-                match self { $(Self::$member => $member::NAME,)* }
+                match self { Self::Table => WindTable::NAME, $(Self::$member => $member::NAME,)* }
             }
 
-            /// Parameters in order.
+            /// Parameters in order; a table has none.
             #[must_use]
             pub const fn params(self) -> &'static [Param] {
-                match self { $(Self::$member => $member::PARAMS,)* }
+                match self { Self::Table => &[], $(Self::$member => $member::PARAMS,)* }
             }
 
-            /// Parameters of a typical member.
+            /// Parameters of a typical member; a table has none.
             #[must_use]
             pub const fn example(self) -> &'static [f64] {
-                match self { $(Self::$member => $member::EXAMPLE,)* }
+                match self { Self::Table => &[], $(Self::$member => $member::EXAMPLE,)* }
             }
 
             /// The wind with these parameters.
             ///
             /// # Errors
-            /// [`SimError::ParameterCount`], or [`SimError::Number`] for the first parameter that is
-            /// not allowed.
+            /// [`SimError::ParameterCount`], also for a table, which [`WindTable::new`] makes; or
+            /// [`SimError::Number`] for the first parameter that is not allowed.
             pub fn build(self, params: &[f64]) -> Result<Wind, SimError> {
-                match self { $(Self::$member => checked(params).map(Wind::$member),)* }
+                match self {
+                    Self::Table => Err(SimError::ParameterCount {
+                        kind: WindTable::NAME,
+                        found: params.len(),
+                        allowed: 0,
+                    }),
+                    $(Self::$member => checked(params).map(Wind::$member),)*
+                }
             }
 
             /// The kind with that name.
