@@ -254,3 +254,38 @@ fn every_column_stands_in_the_documentation_with_its_unit() {
         assert!(family.is_some() || row.contains(&column.unit), "{name}: {row}");
     }
 }
+
+/// A Latin hypercube of as many runs as there are cases has one run in each: a sweep, and no lottery.
+#[test]
+fn a_choice_among_the_design_gusts_goes_through_all_of_them() {
+    let home = tempfile::tempdir().expect("a folder");
+    let path = home.path().join("sweep.toml");
+    let text = include_str!("../../../scenarios/gallery/gust-sweep.toml");
+    std::fs::write(&path, text).expect("written");
+    let folder = Folder::new(&home.path().join("campaign"));
+    let question = Question {
+        scenario: &path,
+        overrides: &["loop.duration_s=3.0".to_owned()],
+        runs: 18,
+        seed: 7,
+        sampling: Sampling::LatinHypercube,
+        shards: Shards::Of(18),
+    };
+    let campaign = plan(&question, &folder).unwrap_or_else(|error| panic!("{error}"));
+    folder.put_plan(campaign.plan()).expect("written");
+    local::run(&folder, &campaign, 2, &Progress::default()).unwrap_or_else(|e| panic!("{e}"));
+    let reader = Reader::open(folder.merged_path()).expect("a file");
+    let table = reader.tables().next().expect("a row group").expect("readable");
+    let Values::Integer(cases) = table.column("parameter.case").expect("a column") else {
+        panic!("whole numbers")
+    };
+    let mut cases: Vec<i64> = cases.iter().map(|case| case.expect("drawn")).collect();
+    cases.sort_unstable();
+    assert_eq!(cases, (1..=18).collect::<Vec<i64>>());
+    let Values::Float(loads) =
+        table.column("requirement.largest_load_factor_g.value").expect("a column")
+    else {
+        panic!("numbers")
+    };
+    assert!(loads.iter().all(|load| load.is_some_and(|load| load > 1.0)));
+}

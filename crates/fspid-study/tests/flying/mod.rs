@@ -3,6 +3,7 @@
 
 mod agreement;
 mod at_rest;
+mod design_gusts;
 mod gallery;
 mod ground;
 mod limits;

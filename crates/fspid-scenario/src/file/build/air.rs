@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
+use fspid_aircraft::Air;
 use fspid_sim::air::{
     Follows, FullCycle, Intensity, LogShear, Microburst, RampHold, Severity, Steady, Turbulence,
-    Wind,
+    Wind, design_gust_m_s,
 };
 use fspid_sim::signal::Noise;
 use fspid_sim::{Plant, Weather};
@@ -19,6 +20,7 @@ use crate::file::spec::air::{GustKind, WindKind};
 use crate::file::spec::scenario::{GUST, TURBULENCE, WIND};
 use crate::keyed::Section;
 use crate::keyed::word::Word as _;
+use crate::units::FOOT_M;
 use fspid_diagnostics::Report;
 
 /// The air that the file lets move, `None` for calm air around a linear plant.
@@ -74,7 +76,7 @@ fn winds(report: &mut Report, files: &mut Files<'_>, (section, way): (&Section, 
     let sound = |part: &&Section| part.sound;
     let wind = section.get(WIND).filter(sound).and_then(|part| wind(report, files, part));
     let gusts = section.sections(GUST).iter().filter(sound);
-    wind.into_iter().chain(gusts.filter_map(|part| gust(part, way))).collect()
+    wind.into_iter().chain(gusts.filter_map(|part| gust(report, part, way))).collect()
 }
 
 fn wind(report: &mut Report, files: &mut Files<'_>, part: &Section) -> Option<Wind> {
@@ -103,10 +105,13 @@ fn steady(part: &Section) -> Option<Steady> {
     Some(Steady { earth_m_s })
 }
 
-fn gust(part: &Section, way: Way) -> Option<Wind> {
+fn gust(report: &mut Report, part: &Section, way: Way) -> Option<Wind> {
+    let start_m = part.get(keys::AT_S)? * way.course.airspeed_m_s;
+    if part.variant() == Some(GustKind::Design) {
+        return design_gust(report, part, way, start_m).map(Wind::FullCycle);
+    }
     let amplitude_m_s =
         [part.get(keys::FORWARD_M_S)?, part.get(keys::RIGHT_M_S)?, -part.get(keys::GUST_UP_M_S)?];
-    let start_m = part.get(keys::AT_S)? * way.course.airspeed_m_s;
     Some(match part.variant()? {
         GustKind::FullCycle => {
             let gradient_m = part.get(keys::GRADIENT_M)?;
@@ -116,7 +121,32 @@ fn gust(part: &Section, way: Way) -> Option<Wind> {
             let length_m = part.get(keys::LENGTH_M)?;
             Wind::RampHold(RampHold { amplitude_m_s, length_m, start_m })
         }
+        GustKind::Design => return None,
     })
+}
+
+/// Shortest and longest gradient distance of CS 25.341(a)(2).
+const GRADIENTS_M: [f64; 2] = [30.0 * FOOT_M, 350.0 * FOOT_M];
+
+/// One of the vertical gusts of a sweep: odd cases upward, even ones downward, distances in rising order.
+fn design_gust(report: &mut Report, part: &Section, way: Way, start_m: f64) -> Option<FullCycle> {
+    let (case, gradients) = (part.get(keys::CASE)?, part.get(keys::GRADIENTS)?);
+    if case > 2 * gradients {
+        let message = format!("{gradients} gradient distances up and down are fewer cases");
+        part.wrong(report, keys::CASE, message, format!("1 to {}", 2 * gradients));
+        return None;
+    }
+    let [shortest_m, longest_m] = GRADIENTS_M;
+    let share = ((case - 1) / 2) as f64 / (gradients - 1) as f64;
+    let gradient_m = shortest_m + share * (longest_m - shortest_m);
+    let gust = design_gust_m_s(way.altitude_m, gradient_m, part.get(keys::ALLEVIATION)?);
+    let equivalent_m_s = judged(report, (part, keys::CASE), gust)?;
+    let airspeed_m_s = way.course.airspeed_m_s;
+    let density_kg_m3 = 2.0 * way.dynamic_pressure_pa / (airspeed_m_s * airspeed_m_s);
+    let sea_level_kg_m3 = Air::standard(0.0).ok()?.density_kg_m3;
+    let true_m_s = equivalent_m_s * (sea_level_kg_m3 / density_kg_m3).sqrt();
+    let down_m_s = if case % 2 == 1 { -true_m_s } else { true_m_s };
+    Some(FullCycle { amplitude_m_s: [0.0, 0.0, down_m_s], gradient_m, start_m })
 }
 
 fn turbulence(

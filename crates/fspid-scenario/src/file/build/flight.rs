@@ -76,6 +76,7 @@ pub(super) fn way(part: &Section, target: TrimTarget, environment: &Environment)
         course: course(part, target)?,
         span_m: None,
         gravity_m_s2: environment.gravity_m_s2,
+        altitude_m: target.altitude_m,
         dynamic_pressure_pa: 0.5 * density_kg_m3 * target.airspeed_m_s * target.airspeed_m_s,
         assumed: false,
     })

@@ -16,6 +16,8 @@ pub(super) struct Way {
     /// `None` where the aircraft's file has none.
     pub(super) span_m: Option<f64>,
     pub(super) gravity_m_s2: f64,
+    /// Of the trim, above sea level.
+    pub(super) altitude_m: f64,
     /// At the trim, before any wind.
     pub(super) dynamic_pressure_pa: f64,
     /// Whether airspeed and altitude are the scenario's alone, since the aircraft's file has no condition.

@@ -14,7 +14,7 @@ words! {
 
 words! {
     /// Gusts.
-    GustKind { RampHold = "ramp-hold", FullCycle = "full-cycle" }
+    GustKind { RampHold = "ramp-hold", FullCycle = "full-cycle", Design = "cs-25.341" }
 }
 
 words_of!(Specification { MilF8785c = "mil-f-8785c", MilHdbk1797 = "mil-hdbk-1797" });
@@ -185,25 +185,52 @@ pub(crate) const AT_S: Key<f64> = defaulted(
     "When an aircraft that keeps its speed flies into it.",
 );
 
-const AMPLITUDE: &[KeyRow] = &[&FORWARD_M_S, &RIGHT_M_S, &GUST_UP_M_S, &AT_S];
+const AMPLITUDE: &[KeyRow] = &[&FORWARD_M_S, &RIGHT_M_S, &GUST_UP_M_S];
 
 pub(crate) const LENGTH_M: Key<f64> = required("length_m", positive("m"), "Length of the rise.");
 pub(crate) const GRADIENT_M: Key<f64> =
     required("gradient_m", positive("m"), "Gradient distance: half the length.");
 
+pub(crate) const GRADIENTS: Key<i64> = required(
+    "gradients",
+    whole(2, 500),
+    "How many gradient distances from 30 to 350 ft, evenly apart; each of them up and down, so that there are twice as many cases.",
+);
+pub(crate) const CASE: Key<i64> = required(
+    "case",
+    whole(1, 1000),
+    "Which of the cases, from 1: 30 ft up, 30 ft down, the next distance up, and so on.",
+);
+pub(crate) const ALLEVIATION: Key<f64> = defaulted(
+    "alleviation",
+    number("", Range::PositiveUpTo(1.0)),
+    1.0,
+    "Flight profile alleviation factor of the aircraft.",
+);
+
 pub(super) static GUST_TABLE: Table = of_kinds(
     "A gust along the axes of the aircraft.",
-    &[AMPLITUDE],
+    &[&[&AT_S]],
     &[
         variant(
             GustKind::RampHold.name(),
-            plain("Rises as half a cosine over a length and stays (MIL-F-8785C).", &[&[&LENGTH_M]]),
+            plain(
+                "Rises as half a cosine over a length and stays (MIL-F-8785C).",
+                &[AMPLITUDE, &[&LENGTH_M]],
+            ),
         ),
         variant(
             GustKind::FullCycle.name(),
             plain(
                 "One minus cosine: rises over the gradient distance and falls again (CS 25.341).",
-                &[&[&GRADIENT_M]],
+                &[AMPLITUDE, &[&GRADIENT_M]],
+            ),
+        ),
+        variant(
+            GustKind::Design.name(),
+            plain(
+                "A vertical design gust of CS 25.341 at the altitude of the trim, one of a sweep of gradient distances.",
+                &[&[&CASE, &GRADIENTS, &ALLEVIATION]],
             ),
         ),
     ],
