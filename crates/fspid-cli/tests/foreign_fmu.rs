@@ -92,7 +92,7 @@ fn crc32(bytes: &[u8]) -> u32 {
 }
 
 /// An archive of files as they are.
-fn zip(files: &[(&str, &[u8])]) -> Vec<u8> {
+pub(crate) fn zip(files: &[(&str, &[u8])]) -> Vec<u8> {
     let (mut bytes, mut directory) = (Vec::new(), Vec::new());
     for (name, content) in files {
         let [offset, size] = [bytes.len(), content.len()].map(|it| (it as u32).to_le_bytes());

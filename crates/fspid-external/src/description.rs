@@ -31,10 +31,22 @@ pub(crate) struct Description {
 
 const ALLOWED: &str = "an FMU for co-simulation with inputs setpoint_rad and measurement_rad and an output command_rad, or all in degrees, as `fspid export --to fmu2` writes it";
 
+const ALLOWED_PLANT: &str = "an FMU for co-simulation with an input elevator_rad and outputs theta_rad and q_rad_s, or all in degrees";
+
 impl Description {
-    /// Reads it; variables that have other names than ours are named.
+    /// Reads that of a controller; variables that have other names than ours are named.
     pub(crate) fn read(text: &str, renamed: &[Renamed]) -> Result<Self, Refusal> {
-        let refused = |reason: String| (reason, ALLOWED.to_owned());
+        Self::read_as(text, renamed, false)
+    }
+
+    /// Reads that of an aircraft: its elevator is the first input, its pitch angle the command, its pitch rate the first gain.
+    pub(crate) fn read_plant(text: &str, renamed: &[Renamed]) -> Result<Self, Refusal> {
+        Self::read_as(text, renamed, true)
+    }
+
+    fn read_as(text: &str, renamed: &[Renamed], is_plant: bool) -> Result<Self, Refusal> {
+        let allowed = if is_plant { ALLOWED_PLANT } else { ALLOWED };
+        let refused = |reason: String| (reason, allowed.to_owned());
         let document = Document::parse(text)
             .map_err(|error| refused(format!("its modelDescription.xml is no XML: {error}")))?;
         let root = document.root_element();
@@ -53,6 +65,19 @@ impl Description {
         let variables = Variables::of(root);
         let needed = |place| needed(&variables, place, renamed);
         let gain = |name| variables.read_if_there(name, Kind::Float64);
+        if is_plant {
+            return Ok(Self {
+                inputs: [Some(needed(Place::Elevator)?), None, None],
+                command: needed(Place::Pitch)?,
+                gains: [Some(needed(Place::PitchRate)?), None, None],
+                saturated: None,
+                faults: None,
+                token: root.attribute(token).unwrap_or_default().to_owned(),
+                identifier: identifier.to_owned(),
+                period_s: 0.0,
+                version,
+            });
+        }
         let inputs = [
             Some(needed(Place::Setpoint)?),
             Some(needed(Place::Measurement)?),
@@ -72,7 +97,7 @@ impl Description {
     }
 }
 
-/// A variable without which there is no controller.
+/// A variable without which there is no controller, or no aircraft.
 fn needed(
     variables: &Variables<'_, '_>,
     place: Place,
@@ -80,12 +105,14 @@ fn needed(
 ) -> Result<Variable, Refusal> {
     variables.at(place, renamed)?.ok_or_else(|| {
         let (key, offered) = (place.key(false), variables.offered(place));
-        let (option, kind) = match place {
-            Place::Command => ("--output", "outputs"),
-            _ => ("--input", "inputs"),
+        let (option, kind, allowed) = match place {
+            Place::Elevator => ("`inputs`", "inputs", ALLOWED_PLANT),
+            Place::Pitch | Place::PitchRate => ("`outputs`", "outputs", ALLOWED_PLANT),
+            Place::Command => ("--output", "outputs", ALLOWED),
+            Place::Setpoint | Place::Measurement | Place::Rate => ("--input", "inputs", ALLOWED),
         };
         let way = format!("or {option} {key}=NAME with one of its {kind}: {offered}");
-        (format!("has no variable {key}"), format!("{ALLOWED}; {way}"))
+        (format!("has no variable {key}"), format!("{allowed}; {way}"))
     })
 }
 

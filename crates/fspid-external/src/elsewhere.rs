@@ -59,6 +59,12 @@ impl SimulatorHost {
         Self
     }
 
+    /// Flies nothing here.
+    #[must_use]
+    pub fn flying_fmus(self, _: ProcessHost) -> Self {
+        self
+    }
+
     /// Tells nothing here.
     #[must_use]
     pub fn in_real_time(self, _: fn(&str)) -> Self {

@@ -1,4 +1,4 @@
-//! An FMU as a controller: a step of the standard for each sample.
+//! An FMU as a controller, or as an aircraft: a step of the standard for each sample.
 
 use std::path::{Path, PathBuf};
 
@@ -17,19 +17,27 @@ pub(crate) struct FmuController {
     dt_s: f64,
     /// Number of the next sample.
     sample: u64,
+    is_plant: bool,
 }
 
 impl FmuController {
     /// Of an FMU that is unpacked in a folder, asked once in each period.
-    pub(crate) fn load(folder: &Path, dt_s: f64, renamed: &[Renamed]) -> Result<Self, Refusal> {
+    pub(crate) fn load(
+        folder: &Path,
+        dt_s: f64,
+        (renamed, is_plant): (&[Renamed], bool),
+    ) -> Result<Self, Refusal> {
         let text =
             std::fs::read_to_string(folder.join("modelDescription.xml")).map_err(|error| {
                 (format!("its modelDescription.xml cannot be read: {error}"), "an FMU".to_owned())
             })?;
-        let description = Description::read(&text, renamed)?;
+        let description = match is_plant {
+            true => Description::read_plant(&text, renamed)?,
+            false => Description::read(&text, renamed)?,
+        };
         let library = library(folder, &description)?;
         let fmu = Fmu::load(&library, &description, folder)?;
-        Ok(Self { description, fmu, dt_s, sample: 0 })
+        Ok(Self { description, fmu, dt_s, sample: 0, is_plant })
     }
 
     /// Its period, s; 0 where it has none.
@@ -40,13 +48,17 @@ impl FmuController {
     /// The answer to a sample, or the status with which there is none.
     pub(crate) fn step(&mut self, sample: &Sample<f64>) -> Result<Step<f64>, Failure> {
         let values = [sample.setpoint_rad, sample.measurement_rad, sample.rate_rad_s];
+        let looks = self.is_plant && sample.setpoint_rad.is_nan();
         for (input, value) in self.description.inputs.into_iter().zip(values) {
-            if let Some(Variable { reference, unit }) = input {
+            if let Some(Variable { reference, unit }) = input.filter(|_| !looks) {
                 self.fmu.set(reference, value / unit)?;
             }
         }
-        self.fmu.step(self.sample as f64 * self.dt_s, self.dt_s)?;
-        self.sample += 1;
+        // An aircraft is asked where it starts before it flies: with an elevator that is no number.
+        if !looks {
+            self.fmu.step(self.sample as f64 * self.dt_s, self.dt_s)?;
+            self.sample += 1;
+        }
         let Description { command, gains: [kp, ki, kd], saturated, faults, .. } = self.description;
         let mut real = |variable: Option<Variable>| {
             variable.map_or(Ok(0.0), |it| self.fmu.real(it.reference).map(|value| value * it.unit))

@@ -13,6 +13,8 @@ mod description;
 mod fmi;
 #[cfg(unix)]
 mod fmu;
+#[cfg(unix)]
+mod fmu_flight;
 mod frame;
 #[cfg(unix)]
 mod library;

@@ -39,6 +39,7 @@ const SAME_PERIOD: f64 = 1e-6;
 /// What a process is told that its controller is.
 pub(crate) const LIBRARY: &str = "library";
 pub(crate) const FMU: &str = "fmu";
+pub(crate) const FMU_PLANT: &str = "fmu-plant";
 /// How the folder of an unpacked FMU begins: nothing else is ever removed.
 pub(crate) const FOLDER: &str = "fspid-fmu-";
 /// Says that everything is there to be loaded.
@@ -122,12 +123,12 @@ impl ProcessHost {
     }
 
     fn spawn(&self, external: &External) -> io::Result<Process> {
+        let folder = || tempfile::Builder::new().prefix(FOLDER).tempdir();
         let (stream, theirs) = UnixStream::pair()?;
         let (kind, folder) = match &external.source {
             ExternalSource::Library(_) => (LIBRARY, None),
-            ExternalSource::Fmu(_) => {
-                (FMU, Some(tempfile::Builder::new().prefix(FOLDER).tempdir()?))
-            }
+            ExternalSource::Fmu(_) => (FMU, Some(folder()?)),
+            ExternalSource::FmuPlant(_) => (FMU_PLANT, Some(folder()?)),
         };
         let path = folder.as_ref().map_or(external.source.path(), TempDir::path);
         let (printer, [output, errors]) = self.prints()?;

@@ -15,19 +15,19 @@ use rustix::process::{Signal, kill_current_process_group};
 use crate::fmu::FmuController;
 use crate::frame::{Start, read, read_sample, write_answer, write_refusal};
 use crate::library::{LibraryController, Refusal};
-use crate::process::{FMU, FOLDER, LIBRARY};
+use crate::process::{FMU, FMU_PLANT, FOLDER, LIBRARY};
 
 /// How often a process looks whether the one that asks it is still there.
 const LOOK_AGAIN: Duration = Duration::from_millis(100);
 
-/// Loads a controller of this kind, `library` or `fmu` (its folder), and answers what comes each `dt_s` over standard
+/// Loads a controller of this kind, `library` or `fmu` (its folder), or an aircraft, `fmu-plant`, and answers what comes each `dt_s` over standard
 /// input, which [`ProcessHost`](crate::ProcessHost) has made a socket. `renamed` are names of an FMU's variables, such as
 /// `setpoint_rad=theta_ref`. What the controller prints is passed on to
 /// standard error.
 #[must_use]
 pub fn serve(kind: &str, path: &Path, dt_s: f64, renamed: &[String]) -> ExitCode {
     let conversed = converse(kind, path, dt_s, renamed);
-    if kind == FMU {
+    if kind != LIBRARY {
         remove(path);
     }
     // Nobody is left to be told what is wrong with the conversation.
@@ -40,7 +40,7 @@ pub fn serve(kind: &str, path: &Path, dt_s: f64, renamed: &[String]) -> ExitCode
 fn converse(kind: &str, path: &Path, dt_s: f64, renamed: &[String]) -> io::Result<()> {
     let mut stream = UnixStream::from(io::stdin().as_fd().try_clone_to_owned()?);
     let asked_by = u32::from_ne_bytes(read(&mut stream)?);
-    let folder = (kind == FMU).then(|| path.to_owned());
+    let folder = (kind != LIBRARY).then(|| path.to_owned());
     std::thread::Builder::new().spawn(move || end_with(asked_by, folder))?;
     // From here on there is something to load, if there ever is.
     if read::<1>(&mut stream).is_err() {
@@ -98,8 +98,13 @@ impl Controller {
         let renamed: Vec<Renamed> = renamed.iter().filter_map(|text| named(text)).collect();
         match kind {
             LIBRARY => LibraryController::load(path).map(Self::Library),
-            FMU => FmuController::load(path, dt_s, &renamed).map(|fmu| Self::Fmu(Box::new(fmu))),
-            other => Err((format!("is called {other}"), format!("{LIBRARY} or {FMU}"))),
+            FMU | FMU_PLANT => {
+                let fmu = FmuController::load(path, dt_s, (&renamed, kind == FMU_PLANT))?;
+                Ok(Self::Fmu(Box::new(fmu)))
+            }
+            other => {
+                Err((format!("is called {other}"), format!("{LIBRARY}, {FMU} or {FMU_PLANT}")))
+            }
         }
     }
 

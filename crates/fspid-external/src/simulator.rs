@@ -19,9 +19,10 @@ use fspid_sim::{ControllerLoss, ExternalPlant, PlantLoss, SimError, Simulator};
 use rustix::process::{Pid, Signal, kill_process_group};
 use tempfile::TempDir;
 
+use crate::fmu_flight::FmuFlight;
 use crate::frame::{numbers, read, text};
 use crate::pace::Pace;
-use crate::process::{ended, ending};
+use crate::process::{ProcessHost, ended, ending};
 use crate::timed::Timed;
 
 /// The program that flies JSBSim.
@@ -52,19 +53,27 @@ pub struct SimulatorHost {
     start_limit: Duration,
     /// Who is told how a flight kept to real time, where it is to.
     real_time: Option<fn(&str)>,
+    /// What starts FMUs.
+    fmus: Option<ProcessHost>,
 }
 
 impl SimulatorHost {
     /// With this Python, whose packages are asked for the simulator.
     #[must_use]
     pub fn new(python: PathBuf) -> Self {
-        Self { python, start_limit: START_LIMIT, real_time: None }
+        Self { python, start_limit: START_LIMIT, real_time: None, fmus: None }
     }
 
     /// The same with another time for a start.
     #[must_use]
     pub fn starting_within(self, start_limit: Duration) -> Self {
         Self { start_limit, ..self }
+    }
+
+    /// The same that flies FMUs, too, as this host starts controllers.
+    #[must_use]
+    pub fn flying_fmus(self, host: ProcessHost) -> Self {
+        Self { fmus: Some(host), ..self }
     }
 
     /// The same whose samples take as long as they are; says of each flight which came late.
@@ -139,6 +148,11 @@ impl PlantHost for SimulatorHost {
         step_s: f64,
         steps: u32,
     ) -> Result<Box<dyn Simulates>, SimError> {
+        if let Simulator::Fmu(fmu) = &plant.simulator {
+            let mut flight = FmuFlight::start(self.fmus.as_ref(), (fmu, plant), step_s)?;
+            flight.pace = self.real_time.map(|tell| Pace::new(step_s * f64::from(steps), tell));
+            return Ok(Box::new(flight));
+        }
         let (process, begun) = self.begun(plant, step_s, steps, false)?;
         match begun {
             Begin::Ready => {
@@ -169,7 +183,9 @@ impl SimulatorHost {
         steps: u32,
         is_linear: bool,
     ) -> Result<(Process, Begin), SimError> {
-        let Simulator::Jsbsim(jsbsim) = &plant.simulator;
+        let Simulator::Jsbsim(jsbsim) = &plant.simulator else {
+            return Err(SimError::OtherSimulator { name: plant.simulator.name() });
+        };
         let simulator = plant.simulator.name().to_owned();
         let of_host = |reason: String| SimError::PlantHost { name: simulator.clone(), reason };
         let mut arguments = arguments(jsbsim, step_s, steps);

@@ -237,7 +237,7 @@ enum Unit {
 
 fn by_name(name: &str, place: Place) -> Unit {
     let bare = match place {
-        Place::Rate => name.strip_suffix("/s"),
+        Place::Rate | Place::PitchRate => name.strip_suffix("/s"),
         _ => Some(name),
     };
     match bare {
@@ -254,7 +254,8 @@ fn defined(base: Node<'_, '_>, place: Place) -> Unit {
     };
     let is =
         |name: &str, wanted: f64| number(name, 0.0).is_some_and(|it| it.total_cmp(&wanted).is_eq());
-    let seconds = if place == Place::Rate { -1.0 } else { 0.0 };
+    let is_rate = matches!(place, Place::Rate | Place::PitchRate);
+    let seconds = if is_rate { -1.0 } else { 0.0 };
     let others = ["kg", "m", "A", "K", "mol", "cd", "offset"];
     if !(is("s", seconds) && others.iter().all(|name| is(name, 0.0))) {
         return Unit::Other;
@@ -273,7 +274,7 @@ fn is_near(factor: f64, unit: f64) -> bool {
 
 fn direction(place: Place) -> &'static str {
     match place {
-        Place::Command => "output",
+        Place::Command | Place::Pitch | Place::PitchRate => "output",
         _ => "input",
     }
 }

@@ -8,6 +8,7 @@ use fspid_core::fuzzy::FuzzyError;
 use fspid_lti::{InWords, LtiError};
 
 use crate::autopilot::AutopilotError;
+use crate::external_plant::JSBSIM;
 
 /// Why a part of a scenario could not be built.
 #[derive(Clone, Debug, PartialEq)]
@@ -192,10 +193,18 @@ impl fmt::Display for SimError {
                 f,
                 "external controller {file} could not be asked, which says nothing of it: {reason}"
             ),
-            Self::OtherSimulator { name } => write!(
-                f,
-                "{name} flies the aircraft, so that there are no equations of it here; allowed are questions of flights, or its linear model at this condition, which `fspid aircraft import` writes"
-            ),
+            Self::OtherSimulator { name } => {
+                write!(
+                    f,
+                    "{name} flies the aircraft, so that there are no equations of it here; allowed are questions of flights"
+                )?;
+                match *name == JSBSIM {
+                    true => f.write_str(
+                        ", or its linear model at this condition, which `fspid aircraft import` writes",
+                    ),
+                    false => Ok(()),
+                }
+            }
             Self::OtherSimulatorChanges => f.write_str(
                 "an aircraft of another simulator cannot be changed in flight; allowed are changes of linear plants",
             ),

@@ -37,7 +37,7 @@ pub struct Renamed {
     pub name: String,
 }
 
-/// What a controller takes and answers.
+/// What a controller takes and answers, and a plant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// The commanded pitch.
@@ -48,11 +48,25 @@ pub enum Place {
     Rate,
     /// The command, nose up positive.
     Command,
+    /// Of a plant: its elevator, trailing edge down positive.
+    Elevator,
+    /// Of a plant: its pitch angle.
+    Pitch,
+    /// Of a plant: its pitch rate.
+    PitchRate,
 }
 
 impl Place {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Setpoint, Self::Measurement, Self::Rate, Self::Command];
+    pub const ALL: [Self; 7] = [
+        Self::Setpoint,
+        Self::Measurement,
+        Self::Rate,
+        Self::Command,
+        Self::Elevator,
+        Self::Pitch,
+        Self::PitchRate,
+    ];
 
     /// How exports call it, with its unit.
     #[must_use]
@@ -66,6 +80,12 @@ impl Place {
             (Self::Rate, true) => "rate_deg_s",
             (Self::Command, false) => "command_rad",
             (Self::Command, true) => "command_deg",
+            (Self::Elevator, false) => "elevator_rad",
+            (Self::Elevator, true) => "elevator_deg",
+            (Self::Pitch, false) => "theta_rad",
+            (Self::Pitch, true) => "theta_deg",
+            (Self::PitchRate, false) => "q_rad_s",
+            (Self::PitchRate, true) => "q_deg_s",
         }
     }
 
@@ -94,6 +114,8 @@ pub enum ExternalSource {
     Library(PathBuf),
     /// An FMU for co-simulation, FMI 2.0 or 3.0.
     Fmu(PathBuf),
+    /// The same, and it flies: its command is its pitch angle, and the first of its gains its pitch rate.
+    FmuPlant(PathBuf),
 }
 
 impl ExternalSource {
@@ -101,7 +123,7 @@ impl ExternalSource {
     #[must_use]
     pub fn path(&self) -> &std::path::Path {
         match self {
-            Self::Library(path) | Self::Fmu(path) => path,
+            Self::Library(path) | Self::Fmu(path) | Self::FmuPlant(path) => path,
         }
     }
 }
@@ -202,7 +224,7 @@ impl fmt::Display for ControllerLoss {
 }
 
 /// One flight of an external controller, from rest.
-pub trait Answers: fmt::Debug {
+pub trait Answers: fmt::Debug + Send {
     /// The answer to the next sample.
     ///
     /// # Errors

@@ -8,11 +8,14 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use crate::error::SimError;
-use crate::external::{ControllerLoss, SIGNALS};
+use crate::external::{Contents, ControllerLoss, Renamed, SIGNALS};
 
 mod flight;
 
 pub(crate) use flight::{ExternalFlight, ExternalMotion};
+
+/// What JSBSim is called.
+pub(crate) const JSBSIM: &str = "JSBSim";
 
 /// An aircraft that another simulator flies.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,6 +31,8 @@ pub struct ExternalPlant {
 pub enum Simulator {
     /// JSBSim, through its Python package.
     Jsbsim(Jsbsim),
+    /// An FMU for co-simulation.
+    Fmu(FmuPlant),
 }
 
 impl Simulator {
@@ -35,16 +40,23 @@ impl Simulator {
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
-            Self::Jsbsim(_) => "JSBSim",
+            Self::Jsbsim(_) => JSBSIM,
+            Self::Fmu(_) => "an FMU",
         }
     }
 
     /// What of it flies.
     #[must_use]
-    pub fn model(&self) -> &str {
+    pub fn model(&self) -> String {
         match self {
-            Self::Jsbsim(jsbsim) => &jsbsim.aircraft,
+            Self::Jsbsim(jsbsim) => jsbsim.aircraft.clone(),
+            Self::Fmu(fmu) => fmu.file.display().to_string(),
         }
+    }
+
+    /// True where a sample says more than pitch.
+    pub(crate) fn shows_aircraft(&self) -> bool {
+        matches!(self, Self::Jsbsim(_))
     }
 }
 
@@ -73,6 +85,19 @@ pub struct Jsbsim {
     pub seed: u32,
     /// Properties that are set once it is trimmed, in this order.
     pub properties: Vec<(String, f64)>,
+}
+
+/// An aircraft in an FMU: elevator in, pitch and pitch rate out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FmuPlant {
+    /// The FMU.
+    pub file: PathBuf,
+    /// What was in that file when it was read.
+    pub contents: Contents,
+    /// Variables that have other names than ours.
+    pub renamed: Vec<Renamed>,
+    /// Elevator at the trim in which the FMU starts, trailing edge down positive, rad.
+    pub trim_elevator_rad: f64,
 }
 
 /// A speed in one of the ways in which it is given.

@@ -124,7 +124,7 @@ impl Propagation {
             (Self::Aircraft(it), Motion::Aircraft(state)) => {
                 Some(it.sample(state, it.elevator_rad(state, disturbance_rad)))
             }
-            (_, Motion::External(state)) => Some(state.sample()),
+            (_, Motion::External(state)) => state.sample(),
             _ => None,
         }
     }

@@ -375,8 +375,10 @@ impl Prepared {
     /// True for a flight in six degrees of freedom, here or in another simulator.
     #[must_use]
     pub fn is_aircraft(&self) -> bool {
-        self.stages.iter().any(|stage| {
-            matches!(stage.propagation, Propagation::Aircraft(_) | Propagation::External(_))
+        self.stages.iter().any(|stage| match &stage.propagation {
+            Propagation::Aircraft(_) => true,
+            Propagation::External(flight) => flight.shows_aircraft(),
+            Propagation::AsOne(_) | Propagation::ByLegs(_) => false,
         })
     }
 

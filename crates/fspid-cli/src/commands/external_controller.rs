@@ -145,18 +145,19 @@ const RUNNING: &str = "/proc/self/exe";
 /// Names the Python that flies other simulators; without it, the `python3` of the path.
 const PYTHON: &str = "FSPID_PYTHON";
 
-/// Lets this program start itself for external controllers, and Python for other simulators, in real time if asked. Of what they print beside a stream of commands as much is
-/// passed on as a client need not read.
+/// Lets this program start itself for external controllers and FMUs, and Python for JSBSim, in real time if asked. Of what
+/// they print beside a stream of commands as much is passed on as a client need not read.
 pub(crate) fn host(beside_a_stream: bool, in_real_time: bool) {
+    let running = Some(PathBuf::from(RUNNING)).filter(|path| path.exists());
+    let Some(program) = running.or_else(|| std::env::current_exe().ok()) else { return };
+    let host = ProcessHost::new(program, &[NAME]).telling(|words| note(words));
     let python = std::env::var_os(PYTHON).filter(|name| !name.is_empty());
-    let simulators = SimulatorHost::new(python.unwrap_or_else(|| "python3".into()).into());
+    let python = python.unwrap_or_else(|| "python3".into());
+    let simulators = SimulatorHost::new(python.into()).flying_fmus(host.clone());
     set_plant_host(match in_real_time {
         true => simulators.in_real_time(|words| note(words)),
         false => simulators,
     });
-    let running = Some(PathBuf::from(RUNNING)).filter(|path| path.exists());
-    let Some(program) = running.or_else(|| std::env::current_exe().ok()) else { return };
-    let host = ProcessHost::new(program, &[NAME]).telling(|words| note(words));
     set_host(match beside_a_stream {
         true => host.printing_at_most(MOST_PRINTED),
         false => host,

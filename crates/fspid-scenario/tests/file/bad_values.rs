@@ -106,6 +106,8 @@ pub(crate) fn texts() -> Vec<String> {
 /// A controller whose file is not here: a text with it is never good, but its numbers are asked.
 const EXTERNAL: &str = "\n[[controller]]\nname = \"own\"\nkind = \"external\"\nlibrary = \"own.so\"\nanswer_limit_s = 1.0\n";
 
+const FMU: &str = "[simulator]\nkind = \"fmu\"\nfile = \"own.fmu\"\nanswer_limit_s = 1.0\ntrim_elevator_deg = -2.0\n\n";
+
 /// A number in the file: its line, what stands before it, and whether it is in a list.
 struct Number {
     line: usize,
@@ -208,7 +210,12 @@ fn the_file_with_every_key_is_good() {
 fn every_number_refuses_what_is_no_finite_number_at_its_own_line() {
     let mut covered = BTreeSet::new();
     let external = texts().swap_remove(0) + EXTERNAL;
-    for text in texts().into_iter().chain([external]) {
+    // As little: its file is not here either.
+    let whole = text("crates/fspid-scenario/tests/scenarios/every-key-simulator.toml");
+    let (before, rest) = whole.split_once("[simulator]").expect("a simulator");
+    let (_, behind) = rest.split_once("[loop]").expect("a loop");
+    let fmu = format!("{before}{FMU}[loop]{behind}");
+    for text in texts().into_iter().chain([external, fmu]) {
         let document = as_json(&text);
         for number in numbers(&text) {
             for value in [

@@ -45,7 +45,7 @@ fn walk(table: &Table, path: &str, keys: &mut BTreeMap<String, Value>) {
             Value::Array(items) if !items.is_empty() && items.iter().all(Value::is_table) => {
                 for (index, table) in items.iter().filter_map(Value::as_table).enumerate() {
                     let step = match table.get("name").and_then(Value::as_str) {
-                        Some(name) if name.contains(' ') => format!(".\"{name}\""),
+                        Some(name) if name.contains([' ', '/']) => format!(".\"{name}\""),
                         Some(name) => format!(".{name}"),
                         None => format!("[{index}]"),
                     };

@@ -101,7 +101,7 @@ fn every_key_of_a_simulator_arrives_at_it() {
         let set: Vec<String> = set.iter().map(|it| (*it).to_owned()).collect();
         let study = file::parse(&text, "mine.toml", None, &set).expect("a scenario");
         let plant = study.scenario.plant.external().expect("a simulator").clone();
-        let Simulator::Jsbsim(jsbsim) = plant.simulator;
+        let Simulator::Jsbsim(jsbsim) = plant.simulator else { panic!("JSBSim") };
         (jsbsim, plant.answer_limit_s, study.digest)
     };
     let (jsbsim, limit_s, digest) = asked(&[]);

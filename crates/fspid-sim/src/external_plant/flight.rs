@@ -26,6 +26,7 @@ pub(crate) struct ExternalMotion {
     start: PlantSample,
     now: PlantSample,
     actuator: ActuatorState,
+    shows_aircraft: bool,
 }
 
 impl Clone for ExternalMotion {
@@ -35,7 +36,8 @@ impl Clone for ExternalMotion {
             Ok(_) => Err(PlantLoss::Copied),
             Err(loss) => Err(*loss),
         };
-        Self { flying, start: self.start, now: self.now, actuator: self.actuator }
+        let Self { start, now, actuator, shows_aircraft, .. } = *self;
+        Self { flying, start, now, actuator, shows_aircraft }
     }
 }
 
@@ -63,7 +65,7 @@ impl ExternalMotion {
     }
 
     pub(crate) fn is_at_ground(&self) -> bool {
-        self.now.is_on_ground || self.now.height_m <= 0.0
+        self.shows_aircraft && (self.now.is_on_ground || self.now.height_m <= 0.0)
     }
 
     /// The elevator as the simulator has it, rad.
@@ -71,9 +73,10 @@ impl ExternalMotion {
         self.now.elevator_rad
     }
 
-    pub(crate) fn sample(&self) -> AircraftSample {
+    /// What it shows beyond pitch, if it does.
+    pub(crate) fn sample(&self) -> Option<AircraftSample> {
         let now = &self.now;
-        AircraftSample {
+        self.shows_aircraft.then(|| AircraftSample {
             airspeed_m_s: now.airspeed_m_s,
             altitude_m: now.altitude_m,
             alpha_rad: now.alpha_rad,
@@ -83,7 +86,7 @@ impl ExternalMotion {
             air_m_s: now.air_m_s,
             apparent_vertical_rad: apparent_vertical_rad(now),
             departure: None,
-        }
+        })
     }
 }
 
@@ -110,6 +113,11 @@ impl ExternalFlight {
         Self { plant: plant.clone(), actuator, steps, step_s: timing.dt_s() / count }
     }
 
+    /// True where a sample says more than pitch.
+    pub(crate) fn shows_aircraft(&self) -> bool {
+        self.plant.simulator.shows_aircraft()
+    }
+
     /// Starts the simulator.
     pub(crate) fn start(&self) -> Result<ExternalMotion, SimError> {
         let flying = self.plant.start(self.step_s, self.steps)?;
@@ -119,6 +127,7 @@ impl ExternalFlight {
             start,
             now: start,
             actuator: ActuatorState::default(),
+            shows_aircraft: self.shows_aircraft(),
         })
     }
 

@@ -51,7 +51,7 @@ pub enum NoModel {
 impl fmt::Display for NoModel {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NoSimulator => f.write_str("the scenario flies no other simulator; allowed is one with `[simulator]`, or a model in DAVE-ML"),
+            Self::NoSimulator => f.write_str("the scenario does not fly in JSBSim; allowed is one with `[simulator]` and kind = \"jsbsim\", or a model in DAVE-ML"),
             Self::NotLevel => f.write_str("the flight climbs or descends, and an aircraft file holds linear models of level flight; allowed is climb_angle_deg = 0"),
             Self::Simulator(error) => error.fmt(f),
             Self::NoTransfer(reason) => write!(f, "its differences make no linear model: {reason}"),
@@ -72,7 +72,7 @@ impl std::error::Error for NoModel {}
 /// [`NoModel`] says why there is none.
 pub fn import_simulator(study: &Study) -> Result<SimulatorModel, NoModel> {
     let plant: &ExternalPlant = study.scenario.plant.external().ok_or(NoModel::NoSimulator)?;
-    let Simulator::Jsbsim(jsbsim) = &plant.simulator;
+    let Simulator::Jsbsim(jsbsim) = &plant.simulator else { return Err(NoModel::NoSimulator) };
     if jsbsim.climb_rad != 0.0 {
         return Err(NoModel::NotLevel);
     }

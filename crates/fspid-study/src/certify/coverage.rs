@@ -95,6 +95,11 @@ pub const COVERAGE: &[KeyCoverage] = &[
     ),
     row("aircraft.ground_m", Beside, LINEAR_AT_TRIM),
     row("aircraft.validity", NoPart, AIM),
+    row(
+        "simulator.*",
+        Refused,
+        "another simulator flies, and there are no equations of its aircraft",
+    ),
     row("actuator.preset", Covered, "the parts that it stands for"),
     row("actuator.time_constant_s", Covered, "exactly held between samples"),
     row("actuator.natural_frequency_rad_s", Covered, "exactly held between samples"),

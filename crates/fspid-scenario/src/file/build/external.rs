@@ -48,7 +48,7 @@ pub(super) fn external(
 const OUTPUTS: &[[Key<str>; 2]] = &[keys::FMU_OUTPUTS];
 
 /// The variable in a place, in radians or in degrees; nothing where both are given, which is a problem.
-fn called(
+pub(super) fn called(
     report: &mut Report,
     section: &Section,
     [in_radians, in_degrees]: &[Key<str>; 2],

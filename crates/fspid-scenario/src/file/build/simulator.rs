@@ -3,9 +3,11 @@
 use std::path::PathBuf;
 
 use fspid_aircraft::atmosphere::{Air, STANDARD_GRAVITY_M_S2};
-use fspid_sim::external_plant::{Jsbsim, JsbsimSpeed};
+use fspid_sim::external::Contents;
+use fspid_sim::external_plant::{FmuPlant, Jsbsim, JsbsimSpeed};
 use fspid_sim::{Course, ExternalPlant, Simulator};
 
+use super::external::called;
 use super::flown::{Flown, Way};
 use super::rad;
 use crate::file::aircraft::{quantity, unit_size};
@@ -26,6 +28,7 @@ pub(super) fn flown(
     refuse_air(report, section);
     let simulator = match part.variant()? {
         SimulatorKind::Jsbsim => Simulator::Jsbsim(jsbsim(report, files, part)?),
+        SimulatorKind::Fmu => Simulator::Fmu(fmu(report, files, part)?),
     };
     let plant = ExternalPlant { simulator, answer_limit_s: part.get(keys::ANSWER_LIMIT_S)? };
     let way = way(&plant);
@@ -74,6 +77,27 @@ fn jsbsim(report: &mut Report, files: &mut Files<'_>, part: &Section) -> Option<
     })
 }
 
+fn fmu(report: &mut Report, files: &mut Files<'_>, part: &Section) -> Option<FmuPlant> {
+    let (file, bytes) = match files.program(part.get(keys::FILE)?) {
+        Ok(found) => found,
+        Err(reason) => {
+            let allowed = "an FMU, its path relative to the scenario's folder";
+            part.wrong(report, keys::FILE, format!("cannot be read: {reason}"), allowed);
+            return None;
+        }
+    };
+    let inputs = part.get(keys::INPUTS).map(|inputs| (inputs, &[keys::FMU_INPUTS][..]));
+    let outputs = part.get(keys::OUTPUTS).map(|outputs| (outputs, &keys::FMU_OUTPUTS[..]));
+    let mut renamed = Vec::new();
+    for (section, rows) in inputs.into_iter().chain(outputs) {
+        for keys in rows {
+            renamed.extend(called(report, section, keys)?);
+        }
+    }
+    let trim_elevator_rad = rad(part.get(keys::TRIM_ELEVATOR_DEG)?);
+    Some(FmuPlant { file, contents: Contents(bytes), renamed, trim_elevator_rad })
+}
+
 /// The folder of one's own, if there is one; the aircraft's files are part of the digest.
 fn folder(report: &mut Report, files: &mut Files<'_>, part: &Section) -> Option<Option<PathBuf>> {
     let Some(folder) = part.get(keys::FOLDER) else { return Some(None) };
@@ -101,7 +125,7 @@ fn speed(part: &Section) -> Option<JsbsimSpeed> {
 /// The way of a flight whose true airspeed is given. That of another is the simulator's to say, so that nothing is
 /// scheduled by it.
 fn way(plant: &ExternalPlant) -> Option<Way> {
-    let Simulator::Jsbsim(jsbsim) = &plant.simulator;
+    let Simulator::Jsbsim(jsbsim) = &plant.simulator else { return None };
     let JsbsimSpeed::True(airspeed_m_s) = jsbsim.speed else { return None };
     let density_kg_m3 = Air::standard(jsbsim.altitude_m).ok()?.density_kg_m3;
     Some(Way {

@@ -90,7 +90,11 @@ pub(super) fn place_of_plant(section: &Section) -> Option<(&Section, KeyName)> {
         return Some((part, key_of(part)));
     }
     if let Some(part) = section.get(keys::SIMULATOR) {
-        return Some((part, simulator::AIRCRAFT.into()));
+        let key = match part.variant() {
+            Some(simulator::SimulatorKind::Fmu) => simulator::FILE,
+            Some(simulator::SimulatorKind::Jsbsim) | None => simulator::AIRCRAFT,
+        };
+        return Some((part, key.into()));
     }
     let part = section.get(keys::AIRCRAFT)?;
     let key = if part.given(flight::FILE) { flight::FILE } else { flight::NAME };

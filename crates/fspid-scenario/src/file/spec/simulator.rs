@@ -5,12 +5,12 @@ use super::flight::{ALTITUDES, ALTITUDES_FT};
 use crate::keyed::word::words;
 use crate::keyed::{
     FILE_PATH, Key, Range, Section, TEXT, Table, choosing, defaulted, finite, number, of_kinds,
-    one_of, optional, plain, positive, required, tables, variant, whole, word,
+    one_of, optional, plain, positive, required, table, tables, variant, whole, word,
 };
 
 words! {
     /// Other simulators.
-    SimulatorKind { Jsbsim = "jsbsim" }
+    SimulatorKind { Jsbsim = "jsbsim", Fmu = "fmu" }
 }
 
 words! {
@@ -95,25 +95,83 @@ pub(crate) const NAME: Key<str> =
     required("name", TEXT, "Name of the property, such as \"atmosphere/turb-type\".");
 pub(crate) const VALUE: Key<f64> = required("value", finite(""), "Its value, in JSBSim's unit.");
 
+pub(crate) const FILE: Key<str> =
+    required("file", FILE_PATH, "The FMU, relative to this file; it runs as you do.");
+pub(crate) const INPUTS: Key<Section> = optional(
+    "inputs",
+    table(&INPUTS_TABLE),
+    "How the FMU calls its elevator; the unit is that of the key.",
+);
+pub(crate) const OUTPUTS: Key<Section> = optional(
+    "outputs",
+    table(&OUTPUTS_TABLE),
+    "How the FMU calls pitch and pitch rate; the unit is that of the key.",
+);
+pub(crate) const TRIM_ELEVATOR_DEG: Key<f64> = defaulted(
+    "trim_elevator_deg",
+    number("deg", Range::Between(-90.0, 90.0)),
+    0.0,
+    "Elevator at the trim at which the FMU starts, trailing edge down positive.",
+);
+const fn called(name: &'static str, doc: &'static str) -> Key<str> {
+    optional(name, TEXT, doc)
+}
+/// The FMU's name of its elevator, in radians and in degrees.
+pub(crate) const FMU_INPUTS: [Key<str>; 2] = [
+    called(
+        "elevator_rad",
+        "The input that is the elevator, trailing edge down positive, in radians; `-name` turns the sign.",
+    ),
+    called("elevator_deg", "The same in degrees."),
+];
+/// The same of what it shows.
+pub(crate) const FMU_OUTPUTS: [[Key<str>; 2]; 2] = [
+    [
+        called("theta_rad", "The output that is the pitch angle, in radians."),
+        called("theta_deg", "The same in degrees."),
+    ],
+    [
+        called("q_rad_s", "The output that is the pitch rate, in radians per second."),
+        called("q_deg_s", "The same in degrees per second."),
+    ],
+];
+static INPUTS_TABLE: Table = plain(
+    "The elevator of an FMU by its name there; `-name` turns a sign.",
+    &[&[&FMU_INPUTS[0], &FMU_INPUTS[1]]],
+);
+static OUTPUTS_TABLE: Table = plain(
+    "Outputs of an FMU by their names there; `-name` turns a sign.",
+    &[&[&FMU_OUTPUTS[0][0], &FMU_OUTPUTS[0][1]], &[&FMU_OUTPUTS[1][0], &FMU_OUTPUTS[1][1]]],
+);
+
 static PROPERTY_TABLE: Table = plain("A property of JSBSim.", &[&[&NAME, &VALUE]]);
 
 pub(super) static SIMULATOR_TABLE: Table = of_kinds(
     "An aircraft that another simulator flies, in a process of its own; pitch counts from the trim, which is the simulator's. What asks equations is refused.",
     &[&[&ANSWER_LIMIT_S]],
-    &[variant(
-        "jsbsim",
-        choosing(
-            "JSBSim, through its Python package, which is not part of this program: `pip install jsbsim==1.3.3`.",
-            &[
-                &[&AIRCRAFT, &FOLDER, &VERSION],
-                &[&AIRSPEED[0], &AIRSPEED[1], &AIRSPEED[2], &CALIBRATED_KT, &MACH],
-                &[&ALTITUDE[0], &ALTITUDE[1], &CLIMB_ANGLE_DEG, &HEADING_DEG],
-                &[&GEAR, &WINGS, &SEED, &PROPERTY],
-            ],
-            &[
-                one_of!(AIRSPEED[0], AIRSPEED[1], AIRSPEED[2], CALIBRATED_KT, MACH),
-                one_of!(ALTITUDE[0], ALTITUDE[1]),
-            ],
+    &[
+        variant(
+            "jsbsim",
+            choosing(
+                "JSBSim, through its Python package, which is not part of this program: `pip install jsbsim==1.3.3`.",
+                &[
+                    &[&AIRCRAFT, &FOLDER, &VERSION],
+                    &[&AIRSPEED[0], &AIRSPEED[1], &AIRSPEED[2], &CALIBRATED_KT, &MACH],
+                    &[&ALTITUDE[0], &ALTITUDE[1], &CLIMB_ANGLE_DEG, &HEADING_DEG],
+                    &[&GEAR, &WINGS, &SEED, &PROPERTY],
+                ],
+                &[
+                    one_of!(AIRSPEED[0], AIRSPEED[1], AIRSPEED[2], CALIBRATED_KT, MACH),
+                    one_of!(ALTITUDE[0], ALTITUDE[1]),
+                ],
+            ),
         ),
-    )],
+        variant(
+            "fmu",
+            plain(
+                "An FMU for co-simulation, FMI 2.0 or 3.0: elevator in, pitch and pitch rate out. It starts at its trim.",
+                &[&[&FILE, &INPUTS, &OUTPUTS, &TRIM_ELEVATOR_DEG]],
+            ),
+        ),
+    ],
 );
