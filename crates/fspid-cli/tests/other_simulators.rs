@@ -24,7 +24,7 @@ static void all(const void *from, size_t size) {
 }
 static void words(const char *text) { uint32_t size = (uint32_t)strlen(text); all(&size, 4); all(text, size); }
 static void sample(uint64_t number, double theta, double q, double elevator) {
-    double n[16] = { 0.02 + theta, q, 0, 100, 1000, 1000, 0.02, elevator, 0, 0, 0, 0, 0, 0, -1, 0 };
+    double n[26] = { 0.02 + theta, q, 0, 100, 1000, 1000, 0.02, elevator, 0, 0, 0, 0, 0, 0, -1, 0 };
     all(&number, 8); all(n, sizeof n);
 }
 static const char *of(int count, char **arguments, const char *key) {

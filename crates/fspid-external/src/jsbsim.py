@@ -240,6 +240,12 @@ def flight(asked, wire):
     axes = [(node(f"velocities/{axis}-fps"), node(f"velocities/{axis}-aero-fps")) for axis in "uvw"]
     forces = [node(f"forces/fb{axis}-total-lbs") for axis in "xyz"]
     weight, wow = node("inertia/weight-lbs")[0], node("gear/wow")[0]
+    rest = [
+        node("attitude/psi-rad"), node("aero/beta-rad"), node("velocities/p-rad_sec"), node("velocities/r-rad_sec"),
+        node("fcs/throttle-pos-norm"), node("velocities/h-dot-fps", FOOT_M),
+        node("velocities/v-north-fps", FOOT_M), node("velocities/v-east-fps", FOOT_M),
+        node("position/distance-from-start-lat-mt"), node("position/distance-from-start-lon-mt"),
+    ]
     roll = node("velocities/p-rad_sec")[0]
     bank = places[2][0]
     elevator, aileron = (manager.get_node(f"fcs/{name}-cmd-norm") for name in ("elevator", "aileron"))
@@ -253,9 +259,10 @@ def flight(asked, wire):
         heavy = weight.get_double_value()
         numbers.extend(it.get_double_value() / heavy for it, _ in forces)
         numbers.append(0.0 if wow is None else wow.get_double_value())
+        numbers.extend(0.0 if it is None else it.get_double_value() * unit for it, unit in rest)
         return numbers
 
-    frame = struct.Struct("=Q16d")
+    frame = struct.Struct("=Q26d")
     steps = asked["steps"]
     ask = struct.Struct(f"={steps}d")
     wire.sendall(struct.pack("=B", READY) + text(jsbsim.__version__) + frame.pack(0, *sample()))
@@ -289,7 +296,7 @@ def flight(asked, wire):
                 set_aileron(-1.0 if turned < -1.0 else 1.0 if turned > 1.0 else turned)
             if not run():
                 # No number of a sample: it says that it cannot go on.
-                send(frame.pack(0xFFFF_FFFF_FFFF_FFFF, *([0.0] * 16)))
+                send(frame.pack(0xFFFF_FFFF_FFFF_FFFF, *([0.0] * 26)))
                 return
         send(frame.pack(number, *sample()))
         number += 1

@@ -138,10 +138,24 @@ pub struct PlantSample {
     pub felt: [f64; 3],
     /// True where a wheel, or anything else of it, touches the ground.
     pub is_on_ground: bool,
+    /// Heading, clockwise from north, rad.
+    pub heading_rad: f64,
+    /// Angle of sideslip, rad.
+    pub sideslip_rad: f64,
+    /// Body rates of roll and yaw, rad/s.
+    pub roll_yaw_rad_s: [f64; 2],
+    /// Throttle of the first engine, 0 to 1; 0 without one.
+    pub throttle: f64,
+    /// Rate of the altitude, m/s.
+    pub climb_m_s: f64,
+    /// Speed over the ground to the north and to the east, m/s.
+    pub over_ground_m_s: [f64; 2],
+    /// Way over the ground since the start, m north and m east.
+    pub position_m: [f64; 2],
 }
 
 /// How many numbers a sample is made of.
-pub const PLANT_SAMPLE_NUMBERS: usize = 16;
+pub const PLANT_SAMPLE_NUMBERS: usize = 26;
 
 impl PlantSample {
     /// The sample of numbers in the order of the fields; nothing where one of them is not finite.
@@ -150,7 +164,10 @@ impl PlantSample {
         let [theta_rad, q_rad_s, bank_rad, airspeed_m_s, altitude_m, height_m, rest @ ..] =
             *numbers;
         let [alpha_rad, elevator_rad, aileron_rad, air_x, air_y, air_z, rest @ ..] = rest;
-        let [felt_x, felt_y, felt_z, touches] = rest;
+        let [felt_x, felt_y, felt_z, touches, rest @ ..] = rest;
+        let [heading_rad, sideslip_rad, roll_rad_s, yaw_rad_s, throttle, climb_m_s, rest @ ..] =
+            rest;
+        let [north_m_s, east_m_s, north_m, east_m] = rest;
         numbers.iter().all(|number| number.is_finite()).then_some(Self {
             theta_rad,
             q_rad_s,
@@ -164,6 +181,13 @@ impl PlantSample {
             air_m_s: [air_x, air_y, air_z],
             felt: [felt_x, felt_y, felt_z],
             is_on_ground: touches != 0.0,
+            heading_rad,
+            sideslip_rad,
+            roll_yaw_rad_s: [roll_rad_s, yaw_rad_s],
+            throttle,
+            climb_m_s,
+            over_ground_m_s: [north_m_s, east_m_s],
+            position_m: [north_m, east_m],
         })
     }
 }

@@ -76,6 +76,8 @@ impl ExternalMotion {
     /// What it shows beyond pitch, if it does.
     pub(crate) fn sample(&self) -> Option<AircraftSample> {
         let now = &self.now;
+        let [over_north_m_s, over_east_m_s] = now.over_ground_m_s;
+        let ground_speed_m_s = libm::hypot(over_north_m_s, over_east_m_s);
         self.shows_aircraft.then(|| AircraftSample {
             airspeed_m_s: now.airspeed_m_s,
             altitude_m: now.altitude_m,
@@ -84,10 +86,34 @@ impl ExternalMotion {
             aileron_rad: now.aileron_rad,
             load_factor: -now.felt[2],
             air_m_s: now.air_m_s,
+            position_m: now.position_m,
+            heading_rad: within_half_a_turn(now.heading_rad),
+            attitude_rad: now.theta_rad,
+            sideslip_rad: now.sideslip_rad,
+            roll_yaw_rad_s: now.roll_yaw_rad_s,
+            throttle: now.throttle,
+            flight_path_rad: libm::atan2(now.climb_m_s, ground_speed_m_s),
+            climb_m_s: now.climb_m_s,
+            ground_speed_m_s,
+            // Nobody asks: an autopilot of ours flies aircraft of ours.
+            path_acceleration_m_s2: 0.0,
+            // Simulators tell how the air moves, and not how it turns.
+            air_rad_s: [0.0; 3],
+            energy_height_m: now.altitude_m
+                + now.airspeed_m_s * now.airspeed_m_s / (2.0 * STANDARD_GRAVITY_M_S2),
             apparent_vertical_rad: apparent_vertical_rad(now),
             departure: None,
         })
     }
+}
+
+/// What the energy height is counted with, m/s².
+const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
+
+/// An angle within ±π.
+fn within_half_a_turn(angle_rad: f64) -> f64 {
+    use std::f64::consts::TAU;
+    angle_rad - TAU * (angle_rad / TAU).round()
 }
 
 /// Angle between the true vertical and that of a pendulum, along the heading, rad.

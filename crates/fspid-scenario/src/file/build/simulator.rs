@@ -138,6 +138,7 @@ fn way(plant: &ExternalPlant) -> Option<Way> {
         },
         span_m: None,
         gravity_m_s2: STANDARD_GRAVITY_M_S2,
+        altitude_m: jsbsim.altitude_m,
         dynamic_pressure_pa: 0.5 * density_kg_m3 * airspeed_m_s * airspeed_m_s,
         assumed: false,
     })
