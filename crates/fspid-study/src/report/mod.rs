@@ -6,6 +6,7 @@
 //! Not here: what is measured and judged (`metrics`), and how a line is drawn (`figure`).
 
 mod audit;
+mod flight_path;
 mod loops;
 pub mod measures;
 pub mod settings;

@@ -1,7 +1,8 @@
 //! Time responses as figures.
 
-use fspid_sim::{Controller, Outcome, Scenario, Trace};
+use fspid_sim::{AircraftPlant, Controller, Outcome, Scenario, Trace};
 
+use super::flight_path::{self, Flown};
 use crate::simulation::{ControllerResult, Simulation};
 use fspid_plot::{Band, LineFigure, LinePanel, Series, SeriesStyle, Svg};
 use fspid_scenario::units::degrees;
@@ -27,6 +28,8 @@ pub struct Drawing<'a> {
 enum Part {
     Angles,
     Air,
+    Side,
+    Loads,
     Gains,
 }
 
@@ -70,6 +73,8 @@ impl Drawing<'_> {
         let parts = [
             (Part::Angles, "angles", self.angles()),
             (Part::Air, "through the air", self.air()),
+            (Part::Side, "from the side", self.side_view()),
+            (Part::Loads, "load factor and airspeed", self.loads()),
             (Part::Gains, "gains", self.gains()),
         ];
         let drawn = parts.into_iter().filter(|(_, _, panels)| !panels.is_empty());
@@ -97,6 +102,28 @@ impl Drawing<'_> {
             return Vec::new();
         }
         AIRCRAFT.iter().filter_map(|(label, name)| self.column(label, name)).collect()
+    }
+
+    /// The flights of a nonlinear aircraft, as they are drawn, and the aircraft.
+    fn aircraft(&self) -> Option<(&AircraftPlant, Vec<Flown<'_>>)> {
+        let plant = self.scenario.plant.aircraft().filter(|_| self.detailed)?;
+        let flights = self.flown().map(|(index, result)| {
+            (SeriesStyle::Numbered(index), result.name.as_str(), &result.trace)
+        });
+        Some((plant, flights.collect()))
+    }
+
+    fn side_view(&self) -> Vec<LinePanel> {
+        let drawn = self
+            .aircraft()
+            .and_then(|(plant, flights)| flight_path::side_view(plant, &flights, self.width_px));
+        drawn.into_iter().collect()
+    }
+
+    fn loads(&self) -> Vec<LinePanel> {
+        let drawn =
+            self.aircraft().and_then(|(plant, flights)| flight_path::loads(plant, &flights));
+        drawn.into_iter().collect()
     }
 
     fn gains(&self) -> Vec<LinePanel> {
@@ -233,6 +260,17 @@ impl Drawing<'_> {
                 };
                 flown.map(|(label, _)| word(label)).collect()
             }
+            Part::Side => vec![
+                "altitude over the way over ground, with the air that the first flight met as arrows where it moves; \
+                 heights are drawn larger than ways"
+                    .to_owned(),
+            ],
+            Part::Loads => vec![
+                "load factor over true airspeed, with what the angles of attack at which the data of the aircraft end \
+                 would give at the altitude and with the controls of the trim: the ends of the data, neither a stall nor \
+                 a limit of the structure"
+                    .to_owned(),
+            ],
             Part::Gains => {
                 let flown = self.flown().filter(|(_, result)| self.is_tuned(&result.name));
                 let whose = if flown.count() == 1 { "controller" } else { "controllers" };
