@@ -10,13 +10,14 @@ const PROGRAM: &str = "cargo run --release -- ";
 /// What else is run: building what the next command flies.
 const COMPILER: &str = "cc -shared ";
 /// Commands that are not run here, each with the reason.
-const NOT_RUN: [(&str, &str); 7] = [
+const NOT_RUN: [(&str, &str); 8] = [
     ("serve", "goes on until Ctrl-C; tests of its own run it"),
     ("reproduce", "the end-to-end check runs it"),
     ("contest", "takes most of an hour"),
     ("bench", "measures"),
     ("campaign run", "ten thousand flights; the end-to-end check runs five hundred"),
     ("campaign re", "of those flights"),
+    ("campaign rare", "twenty thousand flights; tests of its own fly fewer"),
     ("aircraft trim f16.toml", "NASA's files are not kept here"),
 ];
 /// Commands that do not end with 0, and what they end with.

@@ -48,8 +48,8 @@ pub struct Likeliest {
     pub changes: Vec<String>,
     /// The command that flies it.
     pub command: String,
-    /// How far its numbers are from their middle, in standard deviations.
-    pub distance: f64,
+    /// How far its numbers are from their middle, in standard deviations; none where seeds alone are drawn.
+    pub distance: Option<f64>,
 }
 
 /// Standard normal quantile at 0.975.
@@ -71,7 +71,9 @@ impl Rare {
         let likeliest = |point: &Point| {
             let changes = target.changes(point);
             let command = command(campaign, &changes);
-            Likeliest { changes, command, distance: libm::sqrt(point.distance_squared()) }
+            let has_numbers = !point.normals.is_empty();
+            let distance = has_numbers.then(|| libm::sqrt(point.distance_squared()));
+            Likeliest { changes, command, distance }
         };
         Self {
             question: question.clone(),

@@ -33,6 +33,8 @@ const STRAIGHT: f64 = 2.0 / 3.0;
 const WIDER: f64 = 1.2;
 /// Fewest failures that count, as if their weights were alike (Kish's effective number).
 pub const LEAST_EFFECTIVE: f64 = 100.0;
+/// Least share of the failures that they may be: of thousands of which a few decide, chance alone makes a hundred.
+const LEAST_SHARE: f64 = 0.03;
 /// Numbers of streams of its own: teams have those below.
 const TEAM: u64 = 100;
 /// Standard normal quantile at 0.975.
@@ -213,7 +215,8 @@ fn weighed(drawn: &[(Point, f64)], aim: &Aim) -> Importance {
     let estimate = sum / count;
     let variance = (squares / count - estimate * estimate) / count;
     let error = libm::sqrt(variance.max(0.0)) / estimate;
-    let known = if effective >= LEAST_EFFECTIVE {
+    let least = LEAST_EFFECTIVE.max(LEAST_SHARE * weights.len() as f64);
+    let known = if effective >= least {
         let at = |sign: f64| (estimate * libm::exp(sign * Z * error)).min(1.0);
         Known::Within(Interval { estimate, low: at(-1.0), high: at(1.0), spread: error })
     } else {

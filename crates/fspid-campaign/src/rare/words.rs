@@ -71,10 +71,13 @@ impl Rare {
             ));
         }
         if let Some(likeliest) = &self.likeliest {
-            out.push_str(&format!(
-                "\n  the likeliest failure of those flown, {:.2} standard deviations off the middle:\n",
-                likeliest.distance
-            ));
+            let which = likeliest.distance.map_or_else(
+                || "a failure of those flown".to_owned(),
+                |distance| {
+                    format!("the likeliest failure of those flown, {distance:.2} standard deviations off the middle")
+                },
+            );
+            out.push_str(&format!("\n  {which}:\n"));
             for change in &likeliest.changes {
                 out.push_str(&format!("    {change}\n"));
             }
@@ -126,10 +129,14 @@ impl Rare {
     fn cost(&self) -> String {
         let flown = whole(self.flights());
         match self.plain_flights() {
-            Some(plain) => format!(
+            Some(plain) if plain > self.flights() as f64 => format!(
                 "  flights: {flown}; plain sampling takes {} for an interval as narrow, {} times as many\n",
                 number(plain),
                 number(plain / self.flights().max(1) as f64)
+            ),
+            Some(plain) => format!(
+                "  flights: {flown}; plain sampling takes {}: it is not rare, and `fspid campaign run` is cheaper\n",
+                number(plain)
             ),
             None => format!("  flights: {flown}\n"),
         }
