@@ -3,7 +3,7 @@
 //! The search is a function of its seed and of the scores, so that the scores are all that is kept: begun again, it asks for
 //! the same points in the same order, and those that were flown are read. A part is whole or not there.
 
-use std::path::PathBuf;
+use std::path::Path;
 
 use fspid_study::output;
 
@@ -75,9 +75,9 @@ impl LimitState for Record<'_> {
 }
 
 /// The scores of a part that is whole and of these points.
-fn read(path: &PathBuf, head: &str, count: usize) -> Result<Vec<f64>, CampaignError> {
+fn read(path: &Path, head: &str, count: usize) -> Result<Vec<f64>, CampaignError> {
     let foreign =
-        |reason: &str| CampaignError::Foreign { path: path.clone(), reason: reason.to_owned() };
+        |reason: &str| CampaignError::Foreign { path: path.to_owned(), reason: reason.to_owned() };
     let text = fspid_scenario::file::read_text(path)?;
     let Some(rest) = text.strip_prefix(head) else {
         return Err(foreign("it is not of these flights"));
