@@ -33,7 +33,7 @@ impl Tally {
                 self.given += 1;
                 self.above += u64::from(low > probability);
                 self.below += u64::from(high < probability);
-                self.half_width += 0.5 * (high / low).ln();
+                self.half_width += 0.5 * libm::log(high / low);
                 self.estimates += estimate / probability;
             }
             Known::Below { most, .. } => {
@@ -52,7 +52,7 @@ impl Tally {
             100.0 * held as f64 / given,
             self.above,
             self.below,
-            (self.half_width / given).exp(),
+            libm::exp(self.half_width / given),
             self.estimates / given,
             self.bounded,
             self.wrong_bounds
@@ -89,7 +89,7 @@ fn main() {
         for case in cases {
             for exponent in [3, 5, 7, 9] {
                 let mut tally = Tally::default();
-                let probability = 10.0_f64.powi(-exponent);
+                let probability = libm::pow(10.0, -f64::from(exponent));
                 let name = case(probability).name;
                 // Noise of air is drawn as it is by importance sampling: nothing rare is found.
                 if method == "importance" && name.contains("lag") {

@@ -372,6 +372,10 @@ fn a_probability_that_is_required_decides_about_the_exit_code() {
     let not_met = fspid(&with(&RARE, &["--most", "1e-12", "--quiet"]), folder);
     assert_eq!(code(&not_met), 1);
     assert!(text(&not_met.stdout).contains(": NOT MET."), "{}", text(&not_met.stdout));
+    let importance = with(&RARE, &["--most", "0.9", "--method", "importance"]);
+    let refused = fspid(&importance, folder);
+    assert_eq!(code(&refused), 2);
+    assert!(text(&refused.stderr).contains("says nothing of regions"), "{}", text(&refused.stderr));
     for most in ["0", "-1", "2", "nan", "much"] {
         let refused = fspid(&with(&RARE, &["--most", most]), folder);
         assert_eq!(code(&refused), 2, "{most}");

@@ -74,6 +74,10 @@ pub fn rare(
     progress: &Progress,
 ) -> Result<Rare, CampaignError> {
     RARE_FLIGHTS.check(question.flights)?;
+    if question.method == Method::Importance && question.most.is_some() {
+        let reason = "importance sampling alone says nothing of regions that it did not find, so that it shows no probability to be below one that is required; take the method `subset` or `both`";
+        return Err(CampaignError::NotOfFlights { reason: reason.to_owned() });
+    }
     let target = || Target::of(campaign, progress, &question.fails, question.controller.as_deref());
     let asked = target()?;
     let json = asked_json(campaign, question, asked.controller());

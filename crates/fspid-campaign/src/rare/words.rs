@@ -99,6 +99,11 @@ impl Rare {
             );
         }
         match self.interval() {
+            Some(interval) if self.question.method == Method::Importance => format!(
+                "once in {} flights, as far as one region of failures was found\n  a flight: {}",
+                once(interval.estimate),
+                range(interval)
+            ),
             Some(interval) => format!(
                 "once in {} flights\n  a flight: {}",
                 once(interval.estimate),

@@ -49,7 +49,7 @@ pub fn linear(normals: usize, probability: f64) -> Case {
 
 /// Outside of a circle: of two numbers the squared distance is exponential with mean 2.
 pub fn circle(probability: f64) -> Case {
-    let limit = -2.0 * probability.ln();
+    let limit = -2.0 * libm::log(probability);
     case("outside of a circle", probability, (2, 0), move |point| point.distance_squared() - limit)
 }
 
@@ -85,7 +85,7 @@ pub fn lag_and_number(probability: f64) -> Case {
 
 /// $\sum a^k n_k$ over its standard deviation.
 fn lagged(point: &Point) -> f64 {
-    let weights: Vec<f64> = (0..20).map(|k| 0.8_f64.powi(k)).collect();
+    let weights: Vec<f64> = (0..20).map(|k| libm::pow(0.8, f64::from(k))).collect();
     let deviation = weights.iter().map(|weight| weight * weight).sum::<f64>().sqrt();
     let noise = |k: usize| -> f64 {
         let terms = &point.airs[0].terms;
@@ -100,7 +100,7 @@ fn number(seed: u64, k: usize) -> f64 {
     bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     bits ^= bits >> 31;
-    quantile(((bits >> 12) * 2 + 1) as f64 * 2.0_f64.powi(-53))
+    quantile(((bits >> 12) * 2 + 1) as f64 * libm::scalbn(1.0, -53))
 }
 
 /// What does not fail, however far its number is out.
