@@ -44,7 +44,7 @@ const FULL_DEG: f64 = 20.0;
 #[must_use]
 pub fn flightgear_protocol() -> String {
     let mut text = String::from(
-        "<?xml version=\"1.0\"?>\n<!-- Lines of `fspid show`: copy to Protocol/fspid.xml in FlightGear's data, then\n     fgfs --fdm=null --generic=socket,in,60,,5505,udp,fspid -->\n<PropertyList>\n  <generic>\n    <input>\n      <line_separator>newline</line_separator>\n      <var_separator>,</var_separator>\n",
+        "<?xml version=\"1.0\"?>\n<!-- Lines of `fspid show`: copy to Protocol/fspid.xml in FlightGear's data; its options are\n     fdm=null and generic=socket,in,60,,5505,udp,fspid -->\n<PropertyList>\n  <generic>\n    <input>\n      <line_separator>newline</line_separator>\n      <var_separator>,</var_separator>\n",
     );
     for (node, _) in FLIGHTGEAR {
         text += &format!(
