@@ -120,7 +120,7 @@ mod tests {
 
     #[test]
     fn a_spool_of_first_order_takes_its_time_constant_and_an_instant_one_none() {
-        assert_eq!(Spool::FirstOrder { time_constant_s: 4.0 }.rate_per_s(0.2, 0.6), 0.1);
+        assert_eq!(Spool::FirstOrder { time_constant_s: 4.0 }.rate_per_s(0.25, 0.75), 0.125);
         assert_eq!(Spool::Instant.rate_per_s(0.2, 0.6), 0.0);
         assert_eq!(Spool::StevensLewis.rate_per_s(0.8, 1.0), power_rate_per_s(0.8, 1.0));
     }

@@ -307,7 +307,7 @@ fn a_flight_in_real_time_names_the_samples_that_come_late() {
     assert!(text(&output.stderr).contains("--real-time goes with a scenario that has [simulator]"));
 }
 
-/// Of FMI 2.0: $\\ddot\\theta = -4 \\theta - 2.4 \\dot\\theta + 4 e$ of an elevator that is nose up positive, in degrees.
+/// Of FMI 2.0: $\ddot\theta = -4 \theta - 2.4 \dot\theta + 4 e$ of an elevator that is nose up positive, in degrees.
 const FMU: &str = r#"
 #include <stddef.h>
 #include <stdlib.h>

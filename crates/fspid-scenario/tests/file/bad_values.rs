@@ -86,6 +86,31 @@ const CONDITIONS: [[&str; 2]; 5] = [
     ["airspeed_ft_s = 674.0", "altitude_m = 6000.0"],
 ];
 
+/// Distance, altitude of the antenna, and targets of the file with an autopilot, in every unit.
+const GUIDED: [[&str; 5]; 3] = [
+    [
+        "distance_m = 6000.0",
+        "antenna_altitude_m = 1.0",
+        "altitude_m = 310.0",
+        "airspeed_m_s = 55.0",
+        "vertical_speed_m_s = 0.5",
+    ],
+    [
+        "distance_ft = 20000.0",
+        "antenna_altitude_ft = 3.0",
+        "altitude_ft = 1020.0",
+        "airspeed_kt = 105.0",
+        "vertical_speed_ft_min = 100.0",
+    ],
+    [
+        "distance_nmi = 3.0",
+        "antenna_altitude_m = 1.0",
+        "altitude_m = 310.0",
+        "airspeed_ft_s = 180.0",
+        "vertical_speed_m_s = 0.5",
+    ],
+];
+
 /// The files with every key, once for each set-point, and once for each speed, altitude and wind.
 pub(crate) fn texts() -> Vec<String> {
     let whole = text("crates/fspid-scenario/tests/scenarios/every-key.toml");
@@ -100,7 +125,12 @@ pub(crate) fn texts() -> Vec<String> {
         let parts = CONDITIONS[0].into_iter().zip(condition);
         parts.fold(simulated.clone(), |text, (from, to)| text.replace(from, to))
     });
-    commands.into_iter().chain(flights).chain(simulated).collect()
+    let guided = text("crates/fspid-scenario/tests/scenarios/every-key-autopilot.toml");
+    let guided = GUIDED.map(|units| {
+        let parts = GUIDED[0].into_iter().zip(units);
+        parts.fold(guided.clone(), |text, (from, to)| text.replace(from, to))
+    });
+    commands.into_iter().chain(flights).chain(simulated).chain(guided).collect()
 }
 
 /// A controller whose file is not here: a text with it is never good, but its numbers are asked.

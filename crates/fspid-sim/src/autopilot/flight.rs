@@ -30,6 +30,8 @@ pub(crate) struct AutopilotState {
     channels: Vec<Channel>,
     sensors: Vec<Option<SensorState>>,
     targets: Vec<f64>,
+    /// For each loop: what is left of the step to what it commands on a beam.
+    fades: Vec<f64>,
     /// For each loop: what it sees at this sample.
     found: Vec<f64>,
     /// Of the throttle and of pitch by total energy.
@@ -62,6 +64,7 @@ impl AutopilotState {
             channels: vec![Channel::default(); autopilot.loops.len()],
             sensors: sensors.collect::<Result<_, _>>()?,
             targets: vec![0.0; autopilot.loops.len()],
+            fades: vec![0.0; autopilot.loops.len()],
             found: vec![0.0; autopilot.loops.len()],
             energy: [Channel::default(); 2],
             held: [None; Quantity::ALL.len()],
@@ -210,18 +213,32 @@ impl AutopilotState {
         }
         let target = self.targets[number];
         let (sign, base) = (outer.sign(), base(autopilot, outer, observed));
+        let current = self.current(autopilot, outer, observed);
+        let base = base.map_or(0.0, |base| base + self.faded(outer, number, current - base));
         let beam_rad = autopilot.glide_slope.as_ref().map_or(0.0, |beam| beam.angle_rad);
         let Units { held, moved } = outer.units;
         let asked = Asked {
             target: held * target,
             measured: held * nearest(outer.holds, target, found),
             rate: held * outer.holds.rate(observed, beam_rad),
-            current: moved * sign * (self.current(autopilot, outer, observed) - base),
+            current: moved * sign * (current - base),
             blocked: self.blocked(outer, pitch_cut).through(sign),
         };
         let answer = self.channels[number].answer(&outer.controller, &asked);
         let command = base + sign * answer / moved;
         self.move_to(outer, command);
+    }
+
+    /// What is left of the step from what was commanded to what a beam commands: it goes at the rate limit of the loop, so
+    /// that no integral has to carry it.
+    fn faded(&mut self, outer: &OuterLoop, number: usize, step: f64) -> f64 {
+        let is_engaged = self.channels.get(number).is_some_and(Channel::is_engaged);
+        let Some(fade) = self.fades.get_mut(number) else { return 0.0 };
+        let config = outer.controller.config();
+        let most =
+            config.slew_rad_s.map_or(f64::INFINITY, |it| it * config.dt_s / outer.units.moved);
+        *fade = if is_engaged { *fade - fade.clamp(-most, most) } else { step };
+        *fade
     }
 
     /// True for a loop whose target an engaged loop moves.
@@ -322,17 +339,17 @@ fn measured(sensor: Option<&mut SensorState>, k: usize, value: f64) -> f64 {
     sensor.map_or(value, |sensor| sensor.measure(k, Truth { value, ..Truth::default() }))
 }
 
-/// What a loop of the glide slope commands on the beam: the path of the beam itself.
-fn base(autopilot: &Autopilot, outer: &OuterLoop, observed: &Observed) -> f64 {
+/// What a loop of the glide slope commands on the beam: the path of the beam itself. None for every other loop.
+fn base(autopilot: &Autopilot, outer: &OuterLoop, observed: &Observed) -> Option<f64> {
     let (Quantity::GlideSlope, Moves::Loop(number), Some(beam)) =
         (outer.holds, outer.moves, autopilot.glide_slope.as_ref())
     else {
-        return 0.0;
+        return None;
     };
-    match autopilot.loops.get(number).map(|below| below.holds) {
-        Some(Quantity::FlightPath) => -beam.angle_rad,
-        Some(Quantity::VerticalSpeed) => -observed.ground_speed_m_s * libm::tan(beam.angle_rad),
-        _ => 0.0,
+    match autopilot.loops.get(number).map(|below| below.holds)? {
+        Quantity::FlightPath => Some(-beam.angle_rad),
+        Quantity::VerticalSpeed => Some(-observed.ground_speed_m_s * libm::tan(beam.angle_rad)),
+        _ => None,
     }
 }
 

@@ -55,6 +55,7 @@ const LINEAR_AT_TRIM: &str =
 const TERMS: &str = "the constant set-points and loads of the range are those that it reaches; the time while it moves is left out";
 const AT_LIMITS: &str = "an ellipsoid in which no limit acts, or said to be left out; where rest itself is at a limit nothing is proved";
 const STEPS: &str = "a disturbance of half a step; what it leaves is stated, and nothing is proved where that is more than a tenth of the set-points and than ten steps";
+const AROUND: &str = "the claim is about the pitch loop alone, not about the loops around it";
 const AIM: &str = "asked of flights, not of the loop";
 
 /// Every key of a scenario.
@@ -100,6 +101,12 @@ pub const COVERAGE: &[KeyCoverage] = &[
         Refused,
         "another simulator flies, and there are no equations of its aircraft",
     ),
+    row("engine.*", Beside, LINEAR_AT_TRIM),
+    row("lateral.*", NoPart, "pitch alone is in the model"),
+    row("glide_slope.*", Beside, AROUND),
+    row("outer_loop.*", Beside, AROUND),
+    row("total_energy.*", Beside, AROUND),
+    row("mode.*", Beside, AROUND),
     row("actuator.preset", Covered, "the parts that it stands for"),
     row("actuator.time_constant_s", Covered, "exactly held between samples"),
     row("actuator.natural_frequency_rad_s", Covered, "exactly held between samples"),

@@ -34,6 +34,8 @@ fn every_scenario_of_the_gallery_says_in_its_first_line_what_it_is_for() {
     for path in gallery() {
         let text = std::fs::read_to_string(&path).expect("readable");
         assert!(text.starts_with("# "), "{}", path.display());
-        assert!(text.lines().count() <= 70, "{}", path.display());
+        // What stands around the loop takes as much again as the loop.
+        let most = if text.contains("[[mode]]") { 120 } else { 70 };
+        assert!(text.lines().count() <= most, "{}", path.display());
     }
 }

@@ -74,7 +74,7 @@ pub(super) fn with_engine(report: &mut Report, section: &Section, flown: Flown) 
     let Plant::Aircraft(plant) = flown.plant else {
         let message = "a linear plant has no engine";
         report.value(part.place, &part.path, message, "nothing; or a nonlinear aircraft");
-        return None;
+        return Some(flown);
     };
     let plant = judged(report, (part, keys::TIME_CONSTANT_S), plant.with_engine(spool))?;
     Some(Flown { plant: plant.into(), ..flown })
@@ -83,14 +83,15 @@ pub(super) fn with_engine(report: &mut Report, section: &Section, flown: Flown) 
 /// How the lateral motion of an aircraft is looked after; the aircraft, where that makes sense.
 pub(super) fn with_lateral(report: &mut Report, section: &Section, flown: Flown) -> Option<Flown> {
     let Some(part) = section.get(LATERAL).filter(|part| part.sound) else { return Some(flown) };
+    let usual = Lateral::default();
     let lateral = Lateral {
-        bank_time_s: part.get(keys::BANK_TIME_S)?,
-        yaw_damping: part.get(keys::YAW_DAMPING)?,
+        bank_time_s: part.get(keys::BANK_TIME_S).unwrap_or(usual.bank_time_s),
+        yaw_damping: part.get(keys::YAW_DAMPING).unwrap_or(usual.yaw_damping),
     };
     let Plant::Aircraft(plant) = flown.plant else {
         let message = "a linear plant has no lateral motion";
         report.value(part.place, &part.path, message, "nothing; or a nonlinear aircraft");
-        return None;
+        return Some(flown);
     };
     let plant = judged(report, (part, keys::BANK_TIME_S), plant.with_lateral(lateral))?;
     Some(Flown { plant: plant.into(), ..flown })
@@ -276,15 +277,16 @@ fn sensor(
 ) -> Option<Option<Sensor>> {
     let Some(sensor) = part.get(keys::LOOP_SENSOR) else { return Some(None) };
     let size = |value: f64| if is_angle(quantity) { rad(value) } else { value };
+    let given = |key: Key<f64>| sensor.get(key).unwrap_or(0.0);
     let model = SensorModel {
-        noise_density: size(sensor.get(keys::NOISE)?),
-        bias: size(sensor.get(keys::BIAS)?),
-        resolution: size(sensor.get(keys::RESOLUTION)?),
-        period_s: sensor.get(keys::PERIOD_S)?,
-        delay_s: sensor.get(keys::DELAY_S)?,
+        noise_density: size(given(keys::NOISE)),
+        bias: size(given(keys::BIAS)),
+        resolution: size(given(keys::RESOLUTION)),
+        period_s: given(keys::PERIOD_S),
+        delay_s: given(keys::DELAY_S),
         ..SensorModel::default()
     };
-    let seed = u64::try_from(sensor.get(keys::SEED)?).ok()?;
+    let seed = u64::try_from(sensor.get(keys::LOOP_SEED).unwrap_or(1)).ok()?;
     let channel = FIRST_CHANNEL + u32::try_from(number).ok()?;
     judged(report, (sensor, keys::NOISE), Sensor::new(model, seed, channel)).map(Some)
 }
@@ -355,7 +357,7 @@ fn mode(report: &mut Report, part: &Section, section: &Section) -> Option<Mode> 
         entry: Entry { at_s: part.get(keys::AT_S)?, conditions: conditions(part) },
         engaged,
         total_energy,
-        targets: targets(part),
+        targets: targets(report, part)?,
         bank_rad: rad(part.get(keys::BANK_DEG)?),
     })
 }
@@ -386,13 +388,20 @@ fn engaged(report: &mut Report, part: &Section, section: &Section) -> Option<(Ve
     (report.count() == before).then_some((numbers, total_energy))
 }
 
-fn targets(part: &Section) -> Vec<Engagement> {
-    let Some(part) = part.get(keys::TARGET) else { return Vec::new() };
-    let target = |(word, units): &(HoldsWord, &'static [Key<f64>])| {
-        let target = units.iter().find_map(|key| in_si(part, *key))?;
-        Some(Engagement { quantity: holds(*word), target })
-    };
-    keys::TARGETS.iter().filter_map(target).collect()
+fn targets(report: &mut Report, part: &Section) -> Option<Vec<Engagement>> {
+    let Some(part) = part.get(keys::TARGET) else { return Some(Vec::new()) };
+    let before = report.count();
+    let mut targets = Vec::new();
+    for (word, units) in keys::TARGETS {
+        let mut given = units.iter().filter_map(|key| Some((key, in_si(part, *key)?)));
+        let Some((first, target)) = given.next() else { continue };
+        if let Some((second, _)) = given.next() {
+            let message = format!("`{}` says it already", first.name);
+            part.wrong(report, second.name, message, "one of the two");
+        }
+        targets.push(Engagement { quantity: holds(word), target });
+    }
+    (report.count() == before).then_some(targets)
 }
 
 fn conditions(part: &Section) -> Vec<Condition> {

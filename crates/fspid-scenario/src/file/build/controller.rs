@@ -63,7 +63,7 @@ pub(super) fn outer(
     section: &Section,
     ends: PidConfig<f64>,
 ) -> Option<Controller> {
-    let (gains, _) = gains(report, section);
+    let gains = parallel(section);
     let (weights, filter_s) = (weights(report, section), filter(report, section, None));
     let config = PidConfig {
         rate_gain_s: section.get(keys::RATE_GAIN)?,
@@ -72,11 +72,12 @@ pub(super) fn outer(
         integral: section.get(keys::INTEGRAL)?,
         ..ends
     };
+    let key = (section, keys::NAME);
     match section.variant()? {
-        OuterKind::Pid => placed(report, section, Pid::new(gains?, config)).map(Controller::Fixed),
+        OuterKind::Pid => judged(report, key, Pid::new(gains?, config)).map(Controller::Fixed),
         OuterKind::Fspid => {
             let tuner = tuner(report, files, section, gains);
-            placed(report, section, Fspid::new(tuner?, config)).map(Controller::SelfTuning)
+            judged(report, key, Fspid::new(tuner?, config)).map(Controller::SelfTuning)
         }
     }
 }
@@ -86,13 +87,17 @@ fn gains(report: &mut Report, section: &Section) -> (Option<Gains<f64>>, Option<
     if let Some(isa) = section.get(keys::ISA).or_else(|| section.get(keys::NOMINAL_ISA)) {
         return from_isa(report, isa);
     }
+    (parallel(section), None)
+}
+
+/// The gains in parallel form.
+fn parallel(section: &Section) -> Option<Gains<f64>> {
     let parallel = section.get(keys::NOMINAL).unwrap_or(section);
-    let gains = parallel.get(keys::KP).map(|kp| Gains {
+    parallel.get(keys::KP).map(|kp| Gains {
         kp,
         ki: parallel.get(keys::KI).unwrap_or(0.0),
         kd: parallel.get(keys::KD).unwrap_or(0.0),
-    });
-    (gains, None)
+    })
 }
 
 fn from_isa(report: &mut Report, isa: &Section) -> (Option<Gains<f64>>, Option<f64>) {

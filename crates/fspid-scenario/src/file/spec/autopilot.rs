@@ -14,8 +14,6 @@ use crate::keyed::{
     variant, whole, word,
 };
 
-use fspid_sim::aircraft::LEVELLING_TIME_S;
-
 words! {
     /// What an outer loop holds.
     HoldsWord {
@@ -68,28 +66,29 @@ pub(crate) const LOOP_SENSOR: Key<Section> = optional(
 
 pub(crate) const SEED: Key<i64> =
     defaulted("seed", whole(0, i64::MAX), 1, "The same seed gives the same errors.");
-pub(crate) const NOISE: Key<f64> = defaulted(
+// Optional, and not with a default: a loop without the table has no sensor.
+pub(crate) const LOOP_SEED: Key<i64> =
+    optional("seed", whole(0, i64::MAX), "The same seed gives the same errors; 1 if left out.");
+pub(crate) const NOISE: Key<f64> = optional(
     "noise_rt_hz",
     not_negative(""),
-    0.0,
-    "One-sided noise density: m, m/s or deg, for each √Hz.",
+    "One-sided noise density: m, m/s or deg, for each √Hz; none if left out.",
 );
 pub(crate) const BIAS: Key<f64> =
-    defaulted("bias", not_negative(""), 0.0, "Standard deviation of a flight's bias.");
+    optional("bias", not_negative(""), "Standard deviation of a flight's bias; none if left out.");
 pub(crate) const RESOLUTION: Key<f64> =
-    defaulted("resolution", not_negative(""), 0.0, "Resolution; 0 for none.");
-pub(crate) const PERIOD_S: Key<f64> = defaulted(
+    optional("resolution", not_negative(""), "Resolution; 0, and if left out, for none.");
+pub(crate) const PERIOD_S: Key<f64> = optional(
     "period_s",
     not_negative("s"),
-    0.0,
-    "Sampling time of its own; 0 for that of the loop.",
+    "Sampling time of its own; 0, and if left out, for that of the loop.",
 );
 pub(crate) const DELAY_S: Key<f64> =
-    defaulted("delay_s", not_negative("s"), 0.0, "From looking to showing.");
+    optional("delay_s", not_negative("s"), "From looking to showing; none if left out.");
 
 static LOOP_SENSOR_TABLE: Table = plain(
     "What measures what an outer loop holds, in its unit: m, m/s or deg.",
-    &[&[&SEED, &NOISE, &BIAS, &RESOLUTION, &PERIOD_S, &DELAY_S]],
+    &[&[&LOOP_SEED, &NOISE, &BIAS, &RESOLUTION, &PERIOD_S, &DELAY_S]],
 );
 
 /// How the terms of an outer loop are formed.
@@ -195,17 +194,15 @@ pub(crate) static ENGINE_TABLE: Table = of_kinds(
     ],
 );
 
-pub(crate) const BANK_TIME_S: Key<f64> = defaulted(
+pub(crate) const BANK_TIME_S: Key<f64> = optional(
     "bank_time_s",
     number("s", Range::Between(0.1, 100.0)),
-    LEVELLING_TIME_S,
-    "How fast the aileron brings the aircraft to the bank that is asked for.",
+    "How fast the aileron brings the aircraft to the bank that is asked for; 2 s if left out.",
 );
-pub(crate) const YAW_DAMPING: Key<f64> = defaulted(
+pub(crate) const YAW_DAMPING: Key<f64> = optional(
     "yaw_damping",
     number("", Range::UpTo(1.0)),
-    0.0,
-    "Damping ratio that the rudder brings the Dutch roll near, without sideslip in turns; 0 for a rudder that does not move.",
+    "Damping ratio that the rudder brings the Dutch roll near, without sideslip in turns; 0, and if left out, for a rudder that does not move.",
 );
 
 pub(crate) static LATERAL_TABLE: Table =
