@@ -97,6 +97,7 @@ fn dry_rate(missing: f64) -> f64 {
 }
 
 #[cfg(test)]
+#[allow(clippy::float_cmp, reason = "numbers that are chosen so that nothing is rounded")]
 mod tests {
     use super::*;
 

@@ -71,7 +71,7 @@ pub enum SimError {
     /// An autopilot around a plant that shows nothing but pitch.
     AutopilotNeedsAircraft,
     /// An autopilot that makes no sense.
-    Autopilot(AutopilotError),
+    Autopilot(Box<AutopilotError>),
     /// A question about a linear loop, of an aircraft that is none.
     NotLinear,
     /// A self-tuner of another structure than small signals along a flight are written for.
@@ -239,7 +239,7 @@ impl SimError {
 
 impl From<AutopilotError> for SimError {
     fn from(error: AutopilotError) -> Self {
-        Self::Autopilot(error)
+        Self::Autopilot(Box::new(error))
     }
 }
 

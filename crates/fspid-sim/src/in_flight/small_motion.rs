@@ -13,7 +13,7 @@ use crate::controller::Controller;
 use crate::error::SimError;
 use crate::flown::Perturbation;
 use crate::scenario::{Prepared, Scenario};
-use crate::surroundings::Surroundings;
+use crate::surroundings::{Surroundings, Weather};
 
 /// Smaller poles are gone within a sample: those of delays, and of what is remembered of the sample before.
 const GONE: f64 = 1e-6;
@@ -77,12 +77,8 @@ fn still(scenario: &Scenario, autopilot: &Autopilot, mode: usize) -> Result<Prep
     let mut still = scenario.clone();
     still.disturbances.clear();
     let course = scenario.surroundings.weather.as_ref().map(|weather| weather.course);
-    still.surroundings = Surroundings::default();
-    if let (Some(weather), Some(course)) = (&scenario.surroundings.weather, course) {
-        let calm =
-            crate::Weather { course, winds: Vec::new(), turbulence: None, ..weather.clone() };
-        still.surroundings.weather = Some(calm);
-    }
+    let calm = |course| Weather { course, winds: Vec::new(), turbulence: None };
+    still.surroundings = Surroundings { weather: course.map(calm), ..Surroundings::default() };
     let beam = autopilot.glide_slope().zip(scenario.plant.aircraft()).map(|(beam, plant)| {
         let (sine, cosine) = crate::math::sin_cos(beam.course_rad);
         GlideSlope {

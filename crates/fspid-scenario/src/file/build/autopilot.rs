@@ -99,7 +99,7 @@ pub(super) fn with_lateral(report: &mut Report, section: &Section, flown: Flown)
 
 /// Refuses every table of an autopilot around a plant that shows pitch alone.
 fn refuse_linear(report: &mut Report, section: &Section, flown: Option<&Flown>) {
-    if !flown.is_some_and(|flown| flown.plant.linear().is_some()) {
+    if flown.is_none_or(|flown| flown.plant.linear().is_none()) {
         return;
     }
     let lists = [section.sections(OUTER_LOOP), section.sections(MODE)].into_iter().flatten();
