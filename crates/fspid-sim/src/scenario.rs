@@ -3,7 +3,7 @@
 use crate::actuated::Actuated;
 use crate::actuator::Actuator;
 use crate::aircraft::{AircraftFlight, AircraftPlant};
-use crate::autopilot::Autopilot;
+use crate::autopilot::{Autopilot, Throttle};
 use crate::controller::Controller;
 use crate::error::SimError;
 use crate::external::{External, NamedExternal};
@@ -196,7 +196,7 @@ impl Scenario {
             pitch_sensor: self.surroundings.pitch_sensor,
             rate_sensor: self.surroundings.rate_sensor,
             autopilot: self.checked_autopilot()?.cloned(),
-            trim_throttle: self.plant.aircraft().map_or(0.0, |it| it.trim().controls.throttle),
+            throttle: self.plant.aircraft().map(Throttle::of),
         })
     }
 
@@ -338,7 +338,7 @@ pub struct Prepared {
     pub(crate) pitch_sensor: Option<Sensor>,
     pub(crate) rate_sensor: Option<Sensor>,
     pub(crate) autopilot: Option<Autopilot>,
-    pub(crate) trim_throttle: f64,
+    pub(crate) throttle: Option<Throttle>,
 }
 
 impl Prepared {

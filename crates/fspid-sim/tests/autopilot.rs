@@ -4,7 +4,7 @@
 
 use fspid_aircraft::aerodynamics::derivatives::{DragLaw, ThrustLaw};
 use fspid_aircraft::data::Laws;
-use fspid_aircraft::{Aircraft, Spool, TrimTarget};
+use fspid_aircraft::{Aircraft, Range, Spool, TrimTarget};
 use fspid_core::{
     AntiWindup, ControllerSetting, Derivative, Gains, Limits, Pid, PidConfig, SetpointWeights,
 };
@@ -28,9 +28,16 @@ const ALTITUDE_M: f64 = 300.0;
 
 /// The Navion at the condition of its data, in air that is the same everywhere.
 fn navion() -> AircraftPlant {
+    with_throttle(Range::ALL)
+}
+
+/// The same, whose throttle goes so far.
+fn with_throttle(throttle: Range) -> AircraftPlant {
     let data = derivative_data("navion");
     let laws = Laws { drag: DragLaw::Linear, thrust: ThrustLaw::Constant };
-    let forces = Forces::from(data.force_model(laws));
+    let mut model = data.force_model(laws);
+    model.travel.throttle = throttle;
+    let forces = Forces::from(model);
     let aircraft = Aircraft::new(data.mass_properties(), forces, data.reference_environment());
     let target =
         TrimTarget { airspeed_m_s: SPEED_M_S, altitude_m: ALTITUDE_M, flight_path_rad: 0.0 };
@@ -305,6 +312,29 @@ fn an_outer_integral_waits_while_the_pitch_controller_cannot_go_further() {
     let furthest = trace.setpoint_rad.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
     // Without waiting the integral alone would come to 0.004 · 8 · 60 = 1.9 rad.
     assert!(furthest < 0.2, "{furthest}");
+}
+
+/// It used to wind up against the stop of the throttle, and to leave it only when all that was added up was taken off again.
+#[test]
+fn an_autothrottle_does_not_wind_up_at_the_stop_of_the_throttle() {
+    let fast = Mode {
+        targets: vec![Engagement { quantity: Quantity::Airspeed, target: SPEED_M_S + 30.0 }],
+        ..mode("fast", &[ALTITUDE, VERTICAL_SPEED, THROTTLE])
+    };
+    let back = Mode {
+        targets: vec![Engagement { quantity: Quantity::Airspeed, target: SPEED_M_S }],
+        entry: Entry { at_s: 40.0, conditions: Vec::new() },
+        ..mode("back", &[ALTITUDE, VERTICAL_SPEED, THROTTLE])
+    };
+    let mut scenario = scenario(autopilot(vec![fast, back]), 60.0);
+    scenario.plant = with_throttle(Range { min: 0.0, max: 1.3 }).into();
+    let trace = flown(&scenario);
+    let asked = trace.column("throttle_command").expect("it");
+    let at = |time_s: f64| asked[(time_s / DT_S).round() as usize];
+    assert!(asked.iter().all(|throttle| (0.0..=1.3).contains(throttle)));
+    assert!((at(39.0) - 1.3).abs() < 1e-12, "{}", at(39.0));
+    // 0.02 · 27 m/s · 39 s would have been added up.
+    assert!(at(41.0) < 1.2, "{}", at(41.0));
 }
 
 #[test]

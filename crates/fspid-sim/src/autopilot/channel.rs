@@ -40,15 +40,12 @@ impl Cut {
         if self == Self::Not { other } else { self }
     }
 
-    /// Which way a controller was cut that answers a step after a command.
-    pub(crate) fn of_step(controller: &Controller, step: &Step<f64>, before: f64) -> Self {
-        if !step.saturated {
-            return Self::Not;
-        }
-        match controller.config().limits {
-            Some(limits) if step.command_rad >= limits.upper() => Self::Up,
-            Some(limits) if step.command_rad <= limits.lower() => Self::Down,
-            _ => Self::towards(step.command_rad - before),
+    /// Which way a controller is cut that answers a step after a command, at which it was cut this way: one that stands at a
+    /// limit does not move and is cut as before.
+    pub(crate) fn after(self, step: &Step<f64>, before: f64) -> Self {
+        match step.saturated {
+            true => Self::towards(step.command_rad - before).or(self),
+            false => Self::Not,
         }
     }
 }
@@ -69,7 +66,9 @@ pub(super) struct Asked {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Channel {
     memory: Option<State<f64>>,
-    /// Whether its answer was cut, here or below.
+    /// Whether its answer was cut, by limits of its own.
+    own: Cut,
+    /// The same, or below.
     pub(super) cut: Cut,
 }
 
@@ -104,7 +103,9 @@ impl Channel {
         let Some(before) = self.memory else {
             let mut memory = State::new();
             let step = controller.track(&mut memory, sample, asked.current);
-            *self = Self { memory: Some(memory), cut: Cut::Not };
+            // What is taken over may lie beyond its limits.
+            let own = Cut::towards(asked.current - step.command_rad);
+            *self = Self { memory: Some(memory), own, cut: own };
             return step.command_rad;
         };
         let mut memory = before;
@@ -115,7 +116,8 @@ impl Channel {
         {
             memory.integral = before.integral;
         }
-        self.cut = Cut::of_step(controller, &step, before.command_rad).or(asked.blocked);
+        self.own = self.own.after(&step, before.command_rad);
+        self.cut = self.own.or(asked.blocked);
         self.memory = Some(memory);
         step.command_rad
     }

@@ -7,8 +7,11 @@ use super::quantity::{Observed, Quantity};
 use super::sample::AutopilotSample;
 use super::total_energy::Rates;
 use super::{Autopilot, Mode, Moves, OuterLoop, Units};
+use crate::aircraft::AircraftPlant;
 use crate::error::SimError;
 use crate::sensor::{Sensor, SensorState, Truth};
+use crate::timing::Timing;
+use fspid_aircraft::{ForceModel, Range};
 use fspid_core::State;
 
 /// What an autopilot commands.
@@ -43,7 +46,26 @@ pub(crate) struct AutopilotState {
     last_shown: [f64; 2],
     above_beam_m: f64,
     commands: Commands,
-    trim_throttle: f64,
+    throttle: Throttle,
+    /// Which way the throttle was cut by its travel.
+    throttle_cut: Cut,
+}
+
+/// The throttle of an aircraft, in the measure of its data.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Throttle {
+    /// Where the trim has it.
+    pub(crate) trim: f64,
+    /// How far it goes.
+    pub(crate) travel: Range,
+}
+
+impl Throttle {
+    /// Of an aircraft at its trim.
+    pub(crate) fn of(plant: &AircraftPlant) -> Self {
+        let travel = plant.aircraft().model().travel().throttle;
+        Self { trim: plant.trim().controls.throttle, travel }
+    }
 }
 
 impl AutopilotState {
@@ -54,7 +76,7 @@ impl AutopilotState {
     pub(crate) fn start(
         autopilot: &Autopilot,
         dt_s: f64,
-        trim_throttle: f64,
+        throttle: Throttle,
     ) -> Result<Self, SimError> {
         let start = |sensor: &Option<Sensor>| sensor.map(|sensor| sensor.start(dt_s)).transpose();
         let beam = autopilot.glide_slope.as_ref();
@@ -75,7 +97,8 @@ impl AutopilotState {
             last_shown: [0.0; 2],
             above_beam_m: 0.0,
             commands: Commands::default(),
-            trim_throttle,
+            throttle,
+            throttle_cut: Cut::Not,
         };
         state.begin(autopilot);
         Ok(state)
@@ -105,12 +128,12 @@ impl AutopilotState {
     pub(crate) fn answer(
         &mut self,
         autopilot: &Autopilot,
-        (k, time_s): (usize, f64),
+        (k, timing): (usize, Timing),
         observed: &Observed,
         pitch_cut: Cut,
     ) -> AutopilotSample {
         self.look(autopilot, k, observed);
-        self.change_mode(autopilot, (k, time_s), observed);
+        self.change_mode(autopilot, (k, timing), observed);
         let Some((mode, order)) =
             autopilot.modes.get(self.mode).zip(autopilot.order.get(self.mode))
         else {
@@ -122,6 +145,7 @@ impl AutopilotState {
         if mode.total_energy {
             self.answer_energy(autopilot, observed, pitch_cut);
         }
+        self.limit_throttle();
         if !self.moves_bank(autopilot, mode) {
             self.commands.bank_rad = mode.bank_rad;
         }
@@ -131,6 +155,17 @@ impl AutopilotState {
     fn moves_bank(&self, autopilot: &Autopilot, mode: &Mode) -> bool {
         let engaged = mode.engaged.iter().filter_map(|&number| autopilot.loops.get(number));
         engaged.into_iter().any(|outer| outer.moves == Moves::Bank)
+    }
+
+    /// Keeps the throttle within its travel.
+    fn limit_throttle(&mut self) {
+        let Throttle { trim, travel } = self.throttle;
+        let wanted = trim + self.commands.throttle;
+        let kept = travel.clamp(wanted);
+        self.throttle_cut = Cut::towards(wanted - kept);
+        if self.throttle_cut != Cut::Not {
+            self.commands.throttle = kept - trim;
+        }
     }
 
     /// Reads every sensor, whoever is engaged: a sensor has to see each sample.
@@ -154,12 +189,11 @@ impl AutopilotState {
     fn change_mode(
         &mut self,
         autopilot: &Autopilot,
-        (k, time_s): (usize, f64),
+        (k, timing): (usize, Timing),
         observed: &Observed,
     ) {
         let Some(next) = autopilot.modes.get(self.mode + 1).filter(|_| k > 0) else { return };
-        // A millionth of a second is rounding, as it is for every other time of a scenario.
-        let is_time = time_s >= next.entry.at_s - 1e-6;
+        let is_time = k >= timing.first_sample_at(next.entry.at_s);
         let value = |quantity: Quantity| quantity.value(observed, self.above_beam_m);
         if is_time && next.entry.conditions.iter().all(|it| it.is_met(value(it.quantity))) {
             self.mode += 1;
@@ -268,7 +302,8 @@ impl AutopilotState {
     fn blocked(&self, outer: &OuterLoop, pitch_cut: Cut) -> Cut {
         match outer.moves {
             Moves::Pitch => pitch_cut,
-            Moves::Throttle | Moves::Bank => Cut::Not,
+            Moves::Throttle => self.throttle_cut,
+            Moves::Bank => Cut::Not,
             Moves::Loop(number) => self.channels.get(number).map_or(Cut::Not, |it| it.cut),
         }
     }
@@ -304,7 +339,7 @@ impl AutopilotState {
         let Commands { pitch_rad, throttle, .. } = self.commands;
         let [by_throttle, by_pitch] = &mut self.energy;
         self.commands.throttle =
-            by_throttle.answer(&total.energy, &asked(energy, throttle, Cut::Not));
+            by_throttle.answer(&total.energy, &asked(energy, throttle, self.throttle_cut));
         self.commands.pitch_rad =
             by_pitch.answer(&total.distribution, &asked(distribution, pitch_rad, pitch_cut));
     }
@@ -329,7 +364,7 @@ impl AutopilotState {
             mode: self.mode,
             targets,
             above_beam_m: self.above_beam_m,
-            throttle: self.trim_throttle + self.commands.throttle,
+            throttle: self.throttle.trim + self.commands.throttle,
             bank_rad: self.commands.bank_rad,
         }
     }

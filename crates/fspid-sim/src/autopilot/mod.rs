@@ -37,7 +37,7 @@ mod sample;
 mod total_energy;
 
 pub use error::AutopilotError;
-pub(crate) use flight::{AutopilotState, Commands, Cut};
+pub(crate) use flight::{AutopilotState, Commands, Cut, Throttle};
 pub use glide_slope::GlideSlope;
 pub use mode::{Condition, Engagement, Entry, Mode, Side, Target};
 pub use outer_loop::{Moves, OuterLoop, Units};

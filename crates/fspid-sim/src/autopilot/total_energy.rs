@@ -1,5 +1,7 @@
 //! Altitude and airspeed together.
 
+use fspid_aircraft::atmosphere::STANDARD_GRAVITY_M_S2;
+
 use super::quantity::Observed;
 use crate::controller::Controller;
 
@@ -29,8 +31,8 @@ pub struct TotalEnergy {
     pub distribution: Controller,
 }
 
-/// Standard gravity: what the rates of energy are counted in, m/s².
-const GRAVITY_M_S2: f64 = 9.806_65;
+/// Slower than this no path is commanded any more: the angle would have no end.
+const LEAST_SPEED_M_S: f64 = 1.0;
 
 /// Commanded and found, of energy and of its distribution.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,13 +49,13 @@ impl TotalEnergy {
         [altitude_m, airspeed_m_s]: [f64; 2],
     ) -> [Rates; 2] {
         let climb_m_s = self.altitude_gain_1_s * (altitude_m - observed.altitude_m);
-        let speed_m_s = observed.airspeed_m_s.max(1.0);
+        let speed_m_s = observed.airspeed_m_s.max(LEAST_SPEED_M_S);
         let path = (climb_m_s / speed_m_s).clamp(-self.most_path_rad, self.most_path_rad);
         let wanted_m_s2 = self.airspeed_gain_1_s * (airspeed_m_s - observed.airspeed_m_s);
-        let speeding =
-            (wanted_m_s2 / GRAVITY_M_S2).clamp(-self.most_acceleration_g, self.most_acceleration_g);
+        let speeding = (wanted_m_s2 / STANDARD_GRAVITY_M_S2)
+            .clamp(-self.most_acceleration_g, self.most_acceleration_g);
         let (path_found, speeding_found) =
-            (observed.path_rad(), observed.path_acceleration_m_s2 / GRAVITY_M_S2);
+            (observed.path_rad(), observed.path_acceleration_m_s2 / STANDARD_GRAVITY_M_S2);
         [
             Rates { commanded: path + speeding, found: path_found + speeding_found },
             Rates { commanded: path - speeding, found: path_found - speeding_found },

@@ -1,5 +1,7 @@
 //! Another simulator in the loop: our actuator moves its elevator, and its pitch is what is measured.
 
+use fspid_aircraft::atmosphere::STANDARD_GRAVITY_M_S2;
+
 use crate::actuator::{Actuator, ActuatorState};
 use crate::aircraft::{AircraftSample, MOST_STEP_S};
 use crate::error::SimError;
@@ -106,9 +108,6 @@ impl ExternalMotion {
         })
     }
 }
-
-/// What the energy height is counted with, m/s².
-const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
 
 /// An angle within ±π.
 fn within_half_a_turn(angle_rad: f64) -> f64 {

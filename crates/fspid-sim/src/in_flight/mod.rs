@@ -116,22 +116,24 @@ struct Around {
     /// What it does at the sample that was looked at.
     sample: Option<AutopilotSample>,
     /// Which way pitch was cut at the sample before, and the command there, rad.
+    own: Cut,
     cut: Cut,
     command_rad: f64,
 }
 
 impl Around {
     fn start(prepared: &Prepared) -> Result<Option<Self>, SimError> {
-        let Some(autopilot) = &prepared.autopilot else { return Ok(None) };
-        let (dt_s, throttle) = (prepared.timing.dt_s(), prepared.trim_throttle);
-        let state = AutopilotState::start(autopilot, dt_s, throttle)?;
-        Ok(Some(Self { state, sample: None, cut: Cut::Not, command_rad: 0.0 }))
+        let Some((autopilot, throttle)) = prepared.autopilot.as_ref().zip(prepared.throttle) else {
+            return Ok(None);
+        };
+        let state = AutopilotState::start(autopilot, prepared.timing.dt_s(), throttle)?;
+        Ok(Some(Self { state, sample: None, own: Cut::Not, cut: Cut::Not, command_rad: 0.0 }))
     }
 
     /// The pitch set-point that it adds, rad.
     fn look(&mut self, prepared: &Prepared, k: usize, observed: Option<Observed>) -> f64 {
         if let (Some(autopilot), Some(observed)) = (&prepared.autopilot, observed) {
-            let at = (k, prepared.timing.time_s(k));
+            let at = (k, prepared.timing);
             self.sample = Some(self.state.answer(autopilot, at, &observed, self.cut));
         }
         self.state.commands().pitch_rad
@@ -139,12 +141,8 @@ impl Around {
 
     /// Remembers which way pitch is cut: by the controller, or by what moves the elevator.
     fn take(&mut self, step: &Step<f64>, below: Cut) {
-        let own = if step.saturated {
-            Cut::towards(step.command_rad - self.command_rad)
-        } else {
-            Cut::Not
-        };
-        self.cut = if step.saturated && own == Cut::Not { self.cut } else { own.or(below) };
+        self.own = self.own.after(step, self.command_rad);
+        self.cut = self.own.or(below);
         self.command_rad = step.command_rad;
     }
 }
@@ -283,13 +281,10 @@ impl<P: Borrow<Prepared>> Course<P> {
     /// Flies to the next sample.
     #[inline]
     pub(crate) fn advance(&mut self, command_rad: f64) -> Result<(), SimError> {
+        let autopilot = self.commands();
         let prepared: &Prepared = self.prepared.borrow();
         let air = (prepared.gusts(), prepared.gust_responses.as_deref());
-        let autopilot = self.around.as_ref().map(|around| around.state.commands());
-        let held = Held {
-            autopilot: autopilot.unwrap_or_default(),
-            ..held(self.disturbance_rad, air, self.k)
-        };
+        let held = Held { autopilot, ..held(self.disturbance_rad, air, self.k) };
         let propagation = &prepared.stages[self.stage].propagation;
         propagation.advance(&mut self.plant, command_rad, &held)?;
         self.k += 1;

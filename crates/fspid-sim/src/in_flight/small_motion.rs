@@ -14,6 +14,7 @@ use crate::error::SimError;
 use crate::flown::Perturbation;
 use crate::scenario::{Prepared, Scenario};
 use crate::surroundings::{Surroundings, Weather};
+use crate::timing::Timing;
 
 /// Smaller poles are gone within a sample: those of delays, and of what is remembered of the sample before.
 const GONE: f64 = 1e-6;
@@ -76,6 +77,8 @@ fn in_s(z: Complex, dt_s: f64) -> Complex {
 fn still(scenario: &Scenario, autopilot: &Autopilot, mode: usize) -> Result<Prepared, SimError> {
     let mut still = scenario.clone();
     still.disturbances.clear();
+    // Long enough to settle, however short the flight is.
+    still.timing = Timing::new(scenario.timing.dt_s(), 10.0 * scenario.timing.dt_s())?;
     let course = scenario.surroundings.weather.as_ref().map(|weather| weather.course);
     let calm = |course| Weather { course, winds: Vec::new(), turbulence: None };
     still.surroundings = Surroundings { weather: course.map(calm), ..Surroundings::default() };
@@ -277,7 +280,7 @@ fn one_sample(
 ) -> Result<Matrix, SimError> {
     let course = Course::start(prepared, &Perturbation::NONE)?;
     let mut at = Flying { course, memory: State::new() };
-    for _ in 0..SETTLING_SAMPLES.min(prepared.timing.rows().saturating_sub(2)) {
+    for _ in 0..SETTLING_SAMPLES {
         at.fly(controller)?;
     }
     let places = places(&at, mode, controller);

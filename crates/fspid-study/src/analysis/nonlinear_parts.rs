@@ -28,7 +28,7 @@ fn of_what_flies(scenario: &Scenario) -> [LeftOut; 6] {
         (is_aircraft, "The aircraft is nonlinear: analysed is its linear model at the trim."),
         (
             scenario.autopilot.is_some(),
-            "Margins are those of the pitch loop alone; of the loops around it the poles of each mode are told, around the trim and without limits.",
+            "Margins are those of the pitch loop alone; of the loops around it the poles of each mode are told, around the trim and without limits and sensors, those of pitch among them.",
         ),
         (is_limited, "Limits of the actuator are left out; they act beyond small motions."),
         (

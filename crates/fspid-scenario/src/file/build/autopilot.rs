@@ -62,8 +62,14 @@ pub(super) fn autopilot(
     joined(report, section, parts, modes.into_iter().collect::<Option<_>>()?).map(Some)
 }
 
+/// The aircraft with its engine's lag and what looks after its lateral motion.
+pub(super) fn equipped(report: &mut Report, section: &Section, flown: Flown) -> Option<Flown> {
+    let flown = with_engine(report, section, flown)?;
+    with_lateral(report, section, flown)
+}
+
 /// How the engine of an aircraft follows; the aircraft, where that makes sense.
-pub(super) fn with_engine(report: &mut Report, section: &Section, flown: Flown) -> Option<Flown> {
+fn with_engine(report: &mut Report, section: &Section, flown: Flown) -> Option<Flown> {
     let Some(part) = section.get(ENGINE).filter(|part| part.sound) else { return Some(flown) };
     let spool = match part.variant()? {
         EngineKind::FirstOrder => {
@@ -81,7 +87,7 @@ pub(super) fn with_engine(report: &mut Report, section: &Section, flown: Flown) 
 }
 
 /// How the lateral motion of an aircraft is looked after; the aircraft, where that makes sense.
-pub(super) fn with_lateral(report: &mut Report, section: &Section, flown: Flown) -> Option<Flown> {
+fn with_lateral(report: &mut Report, section: &Section, flown: Flown) -> Option<Flown> {
     let Some(part) = section.get(LATERAL).filter(|part| part.sound) else { return Some(flown) };
     let usual = Lateral::default();
     let lateral = Lateral {

@@ -77,9 +77,7 @@ pub(crate) fn scenario(
         overrides::check_listed(report, item);
     }
     let timing = sound(section.get(keys::LOOP)).and_then(|part| timing::timing(report, part));
-    let flown = flight::flown(report, files, section)
-        .and_then(|flown| autopilot::with_engine(report, section, flown))
-        .and_then(|flown| autopilot::with_lateral(report, section, flown));
+    let flown = flown(report, files, section);
     let actuator = actuator(report, section);
     let sampling = timing.zip(actuator).map(|(timing, actuator)| Sampling { timing, actuator });
     check_linear(report, section, flown.as_ref(), sampling);
@@ -94,8 +92,8 @@ pub(crate) fn scenario(
         sampling,
     );
     let surroundings = surroundings(report, files, section, flown.as_ref());
-    let dt_s = timing.map_or(STAND_IN_PERIOD_S, |timing| timing.dt_s());
-    let autopilot = autopilot::autopilot(report, files, section, (flown.as_ref(), dt_s));
+    let autopilot =
+        autopilot::autopilot(report, files, section, (flown.as_ref(), period_s(timing)));
     let pressure = Pressure::of(section, flown.as_ref());
     let (controllers, derived_gains) = controllers(report, files, section, (timing, pressure));
     let externals = externals(report, files, section, timing);
@@ -119,10 +117,7 @@ pub(crate) fn scenario(
         surroundings: surroundings?,
         autopilot: autopilot?,
     };
-    if section.sound {
-        timing::check_flight(report, section, &scenario);
-        cost::check(report, section, &scenario);
-    }
+    check_whole(report, section, &scenario);
     Some(Built {
         range_rule: RangeRule::of(section, &scenario),
         scenario,
@@ -133,6 +128,25 @@ pub(crate) fn scenario(
         tuning,
         contest,
     })
+}
+
+/// What flies, with its engine and what looks after its lateral motion.
+fn flown(report: &mut Report, files: &mut Files<'_>, section: &Section) -> Option<Flown> {
+    let flown = flight::flown(report, files, section)?;
+    autopilot::equipped(report, section, flown)
+}
+
+/// Asks of a scenario whose every part is sound what only the whole can answer.
+fn check_whole(report: &mut Report, section: &Section, scenario: &Scenario) {
+    if section.sound {
+        timing::check_flight(report, section, scenario);
+        cost::check(report, section, scenario);
+    }
+}
+
+/// The sample period, or what stands in for it, s.
+fn period_s(timing: Option<Timing>) -> f64 {
+    timing.map_or(STAND_IN_PERIOD_S, |timing| timing.dt_s())
 }
 
 /// Asks of a linear plant what it has to be at this period and with this actuator, where all three are sound.
@@ -225,7 +239,7 @@ fn controllers(
             part.wrong(report, NAME, message, "a name of its own");
         }
     }
-    let dt_s = timing.map_or(STAND_IN_PERIOD_S, |timing| timing.dt_s());
+    let dt_s = period_s(timing);
     let (mut controllers, mut derived_gains) = (Vec::new(), Vec::new());
     for part in parts.iter().filter(|part| part.sound) {
         let name = part.get(NAME).unwrap_or_default().to_owned();
@@ -245,7 +259,7 @@ fn externals(
     section: &Section,
     timing: Option<Timing>,
 ) -> Vec<NamedExternal> {
-    let dt_s = timing.map_or(STAND_IN_PERIOD_S, |timing| timing.dt_s());
+    let dt_s = period_s(timing);
     let is_external = |part: &&Section| part.variant() == Some(ControllerKind::External);
     let parts = section.sections(keys::CONTROLLER).iter().filter(|part| part.sound);
     parts

@@ -1,5 +1,7 @@
 //! An aircraft from one sample to the next.
 
+mod numbers;
+
 use fspid_aircraft::integrate::rk4;
 use fspid_aircraft::{
     AirMotion, Aircraft, Controls, EulerAngles, ForceModel, Gearing, Instant, Quaternion,
@@ -15,7 +17,6 @@ use crate::actuator::{Actuator, ActuatorState};
 use crate::air::{self, AirPlace, Grid, Shaping};
 use crate::autopilot::{Commands, Cut};
 use crate::error::SimError;
-use crate::in_flight::{ALTITUDE, BEYOND, HEADING};
 use crate::surroundings::Weather;
 use crate::timing::Timing;
 
@@ -233,8 +234,8 @@ impl AircraftFlight {
 
     /// Takes what an autopilot commands until the next sample.
     fn follow(&self, motion: &mut AircraftMotion, commands: &Commands) {
-        let travel = self.aircraft().model().travel().throttle;
-        motion.throttle = travel.clamp(self.plant.trim().controls.throttle + commands.throttle);
+        // Within its travel: the autopilot keeps it there.
+        motion.throttle = self.plant.trim().controls.throttle + commands.throttle;
         motion.bank_rad = commands.bank_rad;
     }
 
@@ -409,80 +410,6 @@ impl AircraftFlight {
             return Cut::Not;
         }
         Cut::towards(command_rad - self.actuator.deflection_rad(&motion.body.actuator))
-    }
-
-    /// Change of pitch, u, w, q, deflection and, for a lag of second order, its rate; SI.
-    pub(crate) fn values(&self, motion: &AircraftMotion) -> Vec<f64> {
-        let velocity = motion.body.state.velocity_body_m_s;
-        let deflection_rad = self.actuator.deflection_rad(&motion.body.actuator);
-        let mut values = vec![
-            motion.theta_rad,
-            velocity.x,
-            velocity.z,
-            motion.body.state.rates_rad_s.y,
-            deflection_rad,
-        ];
-        values
-            .extend((self.actuator.lag().order() == 2).then(|| motion.body.actuator.rate_rad_s()));
-        values
-    }
-
-    /// Moves one of [`values`](Self::values).
-    pub(crate) fn nudge(&self, motion: &mut AircraftMotion, place: usize, by: f64) {
-        match place {
-            0 => {
-                let euler = motion.body.state.euler();
-                let turned = EulerAngles { theta_rad: euler.theta_rad + by, ..euler };
-                motion.body.state.attitude = Quaternion::from_euler(turned);
-                motion.theta_rad += by;
-            }
-            1 => motion.body.state.velocity_body_m_s.x += by,
-            2 => motion.body.state.velocity_body_m_s.z += by,
-            3 => motion.body.state.rates_rad_s.y += by,
-            _ => motion.body.actuator.nudge(place - 4, by),
-        }
-    }
-
-    /// True for an engine that does not follow its throttle at once.
-    pub(crate) fn has_lagging_engine(&self) -> bool {
-        self.plant.spool() != Spool::Instant
-    }
-
-    /// Altitude, heading, v, p, r, bank and power of the engine; SI.
-    pub(crate) fn beyond(&self, motion: &AircraftMotion) -> [f64; BEYOND] {
-        let Moving { state, power, .. } = &motion.body;
-        let (euler, rates_rad_s) = (state.euler(), state.rates_rad_s);
-        [
-            state.altitude_m(),
-            euler.psi_rad,
-            state.velocity_body_m_s.y,
-            rates_rad_s.x,
-            rates_rad_s.z,
-            euler.phi_rad,
-            *power,
-        ]
-    }
-
-    /// Moves one of [`beyond`](Self::beyond).
-    pub(crate) fn nudge_beyond(&self, motion: &mut AircraftMotion, place: usize, by: f64) {
-        let Moving { state, power, .. } = &mut motion.body;
-        let euler = state.euler();
-        match place {
-            ALTITUDE => state.position_ned_m.z -= by,
-            HEADING => {
-                let psi_rad = euler.psi_rad + by;
-                state.attitude = Quaternion::from_euler(EulerAngles { psi_rad, ..euler });
-            }
-            2 => state.velocity_body_m_s.y += by,
-            3 => state.rates_rad_s.x += by,
-            4 => state.rates_rad_s.z += by,
-            5 => {
-                let phi_rad = euler.phi_rad + by;
-                state.attitude = Quaternion::from_euler(EulerAngles { phi_rad, ..euler });
-            }
-            _ => *power += by,
-        }
-        self.steer(motion);
     }
 
     /// What is observable at a sample beyond pitch.
