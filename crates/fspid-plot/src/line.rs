@@ -30,6 +30,8 @@ pub struct LinePanel {
     pub series: Vec<Series>,
     /// Horizontal bands, drawn behind the lines.
     pub bands: Vec<Band>,
+    /// Abscissas at which something begins, drawn as upright lines; a caption says what.
+    pub beginnings: Vec<f64>,
     /// Range of the abscissa; `None` takes the range of all panels without one.
     pub x_range: Option<(f64, f64)>,
     /// Range of the ordinate; `None` takes that of the data and bands.
@@ -216,6 +218,7 @@ fn draw(canvas: &mut Canvas, placed: &Placed<'_>, named: bool) {
     let content = Content {
         bands: merged(&placed.panel.bands),
         references: Vec::new(),
+        beginnings: placed.panel.beginnings.clone(),
         curves: curves.collect(),
         is_all: true,
     };

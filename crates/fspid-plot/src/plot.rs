@@ -40,6 +40,8 @@ pub(super) struct Content {
     pub(super) bands: Vec<(f64, f64)>,
     /// Horizontal reference lines.
     pub(super) references: Vec<f64>,
+    /// Abscissas at which something begins: upright lines.
+    pub(super) beginnings: Vec<f64>,
     pub(super) curves: Vec<Curve>,
     /// True where nothing else is drawn in the frame, so that a script may stretch all of it.
     pub(super) is_all: bool,
@@ -202,6 +204,20 @@ fn lines(canvas: &mut Canvas, frame: &Frame, content: &Content) {
     for at in content.references.iter().map(|value| frame.y.unit(*value)) {
         if (lowest..=highest).contains(&at) {
             line(frame.y_of_unit(at), &reference);
+        }
+    }
+    beginnings(canvas, frame, content);
+}
+
+/// Upright lines, thinner than those of reference.
+fn beginnings(canvas: &mut Canvas, frame: &Frame, content: &Content) {
+    let Rect { y: top, height, .. } = frame.area;
+    let paint = Paint::line(Role::Muted, 0.8).dashed("1.5 2.5");
+    let (first, last) = frame.x.unit_range();
+    for at in content.beginnings.iter().map(|value| frame.x.unit(*value)) {
+        if (first..=last).contains(&at) {
+            let x = frame.x_of_unit(at);
+            canvas.line((x, top), (x, top + height), &paint);
         }
     }
 }

@@ -59,6 +59,7 @@ impl RatioFigure {
         let content = Content {
             bands: Vec::new(),
             references: self.reference.iter().map(|reference| reference.0).collect(),
+            beginnings: Vec::new(),
             curves: self.series.iter().map(curve).collect(),
             is_all: true,
         };

@@ -72,6 +72,7 @@ impl Draw {
                         upper: self.mixed(),
                     }],
                     x_range: self.range(),
+                    beginnings: vec![self.mixed(), self.mixed()],
                     y_range: self.range(),
                 })
                 .collect(),

@@ -13,6 +13,7 @@ use crate::keyed::Section;
 use crate::keyed::document::{Item, Value};
 use crate::setting_path::{NewValue, SettingPath};
 use fspid_diagnostics::{Problems, Report, Span};
+use fspid_sim::Scenario;
 
 /// Most values that a choice is made from.
 const MOST_VALUES: usize = 1000;
@@ -363,8 +364,9 @@ impl Template {
 
     /// What is wrong at an end of what is drawn, and what would be right.
     fn at_ends(&self, dispersion: &Dispersion, nominal: &[f64]) -> Option<(String, &'static str)> {
-        for drawn in dispersion.ends() {
-            let values = dispersion.values(&drawn, nominal);
+        let (ends, mut heard) = (dispersion.ends(), Vec::new());
+        for drawn in &ends {
+            let values = dispersion.values(drawn, nominal);
             let shown: Vec<String> =
                 values.iter().map(|(path, value)| format!("{}={value}", path.text())).collect();
             let shown = shown.join(", ");
@@ -378,11 +380,21 @@ impl Template {
                     let message = format!("{shown} changes the controllers");
                     return Some((message, "numbers and names of what flies"));
                 }
-                Ok(_) => {}
+                Ok(study) => heard.push((shown, study.scenario)),
             }
         }
-        None
+        unheard(&heard)
     }
+}
+
+/// What is wrong where values that differ make the same flight, such as seeds of an air that a mixture of seeds makes.
+fn unheard(ends: &[(String, Scenario)]) -> Option<(String, &'static str)> {
+    let (one, flown) = ends.first()?;
+    let (other, _) = ends.iter().find(|(shown, _)| shown != one)?;
+    ends.iter().all(|(_, it)| it == flown).then(|| {
+        let message = format!("{one} and {other} are the same flight: another key has the say there");
+        (message, "a place that the flight depends on; without `turbulence.mixture` where its seed is drawn")
+    })
 }
 
 /// True if both have the same controllers by name.

@@ -67,6 +67,7 @@ pub(super) fn side_view(
         bands: bands.into_iter().collect(),
         x_range: Some(x_range),
         y_range: Some(y_range),
+        ..LinePanel::default()
     })
 }
 
@@ -107,9 +108,9 @@ pub(super) fn loads(plant: &AircraftPlant, flights: &[Flown<'_>]) -> Option<Line
         y_label: "load factor [g]".to_owned(),
         x_label: "true airspeed [kt]".to_owned(),
         series,
-        bands: Vec::new(),
         x_range: Some(x_range),
         y_range: Some((least.min(0.0) - 0.3, most.max(1.5) + 0.5)),
+        ..LinePanel::default()
     })
 }
 

@@ -5,6 +5,7 @@
 //!
 //! Not here: what is measured and judged (`metrics`), and how a line is drawn (`figure`).
 
+mod around;
 mod audit;
 mod flight_path;
 mod loops;

@@ -1,7 +1,9 @@
 //! Time responses as figures.
 
+use fspid_sim::autopilot::Autopilot;
 use fspid_sim::{AircraftPlant, Controller, Outcome, Scenario, Trace};
 
+use super::around::{self, Panel, Shown};
 use super::flight_path::{self, Flown};
 use crate::simulation::{ControllerResult, Simulation};
 use fspid_plot::{Band, LineFigure, LinePanel, Series, SeriesStyle, Svg};
@@ -32,17 +34,6 @@ enum Part {
     Loads,
     Gains,
 }
-
-/// What a nonlinear aircraft adds to the panels: label and column.
-const AIRCRAFT: [(&str, &str); 5] = [
-    ("airspeed [m/s]", "airspeed_m_s"),
-    ("altitude [m]", "altitude_m"),
-    ("flight path above the horizon [deg]", "flight_path_rad"),
-    ("air, downward [m/s]", "air_down_m_s"),
-    (THROTTLE, "throttle"),
-];
-/// Drawn where it moves.
-const THROTTLE: &str = "throttle";
 
 /// A command beyond this many times its 99th percentile is a spike, and the panel does not show it.
 const SPIKE: f64 = 3.0;
@@ -88,6 +79,28 @@ impl Drawing<'_> {
         LineFigure { title, panels, width_px: self.width_px }.render()
     }
 
+    /// The autopilot around the loop, and the first flight with it.
+    fn around(&self) -> Option<(&Autopilot, &ControllerResult)> {
+        let autopilot = self.scenario.autopilot.as_ref().filter(|_| self.detailed)?;
+        Some((autopilot, self.flown().next()?.1))
+    }
+
+    /// When the modes of the first flight began, s, and their names.
+    fn modes(&self) -> Vec<(f64, &str)> {
+        let around = self.around();
+        around.map_or_else(Vec::new, |(autopilot, result)| {
+            around::beginnings(autopilot, self.scenario.timing, &result.trace)
+        })
+    }
+
+    /// Whose modes and targets are drawn, where more than one flight is.
+    fn whose(&self) -> String {
+        match (self.around(), self.flown().count()) {
+            (Some((_, result)), 2..) => format!(" of {}", result.name),
+            _ => String::new(),
+        }
+    }
+
     fn angles(&self) -> Vec<LinePanel> {
         let mut panels =
             vec![self.pitch(), self.angle("command u [deg]", |r| &r.trace.command_rad)];
@@ -101,7 +114,7 @@ impl Drawing<'_> {
         if !self.detailed {
             return Vec::new();
         }
-        AIRCRAFT.iter().filter_map(|(label, name)| self.column(label, name)).collect()
+        around::PANELS.iter().filter_map(|panel| self.column(panel)).collect()
     }
 
     /// The flights of a nonlinear aircraft, as they are drawn, and the aircraft.
@@ -187,6 +200,7 @@ impl Drawing<'_> {
             bands: if self.detailed { self.bands() } else { Vec::new() },
             x_range: self.window(),
             y_range,
+            ..LinePanel::default()
         }
     }
 
@@ -204,21 +218,36 @@ impl Drawing<'_> {
         }
     }
 
-    /// A column that only some flights have, if these have it.
-    fn column(&self, label: &str, name: &str) -> Option<LinePanel> {
+    /// A column that only some flights have, if these have it, with what it is to be and the beginnings of modes.
+    fn column(&self, panel: &Panel) -> Option<LinePanel> {
+        let around = self.around();
         let values = |trace: &Trace| {
-            let values = shown(trace, trace.column(name)?).iter().copied();
-            Some(if name.ends_with("_rad") {
+            let values = shown(trace, trace.column(panel.column)?).iter().copied();
+            Some(if panel.is_in_degrees() {
                 values.map(degrees).collect()
             } else {
                 values.collect::<Vec<_>>()
             })
         };
-        let drawn = |values: &Vec<f64>| label != THROTTLE || moves(values);
+        let drawn = |values: &Vec<f64>| match panel.shown {
+            Shown::Always => true,
+            Shown::WhereItMoves => moves(values),
+            Shown::WhereHeld => around.is_some_and(|(autopilot, _)| panel.is_held(autopilot)),
+        };
         self.flown().filter_map(|(_, result)| values(&result.trace)).find(drawn)?;
-        let series = self.series(|result| values(&result.trace).unwrap_or_default(), false);
-        let (y_label, x_label) = (label.to_owned(), "time [s]".to_owned());
-        Some(LinePanel { y_label, x_label, series, x_range: self.window(), ..LinePanel::default() })
+        let target = around.and_then(|(autopilot, result)| {
+            panel.target(autopilot, (&self.whose(), &result.trace))
+        });
+        let flown = self.series(|result| values(&result.trace).unwrap_or_default(), false);
+        let first_begins = |(at_s, _): (f64, &str)| (at_s > 0.0).then_some(at_s);
+        Some(LinePanel {
+            y_label: panel.label.to_owned(),
+            x_label: "time [s]".to_owned(),
+            series: target.into_iter().chain(flown).collect(),
+            x_range: self.window(),
+            beginnings: self.modes().into_iter().filter_map(first_begins).collect(),
+            ..LinePanel::default()
+        })
     }
 
     /// A range without the spikes of single samples, if there are any.
@@ -252,13 +281,12 @@ impl Drawing<'_> {
                 ]
             }
             Part::Air => {
-                let flown =
-                    AIRCRAFT.iter().filter(|(label, name)| self.column(label, name).is_some());
-                let word = |label: &str| {
-                    let bare = label.split(" [").next().unwrap_or(label);
+                let flown = around::PANELS.iter().filter(|panel| self.column(panel).is_some());
+                let word = |panel: &Panel| {
+                    let bare = panel.label.split(" [").next().unwrap_or(panel.label);
                     bare.replace(", downward", " moving downwards")
                 };
-                flown.map(|(label, _)| word(label)).collect()
+                flown.map(word).collect()
             }
             Part::Side => vec![
                 "altitude over the way over ground, with the air that the first flight met as arrows where it moves; \
@@ -279,9 +307,13 @@ impl Drawing<'_> {
             }
         };
         let last = panels.pop().unwrap_or_default();
+        let modes = match part {
+            Part::Air => around::in_words(&self.whose(), &self.modes()),
+            Part::Angles | Part::Side | Part::Loads | Part::Gains => String::new(),
+        };
         match panels.is_empty() {
-            true => format!("{}.", fspid_page::number::capital(&last)),
-            false => format!("From above: {} and {last}.", panels.join(", ")),
+            true => format!("{}.{modes}", fspid_page::number::capital(&last)),
+            false => format!("From above: {} and {last}.{modes}", panels.join(", ")),
         }
     }
 

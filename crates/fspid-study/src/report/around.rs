@@ -1,0 +1,172 @@
+//! What an autopilot around the loop holds and when, to be drawn beside what the aircraft did.
+
+use fspid_plot::{Series, SeriesStyle};
+use fspid_sim::autopilot::{Autopilot, Mode, Moves, Quantity};
+use fspid_sim::{Timing, Trace};
+
+use fspid_page::number::significant;
+use fspid_scenario::units::degrees;
+
+/// A panel of the motion: its label, and the column that it shows.
+pub(super) struct Panel {
+    pub(super) label: &'static str,
+    pub(super) column: &'static str,
+    /// The column of what it is to be.
+    target: Option<&'static str>,
+    /// Whose target that is: a quantity, or else the bank.
+    held: Option<Quantity>,
+    /// When it is drawn.
+    pub(super) shown: Shown,
+}
+
+/// When a panel is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Shown {
+    /// In every flight that has the column.
+    Always,
+    /// In flights in which it is not the same throughout.
+    WhereItMoves,
+    /// In flights in which a mode holds it.
+    WhereHeld,
+}
+
+/// The panels of an aircraft's motion, from above.
+pub(super) const PANELS: [Panel; 9] = {
+    use Quantity::{Airspeed, Altitude, FlightPath, GlideSlope, Heading, VerticalSpeed};
+    use Shown::{Always, WhereHeld, WhereItMoves};
+    [
+        held("airspeed [m/s]", ["airspeed_m_s", "airspeed_target_m_s"], Airspeed, Always),
+        held("altitude [m]", ["altitude_m", "altitude_target_m"], Altitude, Always),
+        held(
+            "vertical speed [m/s]",
+            ["climb_m_s", "vertical_speed_target_m_s"],
+            VerticalSpeed,
+            WhereHeld,
+        ),
+        held(
+            "flight path above the horizon [deg]",
+            ["flight_path_rad", "flight_path_target_rad"],
+            FlightPath,
+            Always,
+        ),
+        Panel {
+            label: "above the glide slope [m]",
+            column: "above_glide_slope_m",
+            target: None,
+            held: Some(GlideSlope),
+            shown: WhereHeld,
+        },
+        held("heading [deg]", ["heading_rad", "heading_target_rad"], Heading, WhereHeld),
+        Panel {
+            label: "bank [deg]",
+            column: "bank_rad",
+            target: Some("bank_command_rad"),
+            held: None,
+            shown: WhereHeld,
+        },
+        plain("air, downward [m/s]", "air_down_m_s", Always),
+        plain("throttle", "throttle", WhereItMoves),
+    ]
+};
+
+const fn held(
+    label: &'static str,
+    [column, target]: [&'static str; 2],
+    quantity: Quantity,
+    shown: Shown,
+) -> Panel {
+    Panel { label, column, target: Some(target), held: Some(quantity), shown }
+}
+
+const fn plain(label: &'static str, column: &'static str, shown: Shown) -> Panel {
+    Panel { label, column, target: None, held: None, shown }
+}
+
+impl Panel {
+    /// True where a mode of the autopilot holds what it shows.
+    pub(super) fn is_held(&self, autopilot: &Autopilot) -> bool {
+        autopilot.modes().iter().any(|mode| self.is_held_in(autopilot, mode))
+    }
+
+    fn is_held_in(&self, autopilot: &Autopilot, mode: &Mode) -> bool {
+        let mut engaged = mode.engaged.iter().filter_map(|&number| autopilot.loops().get(number));
+        match (self.held, self.target) {
+            (Some(quantity), _) => {
+                let together = matches!(quantity, Quantity::Altitude | Quantity::Airspeed);
+                mode.total_energy && together || engaged.any(|outer| outer.holds == quantity)
+            }
+            (None, Some(_)) => {
+                mode.bank_rad.abs() > 0.0 || engaged.any(|outer| outer.moves == Moves::Bank)
+            }
+            (None, None) => false,
+        }
+    }
+
+    /// What it is to be in a flight of that name, where the mode of the sample holds it.
+    pub(super) fn target(
+        &self,
+        autopilot: &Autopilot,
+        (name, trace): (&str, &Trace),
+    ) -> Option<Series> {
+        let (column, modes) = (trace.column(self.target?)?, trace.column("mode")?);
+        let value = |value: f64| if self.is_in_degrees() { degrees(value) } else { value };
+        let y: Vec<f64> = column
+            .iter()
+            .zip(modes)
+            .map(|(target, mode)| match mode_at(autopilot, *mode) {
+                Some(mode) if self.is_held_in(autopilot, mode) => value(*target),
+                _ => f64::NAN,
+            })
+            .collect();
+        y.iter().any(|value| value.is_finite()).then(|| Series {
+            name: format!("target{name}"),
+            style: SeriesStyle::Setpoint,
+            x: trace.time_s.clone(),
+            y,
+            stairs: true,
+        })
+    }
+
+    pub(super) fn is_in_degrees(&self) -> bool {
+        self.column.ends_with("_rad")
+    }
+}
+
+/// The mode of a number of a trace, which counts from 1.
+fn mode_at(autopilot: &Autopilot, number: f64) -> Option<&Mode> {
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a small whole number, and the cast saturates"
+    )]
+    let index = (number as usize).checked_sub(1)?;
+    autopilot.modes().get(index)
+}
+
+/// Each mode that began in a flight: when, s, and its name.
+pub(super) fn beginnings<'a>(
+    autopilot: &'a Autopilot,
+    timing: Timing,
+    trace: &Trace,
+) -> Vec<(f64, &'a str)> {
+    let modes = trace.column("mode").unwrap_or_default();
+    let mut before = 0.0;
+    let mut found = Vec::new();
+    for (k, &mode) in modes.iter().enumerate() {
+        if mode > before {
+            found.extend(mode_at(autopilot, mode).map(|it| (timing.time_s(k), it.name.as_str())));
+            before = mode;
+        }
+    }
+    found
+}
+
+/// A sentence for the caption: when which mode began.
+pub(super) fn in_words(whose: &str, beginnings: &[(f64, &str)]) -> String {
+    let began = |(at_s, name): &(f64, &str)| format!("{name} at {} s", significant(*at_s, 3));
+    let all: Vec<String> = beginnings.iter().map(began).collect();
+    match all.as_slice() {
+        [] | [_] => String::new(),
+        all => format!(" Upright lines are beginnings of modes{whose}: {}.", all.join(", ")),
+    }
+}
