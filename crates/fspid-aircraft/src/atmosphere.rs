@@ -28,6 +28,9 @@ const EARTH_RADIUS_M: f64 = 6_356_766.0;
 /// Pressure at sea level in Pa.
 pub const SEA_LEVEL_PRESSURE_PA: f64 = 101_325.0;
 
+/// Density of the standard atmosphere at sea level, kg/m³.
+pub const SEA_LEVEL_DENSITY_KG_M3: f64 = 1.225;
+
 /// Temperature at sea level in K.
 const SEA_LEVEL_TEMPERATURE_K: f64 = 288.15;
 

@@ -1,6 +1,6 @@
 //! The air as an aircraft meets it.
 
-use crate::atmosphere::Air;
+use crate::atmosphere::{Air, SEA_LEVEL_DENSITY_KG_M3};
 use crate::vector::Vector3;
 
 /// Motion of the air over the ground and across the aircraft.
@@ -82,6 +82,14 @@ impl Flow {
     #[must_use]
     pub fn dynamic_pressure_pa(&self) -> f64 {
         0.5 * self.air.density_kg_m3 * self.airspeed_m_s * self.airspeed_m_s
+    }
+
+    /// Equivalent airspeed, m/s: that of the same dynamic pressure in the standard's air at sea level.
+    ///
+    /// $$ V_e = V \sqrt{\rho / \rho_0}, \quad \rho_0 = 1.225\ \mathrm{kg/m^3} $$
+    #[must_use]
+    pub fn equivalent_airspeed_m_s(&self) -> f64 {
+        self.airspeed_m_s * (self.air.density_kg_m3 / SEA_LEVEL_DENSITY_KG_M3).sqrt()
     }
 
     /// Mach number.

@@ -3,5 +3,6 @@
 mod abuse;
 mod data_file;
 mod flight;
+mod law;
 mod refused;
 mod toy;

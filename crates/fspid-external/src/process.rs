@@ -129,6 +129,7 @@ impl ProcessHost {
             ExternalSource::Library(_) => (LIBRARY, None),
             ExternalSource::Fmu(_) => (FMU, Some(folder()?)),
             ExternalSource::FmuPlant(_) => (FMU_PLANT, Some(folder()?)),
+            ExternalSource::Law(_) => return Err(io::Error::other("a control law is no program")),
         };
         let path = folder.as_ref().map_or(external.source.path(), TempDir::path);
         let (printer, [output, errors]) = self.prints()?;

@@ -6,8 +6,10 @@ use std::io;
 use std::net::{SocketAddr, UdpSocket};
 use std::time::{Duration, Instant};
 
+mod live;
 mod poses;
 
+pub use live::Live;
 pub use poses::{Pose, Start, TraceError, poses};
 
 /// Who shows the flight.

@@ -1,5 +1,6 @@
 //! The loop itself: measure, decide, move.
 
+use crate::aircraft::AircraftSample;
 use crate::instant::Instant;
 use std::ops::ControlFlow;
 
@@ -8,9 +9,9 @@ use fspid_core::{Faults, Gains, Sample, State, Step};
 use crate::actuated::Held;
 use crate::controller::Controller;
 use crate::error::SimError;
-use crate::external::ControllerLoss;
+use crate::external::{Asked, ControllerLoss};
 use crate::flown::Perturbation;
-use crate::in_flight::Course;
+use crate::in_flight::{Course, Seen};
 use crate::propagation::{Motion, Propagation};
 use crate::scenario::{Flyer, Prepared, Respondent, Scenario};
 use crate::trace::{Outcome, Trace};
@@ -89,7 +90,10 @@ impl Respondent<'_> {
             }
             Self::External(external) => {
                 let mut started = external.start()?;
-                let answer = |sample| started.answer(sample);
+                let answer = |seen: &Seen, aircraft: Option<&AircraftSample>| {
+                    let step = started.answer_aboard(seen, aircraft)?;
+                    Ok((step, started.asked()))
+                };
                 watch_answers(prepared, answer, perturbation, |instant, _| observer(instant))
             }
         }
@@ -106,13 +110,10 @@ pub fn fly_commanded(
     mut command_rad: impl FnMut(Sample<f64>) -> f64,
     mut observer: impl FnMut(Instant) -> ControlFlow<()>,
 ) -> Result<Outcome, SimError> {
-    let answer = |sample| {
-        Ok(Step {
-            command_rad: command_rad(sample),
-            gains: Gains::ZERO,
-            saturated: false,
-            faults: Faults::NONE,
-        })
+    let answer = |seen: &Seen, _: Option<&AircraftSample>| {
+        let command_rad = command_rad(seen.sample());
+        let (gains, saturated, faults) = (Gains::ZERO, false, Faults::NONE);
+        Ok((Step { command_rad, gains, saturated, faults }, Asked::default()))
     };
     watch_answers(prepared, answer, &Perturbation::NONE, |instant, _| observer(instant))
 }
@@ -134,14 +135,19 @@ pub(crate) fn watch(
     observer: impl FnMut(Instant, &Coming<'_>) -> ControlFlow<()>,
 ) -> Result<Outcome, SimError> {
     let mut memory = State::new();
-    let answer = |sample| Ok(controller.step(&mut memory, sample));
+    let answer = |seen: &Seen, _: Option<&AircraftSample>| {
+        Ok((controller.step(&mut memory, seen.sample()), Asked::default()))
+    };
     watch_answers(prepared, answer, perturbation, observer)
 }
+
+/// An answer, and what it asks for beside the command.
+type Answered = (Step<f64>, Asked);
 
 #[inline]
 fn watch_answers(
     prepared: &Prepared,
-    mut answer: impl FnMut(Sample<f64>) -> Result<Step<f64>, ControllerLoss>,
+    mut answer: impl FnMut(&Seen, Option<&AircraftSample>) -> Result<Answered, ControllerLoss>,
     perturbation: &Perturbation,
     mut observer: impl FnMut(Instant, &Coming<'_>) -> ControlFlow<()>,
 ) -> Result<Outcome, SimError> {
@@ -151,8 +157,11 @@ fn watch_answers(
             Ok(seen) => seen,
             Err(outcome) => return Ok(outcome),
         };
-        let step = match answer(seen.sample()) {
-            Ok(step) => step,
+        let step = match answer(&seen, course.aircraft()) {
+            Ok((step, asked)) => {
+                course.ask(asked);
+                step
+            }
             Err(loss) => {
                 return Ok(Outcome::ControllerLost { at_s: prepared.timing.time_s(seen.k), loss });
             }

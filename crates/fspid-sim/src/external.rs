@@ -9,7 +9,9 @@ use std::sync::{Arc, OnceLock};
 
 use fspid_core::{Sample, Step};
 
+use crate::control_law::SharedLaw;
 use crate::error::SimError;
+use crate::{AircraftSample, Seen};
 
 /// A controller that is asked and not computed.
 #[derive(Clone, Debug, PartialEq)]
@@ -116,6 +118,8 @@ pub enum ExternalSource {
     Fmu(PathBuf),
     /// The same, and it flies: its command is its pitch angle, and the first of its gains its pitch rate.
     FmuPlant(PathBuf),
+    /// A control law in a file, which is computed here and needs no host.
+    Law(SharedLaw),
 }
 
 impl ExternalSource {
@@ -124,6 +128,7 @@ impl ExternalSource {
     pub fn path(&self) -> &std::path::Path {
         match self {
             Self::Library(path) | Self::Fmu(path) | Self::FmuPlant(path) => path,
+            Self::Law(law) => &law.path,
         }
     }
 }
@@ -230,6 +235,32 @@ pub trait Answers: fmt::Debug + Send {
     /// # Errors
     /// [`ControllerLoss`] where there is none; the flight is over then.
     fn answer(&mut self, sample: Sample<f64>) -> Result<Step<f64>, ControllerLoss>;
+
+    /// The same of one that is told more than a controller sees: what is there, and what an aircraft shows.
+    ///
+    /// # Errors
+    /// As [`answer`](Self::answer).
+    fn answer_aboard(
+        &mut self,
+        seen: &Seen,
+        _: Option<&AircraftSample>,
+    ) -> Result<Step<f64>, ControllerLoss> {
+        self.answer(seen.sample())
+    }
+
+    /// What its last answer asks for beside the command; nothing by default.
+    fn asked(&self) -> Asked {
+        Asked::default()
+    }
+}
+
+/// What an external controller asks for beside its command.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Asked {
+    /// The throttle, as a fraction of its travel.
+    pub throttle: Option<f64>,
+    /// Aileron and rudder in the signs of the aircraft's data, rad, in place of what keeps the wings level.
+    pub lateral_rad: Option<[f64; 2]>,
 }
 
 /// A controller that is lost before its first sample.
@@ -265,6 +296,9 @@ impl External {
     /// # Errors
     /// [`SimError::NoHost`] in a program that starts none, and what the host says.
     pub fn start(&self) -> Result<Box<dyn Answers>, SimError> {
+        if let ExternalSource::Law(law) = &self.source {
+            return Ok(Box::new(law.start()));
+        }
         HOST.get().ok_or(SimError::NoHost)?.start(self)
     }
 }

@@ -20,6 +20,7 @@ pub mod aircraft;
 pub mod autopilot;
 pub mod batch;
 mod closed_loop;
+pub mod control_law;
 mod controller;
 pub mod describing;
 mod error;

@@ -1,6 +1,7 @@
-//! `fspid show`: a flight in FlightGear or X-Plane.
+//! `fspid show`: a flight in FlightGear or X-Plane, of a trace or live.
 
 use std::net::{SocketAddr, ToSocketAddrs as _};
+use std::ops::ControlFlow;
 
 use clap::Args;
 use serde_json::json;
@@ -8,23 +9,26 @@ use serde_json::json;
 use super::{Format, json_text};
 use crate::argument::{InFile, OutFile, written};
 use crate::exit::{Failure, note, print};
-use fspid_external::view::{LATE, Start, Viewer, flightgear_protocol, poses, show};
-use fspid_scenario::file::read_text;
+use fspid_external::view::{LATE, Live, Shown, Start, Viewer, flightgear_protocol, poses, show};
+use fspid_scenario::file::{self, read_text};
+use fspid_sim::flown::Perturbation;
+use fspid_sim::{Flyer, Outcome, Scenario};
 use fspid_study::output;
 
-/// Show a flight in FlightGear or X-Plane: poses of a trace, sent by UDP at the pace of the flight.
+/// Show a flight in FlightGear or X-Plane: poses of a trace, or of a scenario that is flown meanwhile, sent by UDP at the
+/// pace of the flight.
 ///
-/// Nothing is sent but to what is named, and to this machine where no host is. A trace has no place: the flight begins at
-/// --from and goes straight along --heading at its airspeed. Of a plant without height and airspeed those that are given
-/// are taken.
+/// Nothing is sent but to what is named, and to this machine where no host is. The flight begins at --from, turned by
+/// --heading. A plant that shows pitch alone goes straight along --heading, at the airspeed and the altitude that are
+/// given.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples:\n  fspid simulate pitch.toml --trace flown.csv; fspid show flown.csv --controller FSPID --x-plane\n  fspid show flown.csv --flightgear --protocol fspid.xml --speed 2\nFlightGear: copy fspid.xml to Protocol in its data, then fgfs --fdm=null --generic=socket,in,60,,5505,udp,fspid\nExit codes: 0 done; 2 the input is wrong, or nothing can be sent there."
+    after_help = "Examples:\n  fspid simulate pitch.toml --trace flown.csv; fspid show flown.csv --controller FSPID --x-plane\n  fspid show flown.csv --flightgear --protocol fspid.xml --speed 2\n  fspid show scenarios/gallery/turn.toml --x-plane\nFlightGear: copy fspid.xml to Protocol in its data, then fgfs --fdm=null --generic=socket,in,60,,5505,udp,fspid\nExit codes: 0 done; 2 the input is wrong, or nothing can be sent there."
 )]
 pub(crate) struct Arguments {
-    /// The trace, as `fspid simulate --trace` writes it.
+    /// The trace, as `fspid simulate --trace` writes it; or a scenario (.toml), which is flown while it is shown.
     file: InFile,
-    /// The controller whose flight is shown, where the trace is of several.
+    /// The controller whose flight is shown, where there are several.
     #[arg(long, value_name = "NAME")]
     controller: Option<String>,
     /// Send to FlightGear, by its generic protocol.
@@ -45,13 +49,13 @@ pub(crate) struct Arguments {
     /// Where the flight begins: latitude and longitude, degrees.
     #[arg(long, value_name = "LAT,LON", default_value = "37.6189,-122.375", value_parser = place, allow_hyphen_values = true)]
     from: [f64; 2],
-    /// Where it goes, degrees clockwise from north.
+    /// How far it is turned, degrees clockwise; without a heading of its own it goes there from north.
     #[arg(long, value_name = "DEG", default_value_t = 0.0, value_parser = between::<0, 360_000>)]
     heading: f64,
-    /// Altitude of a trace that has none, m.
+    /// Altitude of a flight that has none, m.
     #[arg(long = "altitude", value_name = "M", default_value_t = 1000.0, value_parser = between::<0, 100_000_000>)]
     altitude_m: f64,
-    /// True airspeed of a trace that has none, m/s.
+    /// True airspeed of a flight that has none, m/s.
     #[arg(long = "airspeed", value_name = "M/S", default_value_t = 100.0, value_parser = between::<0, 10_000_000>)]
     airspeed_m_s: f64,
     /// How the answer is written.
@@ -83,21 +87,6 @@ fn address(text: &str) -> Result<SocketAddr, String> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let text = read_text(&arguments.file).map_err(Failure::load)?;
-    let [latitude_deg, longitude_deg] = arguments.from;
-    let start = Start {
-        latitude_deg,
-        longitude_deg,
-        heading_deg: arguments.heading,
-        altitude_m: arguments.altitude_m,
-        airspeed_m_s: arguments.airspeed_m_s,
-    };
-    let name = arguments.file.display();
-    let poses = poses(&text, arguments.controller.as_deref(), &start)
-        .map_err(|error| Failure::input(format_args!("{name}: {error}")))?;
-    if let Some(path) = &arguments.protocol {
-        output::write(path, flightgear_protocol())?;
-    }
     let flightgear = arguments.flightgear.map(|address| (Viewer::FlightGear, address));
     let x_plane = arguments.x_plane.map(|address| (Viewer::XPlane, address));
     let viewers: Vec<_> = flightgear.into_iter().chain(x_plane).collect();
@@ -106,10 +95,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             "nobody is named who shows it; allowed are --flightgear and --x-plane, and --protocol for FlightGear's file",
         ));
     }
-    let shown = match viewers.is_empty() {
-        true => Default::default(),
-        false => show(&poses, &viewers, arguments.speed, arguments.rate)
-            .map_err(|error| Failure::input(format_args!("cannot send: {error}")))?,
+    let is_scenario = arguments.file.extension().is_some_and(|it| it.eq_ignore_ascii_case("toml"));
+    let shown = match is_scenario {
+        true => live(arguments, &viewers)?,
+        false => recorded(arguments, &viewers)?,
     };
     let late_ms = LATE.as_secs_f64() * 1e3;
     if shown.late > 0 {
@@ -132,4 +121,92 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             "viewers": viewers.iter().map(|(_, address)| address.to_string()).collect::<Vec<_>>(),
         }))),
     }
+}
+
+fn start(arguments: &Arguments) -> Start {
+    let [latitude_deg, longitude_deg] = arguments.from;
+    Start {
+        latitude_deg,
+        longitude_deg,
+        heading_deg: arguments.heading,
+        altitude_m: arguments.altitude_m,
+        airspeed_m_s: arguments.airspeed_m_s,
+    }
+}
+
+fn unsent(error: std::io::Error) -> Failure {
+    Failure::input(format_args!("cannot send: {error}"))
+}
+
+fn write_protocol(arguments: &Arguments) -> Result<(), Failure> {
+    match &arguments.protocol {
+        Some(path) => Ok(output::write(path, flightgear_protocol())?),
+        None => Ok(()),
+    }
+}
+
+/// Shows a trace.
+fn recorded(arguments: &Arguments, viewers: &[(Viewer, SocketAddr)]) -> Result<Shown, Failure> {
+    let text = read_text(&arguments.file).map_err(Failure::load)?;
+    let name = arguments.file.display();
+    let poses = poses(&text, arguments.controller.as_deref(), &start(arguments))
+        .map_err(|error| Failure::input(format_args!("{name}: {error}")))?;
+    write_protocol(arguments)?;
+    match viewers.is_empty() {
+        true => Ok(Shown::default()),
+        false => show(&poses, viewers, arguments.speed, arguments.rate).map_err(unsent),
+    }
+}
+
+/// Flies a scenario and shows it meanwhile.
+fn live(arguments: &Arguments, viewers: &[(Viewer, SocketAddr)]) -> Result<Shown, Failure> {
+    let study = file::load(&arguments.file, &[]).map_err(Failure::load)?;
+    for warning in &study.warnings {
+        note(format_args!("warning: {warning}"));
+    }
+    let scenario = &study.scenario;
+    let flyer = flyer(scenario, arguments.controller.as_deref())?;
+    let prepared = scenario.prepare().map_err(Failure::input)?;
+    write_protocol(arguments)?;
+    let pace = [arguments.speed, arguments.rate];
+    let mut view = Live::new(start(arguments), scenario.timing, viewers, pace).map_err(unsent)?;
+    let mut broken = None;
+    let flown = flyer.respondent().fly(&prepared, &Perturbation::NONE, |instant| {
+        match viewers.is_empty() {
+            true => ControlFlow::Break(()),
+            false => match view.show(&instant) {
+                Ok(()) => ControlFlow::Continue(()),
+                Err(error) => {
+                    broken = Some(error);
+                    ControlFlow::Break(())
+                }
+            },
+        }
+    });
+    let outcome = flown.map_err(Failure::input)?;
+    if let Some(error) = broken {
+        return Err(unsent(error));
+    }
+    if outcome != Outcome::Completed {
+        note(format_args!(
+            "the flight of {} ended early or is not the one that the scenario describes; `fspid simulate` says how",
+            flyer.name()
+        ));
+    }
+    Ok(view.shown())
+}
+
+/// The controller of that name, or the only one.
+fn flyer<'a>(scenario: &'a Scenario, name: Option<&str>) -> Result<Flyer<'a>, Failure> {
+    let all: Vec<Flyer<'a>> = scenario.flyers().collect();
+    let found = match (name, all.as_slice()) {
+        (None, [only]) => Some(*only),
+        (None, _) => None,
+        (Some(name), all) => all.iter().find(|flyer| flyer.name() == name).copied(),
+    };
+    let names: Vec<&str> = all.iter().map(|flyer| flyer.name()).collect();
+    found.ok_or_else(|| {
+        let names = names.join(", ");
+        Failure::input(format_args!("allowed is --controller with one of {names}"))
+    })
 }

@@ -14,6 +14,42 @@ pub enum FlightError {
         /// Names that a flight has, with commas.
         known: String,
     },
+    /// An input of a control law that a flight does not have and that nobody sets.
+    #[error(
+        "a flight has no `{name}`, and neither its file nor an `input` says what it is; a flight has {known}"
+    )]
+    Unset {
+        /// Its name.
+        name: String,
+        /// Names that a flight has, with commas.
+        known: String,
+    },
+    /// A number that is set for an input that is not there.
+    #[error("there is no input `{name}`; the file has {known}")]
+    NoSuchInput {
+        /// Its name.
+        name: String,
+        /// Names that the file has, with commas.
+        known: String,
+    },
+    /// Something to be added to an input that is set.
+    #[error(
+        "`{name}` is set, and nothing of the flight is heard there to which a number could be added"
+    )]
+    NotHeard {
+        /// Its name.
+        name: String,
+    },
+    /// An input that leads to no trim.
+    #[error(
+        "no value of `{name}` brings the control to where the trim has it; the nearest is {off} off (rad, or a fraction of power)"
+    )]
+    NoTrim {
+        /// Its name.
+        name: String,
+        /// What is left.
+        off: f64,
+    },
     /// An input that is to be set and is not there.
     #[error("there is no input `{name}`; leave out what it is to be set to")]
     NoInput {

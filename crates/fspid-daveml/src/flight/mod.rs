@@ -5,6 +5,7 @@
 
 mod body;
 mod error;
+mod law;
 mod port;
 mod quantity;
 
@@ -15,6 +16,7 @@ use fspid_aircraft::{
 
 pub use body::Body;
 pub use error::FlightError;
+pub use law::{Control, ControlLaw, Heard, Wanted};
 
 use crate::model::Model;
 use port::{Answers, Wiring};

@@ -5,7 +5,7 @@ use crate::flight::quantity::{Quantities, Quantity, output_factor};
 use crate::model::{Model, Port};
 
 /// Most inputs, and most outputs, of a model that flies.
-const ROOM: usize = 64;
+pub(super) const ROOM: usize = 64;
 
 /// Where each input of a model comes from.
 #[derive(Clone, Debug)]
@@ -49,7 +49,7 @@ fn wire(port: &Port) -> Result<Wire, FlightError> {
     }
 }
 
-fn few(found: usize) -> Result<(), FlightError> {
+pub(super) fn few(found: usize) -> Result<(), FlightError> {
     if found <= ROOM { Ok(()) } else { Err(FlightError::TooMany { found, allowed: ROOM }) }
 }
 

@@ -14,17 +14,17 @@ const FOOT_M: f64 = 0.3048;
 const POUND_N: f64 = 4.448_221_615_260_5;
 
 /// A unit in the spelling of the standard, and what it is in SI.
-type Unit = (&'static str, f64);
+pub(super) type Unit = (&'static str, f64);
 
 /// Units of one kind, the SI unit first.
-type Units = &'static [Unit];
+pub(super) type Units = &'static [Unit];
 
-const ANGLE: Units = &[("rad", 1.0), ("deg", PI / 180.0)];
-const RATE: Units = &[("rad_s", 1.0), ("deg_s", PI / 180.0)];
-const SPEED: Units = &[("m_s", 1.0), ("ft_s", FOOT_M), ("nmi_h", 1852.0 / 3600.0)];
-const LENGTH: Units = &[("m", 1.0), ("ft", FOOT_M)];
+pub(super) const ANGLE: Units = &[("rad", 1.0), ("deg", PI / 180.0)];
+pub(super) const RATE: Units = &[("rad_s", 1.0), ("deg_s", PI / 180.0)];
+pub(super) const SPEED: Units = &[("m_s", 1.0), ("ft_s", FOOT_M), ("nmi_h", 1852.0 / 3600.0)];
+pub(super) const LENGTH: Units = &[("m", 1.0), ("ft", FOOT_M)];
 const AREA: Units = &[("m2", 1.0), ("ft2", FOOT_M * FOOT_M)];
-const PART: Units = &[("nd", 1.0), ("frac", 1.0), ("pct", 0.01)];
+pub(super) const PART: Units = &[("nd", 1.0), ("frac", 1.0), ("pct", 0.01)];
 const FORCE: Units = &[("N", 1.0), ("lbf", POUND_N)];
 const MOMENT: Units = &[("Nm", 1.0), ("ftlbf", FOOT_M * POUND_N)];
 const MASS: Units = &[("kg", 1.0), ("slug", POUND_N / FOOT_M)];
@@ -115,7 +115,7 @@ pub(super) fn output_factor(port: &Port) -> Result<f64, FlightError> {
     factor(port, row.map_or(PART, |&(_, units)| units))
 }
 
-fn factor(port: &Port, units: Units) -> Result<f64, FlightError> {
+pub(super) fn factor(port: &Port, units: Units) -> Result<f64, FlightError> {
     let found = units.iter().find(|(unit, _)| *unit == port.units);
     found.map(|&(_, factor)| factor).ok_or_else(|| FlightError::Units {
         name: port.name.clone(),

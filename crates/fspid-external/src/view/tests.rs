@@ -20,6 +20,57 @@ fn a_trace_becomes_poses_along_its_course_until_the_flight_ends() {
     assert!((poses[1].latitude_deg - 60.0).abs() < 1e-12);
 }
 
+/// North of the flight is east of the map where it is turned by a right angle.
+#[test]
+fn a_trace_that_knows_its_way_goes_along_it_turned_by_the_heading_that_is_given() {
+    let text = "time_s,theta_deg,elevator_deg,airspeed_m_s,alpha_deg,north_m,east_m,heading_deg,attitude_deg\n\
+                0,0,-1,50,2,100,-50,0,3\n1,1,-1,50,2,140,-20,-10,4.5\n";
+    let [first, then] = poses(text, None, &START).expect("a flight")[..] else { panic!("two") };
+    assert!(
+        (first.latitude_deg - 60.0).abs() < 1e-12 && (first.longitude_deg - 10.0).abs() < 1e-12
+    );
+    let east_m = (then.longitude_deg - 10.0) * 111_195.08 * 0.5;
+    let north_m = (then.latitude_deg - 60.0) * 111_195.08;
+    assert!((east_m - 40.0).abs() < 1e-3 && (north_m + 30.0).abs() < 1e-3, "{north_m} {east_m}");
+    assert_eq!((first.heading_deg, then.heading_deg), (90.0, 80.0));
+    assert_eq!((first.pitch_deg, then.pitch_deg), (3.0, 4.5));
+}
+
+#[test]
+fn a_flight_is_shown_live_as_its_trace_would_be() {
+    use fspid_sim::signal::{Profile, Shape};
+    use fspid_sim::{ElevatorSign, LinearPlant, Scenario, Timing};
+    let listener = UdpSocket::bind("127.0.0.1:0").expect("a port");
+    let viewers = [(Viewer::XPlane, listener.local_addr().expect("an address"))];
+    let plant = LinearPlant::new(&[1.0], &[1.0, 0.0], ElevatorSign::NoseUpPositive).expect("one");
+    let timing = Timing::new(0.01, 0.05).expect("a timing");
+    let setpoint = Profile::new(0.0, Shape::Step { at_s: 0.0 }).expect("a profile");
+    let scenario = Scenario::new("", plant, timing, setpoint);
+    let prepared = scenario.prepare().expect("prepared");
+    let mut live = Live::new(START, timing, &viewers, [1.0, 50.0]).expect("a socket");
+    let outcome = fspid_sim::fly_commanded(
+        &prepared,
+        |_| 1.0,
+        |instant| {
+            live.show(&instant).expect("sent");
+            std::ops::ControlFlow::Continue(())
+        },
+    );
+    assert!(outcome.is_ok());
+    // Six samples, every second one.
+    assert_eq!(live.shown().sent, 3);
+    let mut bytes = [0; 64];
+    let mut pitch = || {
+        let size = listener.recv(&mut bytes).expect("a packet");
+        assert_eq!(size, 45);
+        f32::from_le_bytes(bytes[37..41].try_into().expect("4 bytes"))
+    };
+    // A radian a second.
+    for expected in [0.0_f32, 0.02, 0.04] {
+        assert!((pitch() - expected.to_degrees()).abs() < 1e-5);
+    }
+}
+
 #[test]
 fn a_trace_that_cannot_be_shown_says_what_is_wrong_and_what_is_allowed() {
     let told =

@@ -69,7 +69,7 @@ fn air(section: &Section) -> Option<Air> {
 }
 
 /// The model in the file that a key names, if its check cases pass.
-fn model(
+pub(super) fn model(
     report: &mut Report,
     files: &mut Files<'_>,
     (part, key): (&Section, Key<str>),

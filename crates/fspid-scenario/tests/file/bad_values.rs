@@ -136,6 +136,8 @@ pub(crate) fn texts() -> Vec<String> {
 /// A controller whose file is not here: a text with it is never good, but its numbers are asked.
 const EXTERNAL: &str = "\n[[controller]]\nname = \"own\"\nkind = \"external\"\nlibrary = \"own.so\"\nanswer_limit_s = 1.0\n";
 
+const LAW: &str = "\n[[controller]]\nname = \"law\"\nkind = \"external\"\ncontrol_law = \"own.dml\"\n\n[[controller.input]]\nname = \"one\"\nvalue = 1.0\nat_s = 1.0\n\n[[controller.input]]\nname = \"two\"\nadded = 1.0\n";
+
 const FMU: &str = "[simulator]\nkind = \"fmu\"\nfile = \"own.fmu\"\nanswer_limit_s = 1.0\ntrim_elevator_deg = -2.0\n\n";
 
 /// A number in the file: its line, what stands before it, and whether it is in a list.
@@ -239,7 +241,7 @@ fn the_file_with_every_key_is_good() {
 #[test]
 fn every_number_refuses_what_is_no_finite_number_at_its_own_line() {
     let mut covered = BTreeSet::new();
-    let external = texts().swap_remove(0) + EXTERNAL;
+    let external = texts().swap_remove(0) + EXTERNAL + LAW;
     // As little: its file is not here either.
     let whole = text("crates/fspid-scenario/tests/scenarios/every-key-simulator.toml");
     let (before, rest) = whole.split_once("[simulator]").expect("a simulator");

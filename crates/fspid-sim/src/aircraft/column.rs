@@ -7,6 +7,10 @@ use fspid_aircraft::Departure;
 pub struct AircraftSample {
     /// True airspeed, m/s.
     pub airspeed_m_s: f64,
+    /// Equivalent airspeed, m/s: that of the same dynamic pressure at sea level.
+    pub equivalent_airspeed_m_s: f64,
+    /// Mach number.
+    pub mach: f64,
     /// Altitude, m.
     pub altitude_m: f64,
     /// Angle of attack, rad, from the reference of the aircraft's data.

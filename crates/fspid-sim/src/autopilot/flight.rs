@@ -23,6 +23,8 @@ pub(crate) struct Commands {
     pub(crate) throttle: f64,
     /// Bank, rad.
     pub(crate) bank_rad: f64,
+    /// Aileron and rudder, rad, in place of what keeps the bank.
+    pub(crate) lateral_rad: Option<[f64; 2]>,
 }
 
 /// Where an autopilot is.

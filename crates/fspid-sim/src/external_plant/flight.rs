@@ -82,6 +82,9 @@ impl ExternalMotion {
         let ground_speed_m_s = libm::hypot(over_north_m_s, over_east_m_s);
         self.shows_aircraft.then(|| AircraftSample {
             airspeed_m_s: now.airspeed_m_s,
+            // No control law of a file flies there, which alone asks.
+            equivalent_airspeed_m_s: f64::NAN,
+            mach: f64::NAN,
             altitude_m: now.altitude_m,
             alpha_rad: now.alpha_rad,
             bank_rad: now.bank_rad,

@@ -8,8 +8,9 @@ use fspid_core::{Sample, Step};
 
 use crate::actuated::Held;
 use crate::aircraft::AircraftSample;
-use crate::autopilot::{AutopilotSample, AutopilotState, Commands, Cut, Observed};
+use crate::autopilot::{AutopilotSample, AutopilotState, Commands, Cut, Observed, Throttle};
 use crate::error::SimError;
+use crate::external::Asked;
 use crate::flown::{CommandPath, Perturbation};
 use crate::instant::Instant;
 use crate::propagation::{Motion, Propagation};
@@ -107,6 +108,8 @@ pub(crate) struct Course<P> {
     disturbance_rad: f64,
     aircraft: Option<AircraftSample>,
     around: Option<Around>,
+    /// What an external controller asks for beside its command.
+    asked: Asked,
 }
 
 /// The autopilot around the loop.
@@ -160,6 +163,7 @@ impl<P: Borrow<Prepared>> Course<P> {
             disturbance_rad: 0.0,
             aircraft: None,
             around: Around::start(all)?,
+            asked: Asked::default(),
             prepared,
         })
     }
@@ -273,9 +277,31 @@ impl<P: Borrow<Prepared>> Course<P> {
         Held { autopilot: self.commands(), ..held(self.disturbance_rad, air, self.k) }
     }
 
-    /// What an autopilot commands; nothing without one.
+    /// What an autopilot commands, and what an external controller asks for in its place; nothing without them.
     fn commands(&self) -> Commands {
-        self.around.as_ref().map(|around| around.state.commands()).unwrap_or_default()
+        let commands = self.around.as_ref().map(|around| around.state.commands());
+        let commands = commands.unwrap_or_default();
+        let throttle = self.asked.throttle.zip(self.prepared().throttle);
+        let throttle = throttle.map(|(fraction, Throttle { trim, travel })| {
+            travel.min + (travel.max - travel.min) * fraction.clamp(0.0, 1.0) - trim
+        });
+        Commands {
+            throttle: throttle.unwrap_or(commands.throttle),
+            lateral_rad: self.asked.lateral_rad,
+            ..commands
+        }
+    }
+
+    /// What an aircraft shows of the sample that was looked at.
+    #[inline]
+    pub(crate) fn aircraft(&self) -> Option<&AircraftSample> {
+        self.aircraft.as_ref()
+    }
+
+    /// Takes what an external controller asks for beside its command.
+    #[inline]
+    pub(crate) fn ask(&mut self, asked: Asked) {
+        self.asked = asked;
     }
 
     /// Flies to the next sample.

@@ -205,6 +205,8 @@ pub const COVERAGE: &[KeyCoverage] = &[
     row("controller.inputs.*", NoPart, "of a program"),
     row("controller.outputs.*", NoPart, "of a program"),
     row("controller.answer_limit_s", NoPart, "of a program"),
+    row("controller.control_law", NoPart, "as `library`"),
+    row("controller.input.*", NoPart, "of a control law in a file"),
     row("controller.rate_gain", Covered, "the inner loop of pitch rate"),
     row(
         "controller.setpoint_weight",

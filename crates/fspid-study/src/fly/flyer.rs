@@ -2,7 +2,7 @@
 
 use fspid_core::{Faults, Sample, State};
 use fspid_sim::external::Answers;
-use fspid_sim::{Controller, ControllerLoss, External, SimError};
+use fspid_sim::{Controller, ControllerLoss, External, ExternalSource, SimError};
 
 /// What no controller believes.
 const NO_SAMPLE: Sample<f64> =
@@ -36,6 +36,14 @@ impl Flyer {
 
     /// A program, started.
     pub(super) fn external(external: External) -> Result<Self, SimError> {
+        if let ExternalSource::Law(law) = &external.source {
+            return Err(SimError::NotStarted {
+                file: law.path.display().to_string(),
+                reason: "a control law hears all that an aircraft shows, and lines tell of pitch"
+                    .to_owned(),
+                allowed: "one that answers pitch; `simulate` flies control laws".to_owned(),
+            });
+        }
         let answers = Some(external.start()?);
         Ok(Self::External(Asked { external, answers, command_rad: 0.0, latched: Faults::NONE }))
     }

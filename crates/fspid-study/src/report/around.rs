@@ -50,7 +50,7 @@ pub(super) const PANELS: [Panel; 9] = {
             Always,
         ),
         Panel {
-            label: "above the glide slope [m]",
+            label: "height above the glide slope [m]",
             column: "above_glide_slope_m",
             target: None,
             held: Some(GlideSlope),
@@ -168,5 +168,42 @@ pub(super) fn in_words(whose: &str, beginnings: &[(f64, &str)]) -> String {
     match all.as_slice() {
         [] | [_] => String::new(),
         all => format!(" Upright lines are beginnings of modes{whose}: {}.", all.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CAPTURE: &str = include_str!("../../../../scenarios/gallery/altitude-capture.toml");
+
+    #[test]
+    fn targets_are_drawn_where_a_mode_holds_them_and_modes_begin_where_the_trace_says_so() {
+        let study = fspid_scenario::file::parse(CAPTURE, "a.toml", None, &[]).expect("a scenario");
+        let (autopilot, timing) =
+            (study.scenario.autopilot.as_ref().expect("there"), study.scenario.timing);
+        let trace = fspid_sim::simulate(&study.scenario).expect("it flies").traces.remove(0);
+        let began = beginnings(autopilot, timing, &trace);
+        let names: Vec<&str> = began.iter().map(|(_, name)| *name).collect();
+        assert_eq!(names, ["level", "climb", "capture"]);
+        assert_eq!((began[0].0, began[1].0), (0.0, 5.0));
+        let drawn = |column: &str| {
+            let panel = PANELS.iter().find(|panel| panel.column == column).expect("there");
+            panel.is_held(autopilot).then(|| panel.target(autopilot, ("", &trace))).flatten()
+        };
+        let altitude = drawn("altitude_m").expect("held in the first mode and the last");
+        for (time_s, target_m) in altitude.x.iter().zip(&altitude.y) {
+            // The climb holds no altitude, and the capture 1300 ft.
+            let climbs = (5.0..began[2].0).contains(time_s);
+            assert_eq!(target_m.is_nan(), climbs, "{time_s}");
+            assert!(*time_s < began[2].0 || (target_m - 396.24).abs() < 1e-9, "{target_m}");
+        }
+        assert!(drawn("climb_m_s").is_some() && drawn("airspeed_m_s").is_some());
+        for column in ["heading_rad", "bank_rad", "above_glide_slope_m", "flight_path_rad"] {
+            assert!(drawn(column).is_none(), "{column}");
+        }
+        let words = in_words(" of PID", &began);
+        assert!(words.contains("modes of PID: level at 0 s, climb at 5 s, capture at "), "{words}");
+        assert_eq!(in_words("", &began[..1]), "");
     }
 }

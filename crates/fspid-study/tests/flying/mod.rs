@@ -3,6 +3,7 @@
 
 mod agreement;
 mod at_rest;
+mod control_law;
 mod design_gusts;
 mod gallery;
 mod ground;
@@ -14,6 +15,7 @@ mod moving_air;
 mod one_verdict;
 mod outer_loops;
 mod requirements;
+mod six_dof;
 mod wind_table;
 
 use fspid_scenario::file::{self, Study};

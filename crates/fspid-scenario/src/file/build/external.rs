@@ -3,7 +3,10 @@
 use std::path::PathBuf;
 
 use fspid_sim::external::{Contents, Place, Renamed};
-use fspid_sim::{External, ExternalSource, NamedExternal};
+use fspid_sim::{External, ExternalSource, NamedExternal, Timing};
+
+use super::flown::Flown;
+use super::{control_law, period_s};
 
 use crate::file::files::Files;
 use crate::file::spec::controller as keys;
@@ -15,9 +18,17 @@ pub(super) fn external(
     report: &mut Report,
     files: &mut Files<'_>,
     section: &Section,
-    dt_s: f64,
+    (flown, timing): (Option<&Flown>, Option<Timing>),
 ) -> Option<NamedExternal> {
     let name = section.get(keys::NAME)?.to_owned();
+    let dt_s = period_s(timing);
+    if section.given(keys::CONTROL_LAW) {
+        let source = control_law::law(report, files, section, (flown?, timing?))?;
+        let (contents, renamed) = (None, Vec::new());
+        let answer_limit_s = section.get(keys::ANSWER_LIMIT_S)?;
+        let external = External { source, contents, answer_limit_s, dt_s, renamed };
+        return Some(NamedExternal { name, external });
+    }
     let (key, of): (_, fn(PathBuf) -> _) = match section.given(keys::FMU) {
         true => (keys::FMU, ExternalSource::Fmu),
         false => (keys::LIBRARY, ExternalSource::Library),

@@ -4,6 +4,7 @@ mod actuator;
 mod air;
 mod airframe;
 mod autopilot;
+mod control_law;
 mod controller;
 mod cost;
 pub(crate) mod data;
@@ -96,7 +97,7 @@ pub(crate) fn scenario(
         autopilot::autopilot(report, files, section, (flown.as_ref(), period_s(timing)));
     let pressure = Pressure::of(section, flown.as_ref());
     let (controllers, derived_gains) = controllers(report, files, section, (timing, pressure));
-    let externals = externals(report, files, section, timing);
+    let externals = externals(report, files, section, (flown.as_ref(), timing));
     timing::check_memory(report, section, timing);
     let names = names(section);
     let requirements = requirements(report, files, section.sections(keys::REQUIREMENT), &names);
@@ -257,14 +258,13 @@ fn externals(
     report: &mut Report,
     files: &mut Files<'_>,
     section: &Section,
-    timing: Option<Timing>,
+    (flown, timing): (Option<&Flown>, Option<Timing>),
 ) -> Vec<NamedExternal> {
-    let dt_s = period_s(timing);
     let is_external = |part: &&Section| part.variant() == Some(ControllerKind::External);
     let parts = section.sections(keys::CONTROLLER).iter().filter(|part| part.sound);
     parts
         .filter(is_external)
-        .filter_map(|part| external::external(report, files, part, dt_s))
+        .filter_map(|part| external::external(report, files, part, (flown, timing)))
         .collect()
 }
 

@@ -8,7 +8,7 @@ use crate::keyed::word::{words, words_of};
 use crate::keyed::{
     Choice, DEFUZZIFIER_NAME, FILE_PATH, Key, KeyRow, Range, Rules, Section, TEXT, Table, Way,
     choosing, defaulted, finite, interval, not_negative, number, of_kinds, one_of, optional, plain,
-    positive, required, rules, table, variant, word,
+    positive, required, rules, table, tables, variant, word,
 };
 use fspid_core::{Change, ErrorSign, IntegralForm};
 use fspid_fuzzy::Defuzzifier;
@@ -16,6 +16,11 @@ use fspid_fuzzy::OutOfRange;
 
 use super::lqi::LQI;
 use super::schedule::SCHEDULE;
+
+words! {
+    /// Controls that an input of a control law can trim.
+    TrimmedControl { Elevator = "elevator", Throttle = "throttle" }
+}
 
 words! {
     /// What controls.
@@ -126,12 +131,16 @@ pub(super) static CONTROLLER_TABLE: Table = of_kinds(
         variant(
             ControllerKind::External.name(),
             choosing(
-                "A program that answers samples: an export, or one of your own. It runs as you do.",
-                &[&[&LIBRARY, &FMU, &INPUTS, &OUTPUTS, &ANSWER_LIMIT_S]],
+                "A program that answers samples, an export or one of your own, which runs as you do; or a control law in a file of DAVE-ML.",
+                &[
+                    &[&LIBRARY, &FMU, &INPUTS, &OUTPUTS, &ANSWER_LIMIT_S],
+                    &[&CONTROL_LAW, &LAW_INPUT],
+                ],
                 &[Choice {
                     ways: &[
                         Way { required: &[LIBRARY.name], optional: &[] },
                         Way { required: &[FMU.name], optional: &[INPUTS.name, OUTPUTS.name] },
+                        Way { required: &[CONTROL_LAW.name], optional: &[LAW_INPUT.name] },
                     ],
                 }],
             ),
@@ -148,6 +157,43 @@ pub(crate) const FMU: Key<str> = optional(
     "fmu",
     FILE_PATH,
     "An FMU for co-simulation (FMI 2.0 or 3.0), relative to this file; `inputs` and `outputs` say how its variables are called where they are not those of `fspid export --to fmu2`.",
+);
+pub(crate) const CONTROL_LAW: Key<str> = optional(
+    "control_law",
+    FILE_PATH,
+    "A control law in DAVE-ML, as a file or as `fspid aircraft import` writes it, relative to this file: outputs `elevatorDeflection` and, if it has them, `aileronDeflection`, `rudderDeflection` and `powerLeverAngle`, of what a nonlinear aircraft shows. It has no memory; with aileron or rudder it flies the lateral motion, too.",
+);
+pub(crate) const LAW_INPUT: Key<[Section]> = optional(
+    "input",
+    tables(&LAW_INPUT_TABLE, 0, 100),
+    "Inputs of a control law that are set, in this order.",
+);
+pub(crate) const LAW_INPUT_NAME: Key<str> =
+    required("name", TEXT, "Name of the input, such as \"altitudeMslCommand\".");
+pub(crate) const LAW_INPUT_VALUE: Key<f64> =
+    optional("value", finite(""), "Its value, in the unit of the file.");
+pub(crate) const LAW_INPUT_ADDED: Key<f64> = optional(
+    "added",
+    finite(""),
+    "What is added to what the flight shows, in the unit of the file: an error, or a course line beside the first one.",
+);
+pub(crate) const LAW_INPUT_TRIMS: Key<TrimmedControl> = optional(
+    "trims",
+    word(),
+    "In place of a value: it is found so that this control stands at the start where the trim has it, whatever its `at_s`.",
+);
+pub(crate) const LAW_INPUT_AT_S: Key<f64> =
+    defaulted("at_s", not_negative("s"), 0.0, "When that begins.");
+static LAW_INPUT_TABLE: Table = choosing(
+    "An input of a control law.",
+    &[&[&LAW_INPUT_NAME, &LAW_INPUT_VALUE, &LAW_INPUT_ADDED, &LAW_INPUT_TRIMS, &LAW_INPUT_AT_S]],
+    &[Choice {
+        ways: &[
+            Way { required: &[LAW_INPUT_VALUE.name], optional: &[] },
+            Way { required: &[LAW_INPUT_ADDED.name], optional: &[] },
+            Way { required: &[LAW_INPUT_TRIMS.name], optional: &[] },
+        ],
+    }],
 );
 pub(crate) const INPUTS: Key<Section> = optional(
     "inputs",

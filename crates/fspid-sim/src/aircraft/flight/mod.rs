@@ -57,6 +57,8 @@ pub(crate) struct AircraftMotion {
     rudder_rad: f64,
     /// What the wing leveller holds, rad.
     bank_rad: f64,
+    /// True where a control law moves aileron and rudder in place of leveller and damper.
+    is_steered: bool,
     /// Throttle that is asked for, within its travel.
     throttle: f64,
     /// Pitch less that of the trim, rad.
@@ -169,6 +171,7 @@ impl AircraftFlight {
             aileron_rad: self.aileron_rad(&self.start, 0.0),
             rudder_rad: self.rudder_rad(&self.start),
             bank_rad: 0.0,
+            is_steered: false,
             throttle: self.plant.trim().controls.throttle,
             theta_rad: 0.0,
             body: Moving {
@@ -228,6 +231,9 @@ impl AircraftFlight {
 
     /// Moves aileron and rudder to where leveller and damper have them now.
     fn steer(&self, motion: &mut AircraftMotion) {
+        if motion.is_steered {
+            return;
+        }
         motion.aileron_rad = self.aileron_rad(&motion.body.state, motion.bank_rad);
         motion.rudder_rad = self.rudder_rad(&motion.body.state);
     }
@@ -237,6 +243,12 @@ impl AircraftFlight {
         // Within its travel: the autopilot keeps it there.
         motion.throttle = self.plant.trim().controls.throttle + commands.throttle;
         motion.bank_rad = commands.bank_rad;
+        motion.is_steered = commands.lateral_rad.is_some();
+        if let Some([aileron_rad, rudder_rad]) = commands.lateral_rad {
+            let travel = self.aircraft().model().travel();
+            motion.aileron_rad = travel.aileron_rad.clamp(aileron_rad);
+            motion.rudder_rad = travel.rudder_rad.clamp(rudder_rad);
+        }
     }
 
     /// The air where the aircraft is.
@@ -428,6 +440,8 @@ impl AircraftFlight {
         let ground_speed_m_s = libm::hypot(over_north_m_s, over_east_m_s);
         AircraftSample {
             airspeed_m_s: instant.flow.airspeed_m_s,
+            equivalent_airspeed_m_s: instant.flow.equivalent_airspeed_m_s(),
+            mach: instant.flow.mach(),
             altitude_m: state.altitude_m(),
             alpha_rad: instant.flow.alpha_rad,
             bank_rad: attitude.phi_rad,

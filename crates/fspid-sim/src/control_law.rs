@@ -1,0 +1,84 @@
+//! Control laws that come as files: they see all that an aircraft shows, remember nothing, and move more than the elevator.
+
+use std::fmt;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use fspid_core::{Faults, Gains, Sample, Step};
+
+use crate::aircraft::AircraftSample;
+use crate::external::{Answers, Asked, ControllerLoss};
+use crate::in_flight::Seen;
+
+/// What a control law wants at a sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LawAnswer {
+    /// The command of the elevator from the trim, nose up positive, rad.
+    pub command_rad: f64,
+    /// What else it moves.
+    pub asked: Asked,
+}
+
+/// A control law without a memory.
+pub trait ControlLaw: fmt::Debug + Send + Sync {
+    /// What it wants at a sample. Pitch and pitch rate are those of [`Seen::measured`], through the sensors of the
+    /// scenario; all else is true.
+    fn answer(&self, seen: &Seen, aircraft: &AircraftSample) -> LawAnswer;
+}
+
+/// A control law and the file that it came from. Two are equal if they are the same object.
+#[derive(Clone, Debug)]
+pub struct SharedLaw {
+    /// Its file.
+    pub path: PathBuf,
+    /// The law.
+    pub law: Arc<dyn ControlLaw>,
+}
+
+impl PartialEq for SharedLaw {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.law, &other.law)
+    }
+}
+
+impl Eq for SharedLaw {}
+
+impl SharedLaw {
+    /// One flight of it.
+    pub(crate) fn start(&self) -> LawInFlight {
+        LawInFlight { law: Arc::clone(&self.law), asked: Asked::default() }
+    }
+}
+
+/// A control law in flight.
+#[derive(Debug)]
+pub(crate) struct LawInFlight {
+    law: Arc<dyn ControlLaw>,
+    asked: Asked,
+}
+
+impl Answers for LawInFlight {
+    /// A control law cannot answer a sample of pitch alone.
+    fn answer(&mut self, _: Sample<f64>) -> Result<Step<f64>, ControllerLoss> {
+        Err(ControllerLoss::NoAnswer)
+    }
+
+    fn answer_aboard(
+        &mut self,
+        seen: &Seen,
+        aircraft: Option<&AircraftSample>,
+    ) -> Result<Step<f64>, ControllerLoss> {
+        let LawAnswer { command_rad, asked } =
+            self.law.answer(seen, aircraft.ok_or(ControllerLoss::NoAnswer)?);
+        let others = asked.throttle.into_iter().chain(asked.lateral_rad.into_iter().flatten());
+        if !others.chain([command_rad]).all(f64::is_finite) {
+            return Err(ControllerLoss::NotFinite);
+        }
+        self.asked = asked;
+        Ok(Step { command_rad, gains: Gains::ZERO, saturated: false, faults: Faults::NONE })
+    }
+
+    fn asked(&self) -> Asked {
+        self.asked
+    }
+}
