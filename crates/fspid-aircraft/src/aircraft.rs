@@ -53,6 +53,11 @@ impl<M: ForceModel> Aircraft<M> {
         Self { environment, ..self }
     }
 
+    /// Another body with other forces in the same environment; the body is one that [`Self::new`] takes.
+    pub(crate) fn with_parts<N>(&self, mass: MassProperties, model: N) -> Aircraft<N> {
+        Aircraft { mass, model, environment: self.environment }
+    }
+
     /// Mass properties.
     #[must_use]
     pub fn mass(&self) -> &MassProperties {

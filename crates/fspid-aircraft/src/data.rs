@@ -2,6 +2,7 @@
 
 mod linear;
 mod loading;
+mod variations;
 
 use std::fmt;
 use std::sync::Arc;
@@ -17,6 +18,7 @@ use crate::mass::MassProperties;
 use crate::validity::{Travel, Validity};
 pub use linear::{LinearCondition, LinearData, LinearElevator, LinearState};
 pub use loading::{Loading, Moment};
+pub use variations::{GroundData, Variations};
 
 /// What is known about an aircraft, and from where.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,6 +33,8 @@ pub struct AircraftData {
     pub notes: String,
     /// The numbers.
     pub model: ModelData,
+    /// What is added to them in flight; nothing where the numbers are no derivatives.
+    pub variations: Variations,
 }
 
 /// How much of an aircraft its source tells.

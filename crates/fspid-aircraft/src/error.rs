@@ -92,6 +92,17 @@ pub enum AircraftError {
         "the aircraft's file does not say to which centre of gravity its derivatives belong; its [reference] needs cg_mac"
     )]
     NoReferenceCg,
+    /// Rows over Mach number that do not rise.
+    #[error("the Mach number {} comes after {before}; rows must rise", InWords(*found))]
+    MachRows {
+        /// That of the row before, 0 before the first.
+        before: f64,
+        /// What was found.
+        found: f64,
+    },
+    /// A table over Mach number without anything between rows.
+    #[error("rows over Mach number must be at least two")]
+    FewMachRows,
     /// A linear model in which nothing is the pitch angle.
     #[error("none of the states of the linear model is the pitch angle")]
     NoPitch,

@@ -20,6 +20,7 @@ mod engine;
 pub mod envelope;
 mod error;
 mod flow;
+mod fuel;
 pub mod integrate;
 pub mod linearise;
 mod mass;
@@ -40,6 +41,7 @@ pub use engine::{Gearing, Spool, power_rate_per_s};
 pub use envelope::{EnvelopeFlight, EnvelopeGrid, EnvelopeRow};
 pub use error::AircraftError;
 pub use flow::{AirMotion, Flow};
+pub use fuel::{Consumption, FuelledBody};
 pub use linearise::{Linearisation, VelocityForm};
 pub use mass::MassProperties;
 pub use modes::{

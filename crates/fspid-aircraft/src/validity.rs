@@ -78,6 +78,8 @@ pub enum Quantity {
     Rudder,
     /// Throttle in the measure of the model.
     Throttle,
+    /// Fuel in kg.
+    Fuel,
 }
 
 impl Quantity {
@@ -94,6 +96,7 @@ impl Quantity {
             Self::Aileron => "aileron",
             Self::Rudder => "rudder",
             Self::Throttle => "throttle",
+            Self::Fuel => "fuel",
         }
     }
 
@@ -103,6 +106,7 @@ impl Quantity {
         match self {
             Self::Airspeed => "m/s",
             Self::Altitude => "m",
+            Self::Fuel => "kg",
             Self::Mach | Self::Throttle => "",
             Self::Alpha | Self::Beta | Self::Elevator | Self::Aileron | Self::Rudder => "rad",
         }

@@ -61,6 +61,9 @@ pub fn left_out_of(scenario: &Scenario) -> Vec<LeftOut> {
         // Known to the study alone.
         LeftOut::Dispersions => false,
         LeftOut::OuterLoops => autopilot.is_some(),
+        LeftOut::Configurations => {
+            plant.aircraft().is_some_and(|plant| !plant.changing().is_still())
+        }
     };
     LeftOut::ALL.into_iter().filter(|what| present(*what)).collect()
 }

@@ -108,11 +108,13 @@ pub enum LeftOut {
     Dispersions,
     /// Outer loops, which command the pitch set-point from what the aircraft does.
     OuterLoops,
+    /// Configurations that move in flight, and fuel that is burnt.
+    Configurations,
 }
 
 impl LeftOut {
     /// All of them.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Rounding,
         Self::MovingSetpoint,
         Self::NonlinearAircraft,
@@ -123,6 +125,7 @@ impl LeftOut {
         Self::Disturbances,
         Self::Dispersions,
         Self::OuterLoops,
+        Self::Configurations,
     ];
 
     /// Name in files.
@@ -139,6 +142,7 @@ impl LeftOut {
             Self::Disturbances => "disturbances",
             Self::Dispersions => "dispersions",
             Self::OuterLoops => "outer-loops",
+            Self::Configurations => "configurations",
         }
     }
 
@@ -180,6 +184,9 @@ impl fmt::Display for LeftOut {
             Self::Disturbances => "Disturbances count while they stand still, as loads.",
             Self::Dispersions => "The claim is about the nominal numbers, not about those that a campaign draws.",
             Self::OuterLoops => "The claim is about the pitch loop alone, not about the outer loops around it and the set-points that they command.",
+            Self::Configurations => {
+                "The claim is about the configuration and the fuel of the start, not about what moves or is burnt after it."
+            }
         })
     }
 }

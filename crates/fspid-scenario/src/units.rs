@@ -9,6 +9,9 @@ pub const KNOT_M_S: f64 = 1852.0 / 3600.0;
 /// Newtons in a pound of force: 0.45359237 kg under 9.80665 m/s².
 pub const POUND_FORCE_N: f64 = 4.448_221_615_260_5;
 
+/// Kilograms in a pound, by definition.
+pub const POUND_KG: f64 = 0.453_592_37;
+
 /// Kilograms in a slug: what a pound of force accelerates by a foot per second squared.
 pub const SLUG_KG: f64 = POUND_FORCE_N / FOOT_M;
 

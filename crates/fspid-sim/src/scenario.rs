@@ -382,6 +382,15 @@ impl Prepared {
         })
     }
 
+    /// Names of what a nonlinear aircraft shows of its configurations, its fuel and the ground.
+    pub(crate) fn shown_names(&self) -> Vec<&'static str> {
+        let mut flights = self.stages.iter().filter_map(|stage| match &stage.propagation {
+            Propagation::Aircraft(flight) => Some(flight.shown_names()),
+            _ => None,
+        });
+        flights.next().unwrap_or_default()
+    }
+
     /// The air's velocity forward and down, m/s, and its pitch rate, rad/s, at each sample of a linear
     /// plant; none in calm air.
     ///

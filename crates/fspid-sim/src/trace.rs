@@ -171,7 +171,10 @@ impl Trace {
         let aircraft = instant.aircraft.map(|sample| sample.values());
         let values = measured.iter().flatten().chain(gust.into_iter().flatten());
         let autopilot = instant.autopilot.map(|sample| sample.values());
-        let values = values.chain(aircraft.iter().flatten()).chain(autopilot.iter().flatten());
+        let shown = instant.aircraft.and_then(|sample| sample.shown);
+        let shown = shown.iter().flat_map(|shown| shown.values());
+        let values = values.chain(aircraft.iter().flatten()).chain(shown);
+        let values = values.chain(autopilot.iter().flatten());
         for (column, value) in self.columns.iter_mut().zip(values) {
             column.values.push(*value);
         }
@@ -201,5 +204,5 @@ fn column_names(prepared: &Prepared) -> impl Iterator<Item = &'static str> {
     let gusts = prepared.gusts().map(|_| GUSTS).into_iter().flatten();
     let aircraft = prepared.is_aircraft().then_some(AIRCRAFT_COLUMNS).into_iter().flatten();
     let autopilot = prepared.has_autopilot().then_some(AUTOPILOT_COLUMNS).into_iter().flatten();
-    measured.chain(gusts).chain(aircraft).chain(autopilot)
+    measured.chain(gusts).chain(aircraft).chain(prepared.shown_names()).chain(autopilot)
 }

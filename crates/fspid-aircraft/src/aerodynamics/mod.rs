@@ -1,6 +1,10 @@
 //! Forces and moments on an aircraft: the place where a model of another kind is plugged in.
 
 pub mod derivatives;
+pub mod ground_effect;
+pub mod increment;
+pub mod mach_table;
+pub mod varied;
 
 use crate::controls::Controls;
 use crate::engine::Gearing;

@@ -7,7 +7,7 @@ use fspid_aircraft::aerodynamics::derivatives::{
 };
 use fspid_aircraft::data::{
     AircraftData, DerivativeData, Inertia, LinearData, LinearElevator, LinearState, Loading,
-    ModelData, Reference,
+    ModelData, Reference, Variations,
 };
 use fspid_aircraft::{Range, Travel, Validity};
 use fspid_lti::Matrix;
@@ -55,7 +55,7 @@ pub(crate) fn aircraft(name: &str) -> AircraftData {
     };
     let [name, title, source, notes] =
         ["name", "title", "source", "notes"].map(|key| string(&file, key));
-    AircraftData { name, title, source, notes, model }
+    AircraftData { name, title, source, notes, model, variations: Variations::default() }
 }
 
 pub(crate) fn derivative_data(name: &str) -> DerivativeData {

@@ -151,6 +151,7 @@ pub fn departure(limit: &Departure, units: Units) -> String {
         Quantity::Airspeed => Kind::Speed,
         Quantity::Altitude => Kind::Length,
         Quantity::Mach | Quantity::Throttle => Kind::Plain,
+        Quantity::Fuel => Kind::Mass,
         _ => Kind::Angle,
     };
     let (name, value) = (limit.quantity.name(), quantity(units, kind, limit.value));

@@ -1,6 +1,7 @@
 //! Aircraft that the program carries, and files of the same form: from the units of a source to SI.
 
 mod linear;
+pub(super) mod variations;
 
 use std::path::Path;
 
@@ -19,7 +20,7 @@ use crate::keyed::{
     Key, Section, check,
     document::{self, Item},
 };
-use crate::units::{FOOT_M, KNOT_M_S, POUND_FORCE_N, SLUG_KG, radians};
+use crate::units::{FOOT_M, KNOT_M_S, POUND_FORCE_N, POUND_KG, SLUG_KG, radians};
 use fspid_diagnostics::{Problems, Report};
 
 /// Size in SI of a unit that a key of an aircraft may have; degrees stand apart, and all others are SI.
@@ -29,6 +30,9 @@ pub(super) fn unit_size(unit: &str) -> f64 {
         "ft" | "ft/s" | "ft/s2" => FOOT_M,
         "ft/min" => FOOT_M / 60.0,
         "nmi" => 1852.0,
+        "lb" => POUND_KG,
+        "lb/h" => POUND_KG / 3600.0,
+        "lb/(lbf h)" => POUND_KG / (POUND_FORCE_N * 3600.0),
         "ft2" => FOOT_M * FOOT_M,
         "lbf" => POUND_FORCE_N,
         "psf" => POUND_FORCE_N / (FOOT_M * FOOT_M),
@@ -115,12 +119,14 @@ pub(super) fn aircraft_data(
             ModelData::Derivatives(Box::new(derivatives(report, section, given)?))
         }
     };
+    let variations = variations::variations(report, section);
     Some(AircraftData {
         name: text(keys::NAME),
         title: text(keys::TITLE),
         source: text(keys::SOURCE),
         notes: text(keys::NOTES),
         model,
+        variations: variations?,
     })
 }
 

@@ -18,6 +18,18 @@ const SETPOINTS: [&str; 6] = [
     "kind = \"table\"\ntime_s = [0.0, 1.0]\nvalue_deg = [1.0, 2.0]\ninterpolation = \"linear\"\n",
 ];
 
+/// Limit, wing and fuel of the flying file, in every unit; joined to its inertia.
+const VARIATIONS: [[&str; 4]; 3] = [
+    ["most_airspeed_m_s = 90.0", "wing_height_m = 1.5", "on_board_kg = 100.0", "flow_kg_s = 0.01"],
+    ["most_airspeed_kt = 170.0", "wing_height_ft = 5.0", "on_board_lb = 200.0", "flow_lb_h = 80.0"],
+    [
+        "most_airspeed_ft_s = 300.0",
+        "wing_height_m = 1.5",
+        "on_board_kg = 100.0",
+        "specific_kg_n_s = 2e-5",
+    ],
+];
+
 /// Inertia of the flying file: in every unit, and by radii.
 const INERTIAS: [&str; 3] = [
     "ix_kg_m2 = 1400.0\niy_kg_m2 = 4000.0\niz_kg_m2 = 4700.0\nixz_kg_m2 = 10.0\n",
@@ -116,10 +128,19 @@ pub(crate) fn texts() -> Vec<String> {
     let whole = text("crates/fspid-scenario/tests/scenarios/every-key.toml");
     let flying = text("crates/fspid-scenario/tests/scenarios/every-key-aircraft.toml");
     let commands = SETPOINTS.map(|setpoint| whole.replace(SETPOINTS[0], setpoint));
-    let flights = FLIGHTS.map(|flight| {
+    let varied = |text: String, of: [&str; 4]| {
+        let parts = VARIATIONS[0].into_iter().zip(of);
+        parts.fold(text, |text, (from, to)| text.replace(from, to))
+    };
+    let variations = VARIATIONS.into_iter().cycle();
+    let flights = FLIGHTS.into_iter().zip(variations).map(|(flight, variations)| {
         let parts = FLIGHTS[0].into_iter().zip(flight);
-        parts.fold(flying.clone(), |text, (from, to)| text.replace(from, to))
+        let text = parts.fold(flying.clone(), |text, (from, to)| text.replace(from, to));
+        varied(text, variations)
     });
+    let last = varied(flying.clone(), VARIATIONS[1]);
+    let last = last.replace("flow_lb_h = 80.0", "specific_lb_lbf_h = 0.5");
+    let flights = flights.chain([last]);
     let simulated = text("crates/fspid-scenario/tests/scenarios/every-key-simulator.toml");
     let simulated = CONDITIONS.map(|condition| {
         let parts = CONDITIONS[0].into_iter().zip(condition);

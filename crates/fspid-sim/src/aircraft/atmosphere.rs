@@ -40,6 +40,13 @@ impl Atmosphere {
         })
     }
 
+    /// The same with corners of the aircraft's own: times, s, and an altitude, m.
+    pub(super) fn with_corners(mut self, times_s: Vec<f64>, altitude_m: Option<f64>) -> Self {
+        let height_m = altitude_m.map(|altitude_m| altitude_m - self.ground_altitude_m);
+        self.corners = self.corners.with(times_s, height_m);
+        self
+    }
+
     /// Start, m north and m east of the origin, and heading, rad.
     pub(super) fn start(&self) -> ([f64; 2], f64) {
         (self.start_m, self.heading_rad)

@@ -2,6 +2,8 @@
 
 use fspid_aircraft::Departure;
 
+use super::changing::Shown;
+
 /// What is observable of an aircraft at a sample, beyond what every plant shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AircraftSample {
@@ -56,6 +58,8 @@ pub struct AircraftSample {
     pub apparent_vertical_rad: f64,
     /// First limit of the model's validity that is left at this sample.
     pub departure: Option<Departure>,
+    /// What it shows of its configurations, its fuel and the ground, where any of them varies.
+    pub shown: Option<Shown>,
 }
 
 /// Names of [`AircraftSample::values`], in order.

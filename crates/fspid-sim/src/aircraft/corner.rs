@@ -38,6 +38,16 @@ impl Corners {
         all
     }
 
+    /// These and others: times, s, and a height, m.
+    pub(super) fn with(mut self, times_s: Vec<f64>, height_m: Option<f64>) -> Self {
+        self.time_s.extend(times_s);
+        self.height_m.extend(height_m);
+        for list in [&mut self.height_m, &mut self.time_s] {
+            list.sort_by(f64::total_cmp);
+        }
+        self
+    }
+
     /// The one that a straight way from a place to another meets first, if it is not at the first place.
     pub(super) fn first_between(&self, from: &AirPlace, to: &AirPlace) -> Option<Corner> {
         let along = next(&self.distance_m, from.distance_m, to.distance_m).map(Corner::Distance);

@@ -4,6 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use fspid_aircraft::aerodynamics::derivatives::DerivativeModel;
+use fspid_aircraft::aerodynamics::varied::VariedModel;
 use fspid_aircraft::{Controls, Flow, ForceModel, Gearing, Loads, Travel, Validity};
 
 /// A model of the forces on an aircraft.
@@ -14,6 +15,8 @@ use fspid_aircraft::{Controls, Flow, ForceModel, Gearing, Loads, Travel, Validit
 pub enum Forces {
     /// Stability derivatives.
     Derivatives(Box<DerivativeModel>),
+    /// Stability derivatives and what is added to them in flight.
+    Varied(Box<VariedModel>),
     /// Any other model.
     Other(Arc<dyn ForceModel + Send + Sync>),
 }
@@ -22,8 +25,24 @@ impl Forces {
     fn model(&self) -> &dyn ForceModel {
         match self {
             Self::Derivatives(model) => model.as_ref(),
+            Self::Varied(model) => model.as_ref(),
             Self::Other(model) => model.as_ref(),
         }
+    }
+
+    /// The model whose forces vary, of an aircraft that has one.
+    #[must_use]
+    pub fn varied(&self) -> Option<&VariedModel> {
+        match self {
+            Self::Varied(model) => Some(model),
+            Self::Derivatives(_) | Self::Other(_) => None,
+        }
+    }
+}
+
+impl From<VariedModel> for Forces {
+    fn from(model: VariedModel) -> Self {
+        Self::Varied(Box::new(model))
     }
 }
 
@@ -37,6 +56,7 @@ impl PartialEq for Forces {
     fn eq(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Derivatives(this), Self::Derivatives(that)) => this == that,
+            (Self::Varied(this), Self::Varied(that)) => this == that,
             (Self::Other(this), Self::Other(that)) => Arc::ptr_eq(this, that),
             _ => false,
         }
@@ -47,6 +67,7 @@ impl fmt::Debug for Forces {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Derivatives(model) => model.fmt(f),
+            Self::Varied(model) => model.fmt(f),
             Self::Other(_) => f.write_str("Other"),
         }
     }
@@ -56,6 +77,7 @@ impl ForceModel for Forces {
     fn loads(&self, flow: &Flow, controls: &Controls) -> Loads {
         match self {
             Self::Derivatives(model) => model.loads(flow, controls),
+            Self::Varied(model) => model.loads(flow, controls),
             Self::Other(model) => model.loads(flow, controls),
         }
     }
@@ -63,6 +85,7 @@ impl ForceModel for Forces {
     fn loads_per_alpha_rate(&self, flow: &Flow) -> Loads {
         match self {
             Self::Derivatives(model) => model.loads_per_alpha_rate(flow),
+            Self::Varied(model) => model.loads_per_alpha_rate(flow),
             Self::Other(model) => model.loads_per_alpha_rate(flow),
         }
     }

@@ -17,10 +17,17 @@
 //! # Ground
 //! The flight ends at the first sample at or below the ground: nobody lands here.
 //!
+//! # What changes
+//! Of an aircraft whose forces [vary](Forces::Varied) configurations move along straight lines over time, fuel is a state
+//! of the integration, and the ground acts below one span. A step ends where a configuration begins or ceases to move,
+//! where the ground begins to act, and where the tank runs dry; with an empty tank there is no thrust. Where a row of a
+//! table over Mach number is passed it does not end, and its error there is of the second order.
+//!
 //! # Not here
-//! Plant changes and ground effect. Without an [`autopilot`](crate::autopilot) the throttle does not move.
+//! Plant changes. Without an [`autopilot`](crate::autopilot) the throttle does not move.
 
 mod atmosphere;
+mod changing;
 mod column;
 mod corner;
 mod flight;
@@ -29,6 +36,9 @@ mod leveller;
 mod linear;
 
 use atmosphere::Atmosphere;
+pub use changing::{
+    Changing, ConfigurationChange, DEPLOYMENT_COLUMNS, Deployment, Fuel, MOST_CONFIGURATIONS, Shown,
+};
 pub use column::{AIRCRAFT_COLUMNS, AircraftSample};
 pub(crate) use flight::{AircraftFlight, AircraftMotion};
 pub use forces::Forces;
@@ -51,6 +61,7 @@ pub struct AircraftPlant {
     ground_altitude_m: Option<f64>,
     spool: Spool,
     lateral: Lateral,
+    changing: Changing,
 }
 
 /// How the lateral motion is looked after.
@@ -76,9 +87,11 @@ impl AircraftPlant {
     /// [`SimError::Trim`] where there is no such flight, with what stands in its way.
     pub fn trimmed(aircraft: Aircraft<Forces>, target: TrimTarget) -> Result<Self, SimError> {
         let trim = aircraft.trim(target).map_err(|failure| SimError::Trim(Box::new(failure)))?;
+        let changing = aircraft.model().varied().map(Changing::none_of).unwrap_or_default();
         Ok(Self {
             aircraft,
             trim,
+            changing,
             ground_altitude_m: None,
             spool: Spool::Instant,
             lateral: Lateral::default(),
@@ -92,6 +105,29 @@ impl AircraftPlant {
     pub fn above_ground(self, altitude_m: f64) -> Result<Self, SimError> {
         positive("height above the ground, m", self.trim.target.altitude_m - altitude_m)?;
         Ok(Self { ground_altitude_m: Some(altitude_m), ..self })
+    }
+
+    /// The same with what changes in flight; it is for the model of this aircraft.
+    #[must_use]
+    pub fn changing_so(self, changing: Changing) -> Self {
+        Self { changing, ..self }
+    }
+
+    /// What changes in flight.
+    #[must_use]
+    pub fn changing(&self) -> &Changing {
+        &self.changing
+    }
+
+    /// Times at which something begins or ceases to change, s.
+    fn corners_s(&self) -> Vec<f64> {
+        self.changing.corners_s()
+    }
+
+    /// Altitude below which the ground acts, m, if it does.
+    fn corner_altitude_m(&self) -> Option<f64> {
+        let effect = self.aircraft.model().varied()?.effects().ground?;
+        Some(effect.upper_altitude_m())
     }
 
     /// The same with an engine whose power follows the throttle so; only an autopilot moves a throttle.

@@ -108,6 +108,7 @@ impl ExternalMotion {
                 + now.airspeed_m_s * now.airspeed_m_s / (2.0 * STANDARD_GRAVITY_M_S2),
             apparent_vertical_rad: apparent_vertical_rad(now),
             departure: None,
+            shown: None,
         })
     }
 }

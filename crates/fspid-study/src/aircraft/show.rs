@@ -3,7 +3,10 @@
 use fspid_aircraft::aerodynamics::derivatives::{
     Lateral, LateralCoefficient, Longitudinal, LongitudinalCoefficient,
 };
-use fspid_aircraft::data::{AircraftData, DerivativeData, LinearData, LinearElevator, ModelData};
+use fspid_aircraft::aerodynamics::increment::Configuration;
+use fspid_aircraft::data::{
+    AircraftData, DerivativeData, LinearData, LinearElevator, ModelData, Variations,
+};
 use serde_json::{Value, json};
 
 use super::facts::Facts;
@@ -160,13 +163,44 @@ fn coefficients_json(data: &DerivativeData) -> Value {
     Value::Object(whole)
 }
 
+/// What is added to the derivatives in flight, in lines; nothing where nothing is.
+fn variations_text(variations: &Variations) -> String {
+    let mut text = String::new();
+    for configuration in &variations.configurations {
+        let Configuration { name, source, .. } = configuration;
+        text.push_str(&format!("\nconfiguration {name}: {source}\n"));
+    }
+    if let Some(mach) = &variations.mach {
+        let range = mach.range();
+        text.push_str(&format!("\nrows over Mach number from {} to {}\n", range.min, range.max));
+    }
+    if let Some(ground) = &variations.ground {
+        let height_m = ground.wing_height_m;
+        text.push_str(&format!("\nground effect with the wing {height_m} m above the ground\n"));
+    }
+    text
+}
+
+/// The same for programs.
+fn variations_json(variations: &Variations) -> Value {
+    let Variations { configurations, mach, ground } = variations;
+    let named = |it: &Configuration| json!({ "name": it.name, "source": it.source });
+    let named: Vec<Value> = configurations.iter().map(named).collect();
+    present(json!({
+        "configurations": (!named.is_empty()).then_some(named),
+        "mach_rows": mach.as_ref().map(|table| [table.range().min, table.range().max]),
+        "wing_height_m": ground.map(|ground| ground.wing_height_m),
+    }))
+}
+
 impl Show {
     /// The aircraft for people.
     #[must_use]
     pub fn text(&self) -> String {
         let AircraftData { name, title, source, notes, .. } = &self.data;
         let notes = if notes.is_empty() { String::new() } else { format!("notes: {notes}\n") };
-        format!("{name}: {title}\nsource: {source}\n{notes}\n{}", self.model_text())
+        let (of_model, more) = (self.model_text(), variations_text(&self.data.variations));
+        format!("{name}: {title}\nsource: {source}\n{notes}\n{of_model}{more}")
     }
 
     fn model_text(&self) -> String {
@@ -205,7 +239,7 @@ impl Show {
     #[must_use]
     pub fn json(&self) -> Value {
         let units = self.units;
-        let AircraftData { name, title, source, notes, model } = &self.data;
+        let AircraftData { name, title, source, notes, model, variations } = &self.data;
         let of_model = match model {
             ModelData::Derivatives(data) => json!({
                 "reference": reference(data).json(units),
@@ -227,6 +261,7 @@ impl Show {
                 "known_by": kind(model), "units": units.name(),
             }),
             of_model,
+            variations_json(variations),
             present(json!({
                 "longitudinal": linear.map(|linear| linear.longitudinal.json(units)),
                 "theta_over_elevator": linear.map(|linear| polynomial::json(&linear.plant)),

@@ -15,7 +15,7 @@ pub fn not_in_the_linear_loop(scenario: &Scenario) -> Vec<String> {
     applying.map(|(_, sentence)| (*sentence).to_owned()).collect()
 }
 
-fn of_what_flies(scenario: &Scenario) -> [LeftOut; 6] {
+fn of_what_flies(scenario: &Scenario) -> [LeftOut; 7] {
     let surroundings = &scenario.surroundings;
     let actuator = &scenario.actuator;
     let is_aircraft = scenario.plant.aircraft().is_some();
@@ -26,6 +26,10 @@ fn of_what_flies(scenario: &Scenario) -> [LeftOut; 6] {
     let erects = surroundings.pitch_sensor.is_some_and(|s| s.model().erection_rad_s > 0.0);
     [
         (is_aircraft, "The aircraft is nonlinear: analysed is its linear model at the trim."),
+        (
+            scenario.plant.aircraft().is_some_and(|plant| !plant.changing().is_still()),
+            "Configurations that move and fuel that is burnt are left out: analysed is the aircraft as it is at the start.",
+        ),
         (
             scenario.autopilot.is_some(),
             "Margins are those of the pitch loop alone; of the loops around it the poles of each mode are told, around the trim and without limits and sensors, those of pitch among them.",

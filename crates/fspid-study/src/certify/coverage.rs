@@ -89,6 +89,7 @@ pub const COVERAGE: &[KeyCoverage] = &[
     row("aircraft.atmosphere", Beside, LINEAR_AT_TRIM),
     row("aircraft.drag", Beside, LINEAR_AT_TRIM),
     row("aircraft.thrust", Beside, LINEAR_AT_TRIM),
+    row("aircraft.configuration", Beside, LINEAR_AT_TRIM),
     row(
         "aircraft.heading_deg",
         Beside,
@@ -100,6 +101,18 @@ pub const COVERAGE: &[KeyCoverage] = &[
         "simulator.*",
         Refused,
         "another simulator flies, and there are no equations of its aircraft",
+    ),
+    row("configuration.*", Beside, LINEAR_AT_TRIM),
+    row(
+        "configuration_change.*",
+        Beside,
+        "the claim is about the configuration of the start; what moves after it is left out",
+    ),
+    row("ground_effect.*", Beside, LINEAR_AT_TRIM),
+    row(
+        "fuel.*",
+        Beside,
+        "the claim is about the mass of the start; what is burnt after it is left out",
     ),
     row("engine.*", Beside, LINEAR_AT_TRIM),
     row("lateral.*", NoPart, "pitch alone is in the model"),

@@ -8,7 +8,7 @@ use fspid_aircraft::{Aircraft, Environment, ForceModel, Quantity, TrimFailure, T
 use fspid_sim::aircraft::Forces;
 use fspid_sim::{AircraftPlant, Course, Plant, SimError};
 
-use super::{data, judged, linear_aircraft, loading, rad, simulator};
+use super::{configuration, data, judged, linear_aircraft, loading, rad, simulator};
 use crate::aircraft::{AircraftFailure, Units};
 use crate::carried::aircraft_text;
 use crate::file::aircraft::{Given, aircraft_data, quantity};
@@ -17,7 +17,7 @@ use crate::file::spec::AIRCRAFT_FILE;
 use crate::file::spec::flight as keys;
 use crate::file::spec::flight::{AtmosphereWord, ModelWord};
 use crate::file::spec::scenario::{AIRCRAFT, PLANT, SIMULATOR};
-use crate::flyer::flyer;
+use crate::flyer::{flyer, varied_flyer};
 use crate::keyed::{Key, Section};
 use fspid_diagnostics::Report;
 
@@ -29,7 +29,11 @@ pub(super) fn flown(
 ) -> Option<Flown> {
     let sound = |key| section.get(key).filter(|part: &&Section| part.sound);
     if let Some(part) = sound(AIRCRAFT) {
-        return aircraft(report, files, part);
+        return aircraft(report, files, (section, part));
+    }
+    if section.get(AIRCRAFT).is_none() {
+        let message = "it is for an aircraft of derivatives";
+        configuration::refuse(report, (section, None), message);
     }
     if let Some(part) = sound(SIMULATOR) {
         return simulator::flown(report, files, section, part);
@@ -38,7 +42,11 @@ pub(super) fn flown(
     Some(Flown { plant: plant.into(), way: None })
 }
 
-fn aircraft(report: &mut Report, files: &mut Files<'_>, part: &Section) -> Option<Flown> {
+fn aircraft(
+    report: &mut Report,
+    files: &mut Files<'_>,
+    (section, part): (&Section, &Section),
+) -> Option<Flown> {
     let key = if part.given(keys::FILE) { keys::FILE } else { keys::NAME };
     let data = read(report, files, part)?;
     let model = part.get(keys::MODEL).unwrap_or_else(|| default_model(&data));
@@ -50,20 +58,37 @@ fn aircraft(report: &mut Report, files: &mut Files<'_>, part: &Section) -> Optio
         ModelData::Derivatives(data) => Some(data.geometry.span_m),
         // Tables whose moments are 0 need none.
         ModelData::Forces(data) => Some(data.geometry.span_m).filter(|span_m| *span_m > 0.0),
-        ModelData::Linear(model) => return linear_aircraft::flown(report, (part, key), model),
+        ModelData::Linear(model) => {
+            let message = "only a linear model of the aircraft is known";
+            configuration::refuse(report, (section, Some(part)), message);
+            return linear_aircraft::flown(report, (part, key), model);
+        }
     };
     fits(report, part, &data)?;
+    let varied = configuration::varied(report, (section, part), &data)?;
     let target = target(part)?;
     check_ground(report, part, target);
     let own_air = part.get(keys::ATMOSPHERE)? == AtmosphereWord::Reference;
-    let aircraft = flyer(&data, laws(part)?, own_air);
+    let aircraft = match varied.is_none() {
+        true => flyer(&data, laws(part)?, own_air),
+        false => {
+            let added = (varied.deployed.clone(), varied.ground);
+            varied_flyer(&data, laws(part)?, own_air, added)
+        }
+    };
     let aircraft = judged(report, (part, key), aircraft)?;
     glides(report, part, &aircraft)?;
     let plant = trimmed(report, part, &aircraft, target)?;
     let target = plant.trim().target;
     let plant = match model {
-        ModelWord::Linear => Plant::Linear(judged(report, (part, key), plant.linear())?),
-        ModelWord::Nonlinear => above_ground(report, part, plant)?.into(),
+        ModelWord::Linear => {
+            configuration::refuse_changes(report, section);
+            Plant::Linear(judged(report, (part, key), plant.linear())?)
+        }
+        ModelWord::Nonlinear => {
+            let plant = above_ground(report, part, plant)?;
+            configuration::changing(report, part, plant, varied)?.into()
+        }
     };
     let way = way(part, target, aircraft.environment())?;
     Some(Flown { plant, way: Some(Way { span_m, ..way }) })

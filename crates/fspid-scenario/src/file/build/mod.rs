@@ -4,6 +4,7 @@ mod actuator;
 mod air;
 mod airframe;
 mod autopilot;
+mod configuration;
 mod control_law;
 mod controller;
 mod cost;

@@ -6,6 +6,7 @@ use fspid_sim::{LinearPlant, Plant, PlantChange, Scenario, SimError, Timing};
 
 use super::{data, elevator_sign, judged, order_differs};
 use crate::file::files::Files;
+use crate::file::spec::configuration::CONFIGURATION_CHANGE;
 use crate::file::spec::flight;
 use crate::file::spec::scenario as keys;
 use crate::file::spec::signal::FREQUENCY_HZ;
@@ -213,7 +214,7 @@ pub(super) fn check_flight(report: &mut Report, section: &Section, scenario: &Sc
             ));
         }
     }
-    let others = [keys::GUST, keys::PLANT_CHANGE].into_iter();
+    let others = [keys::GUST, keys::PLANT_CHANGE, CONFIGURATION_CHANGE].into_iter();
     others.flat_map(|key| section.sections(key)).for_each(|part| late(report, part));
     let mut ramps = section
         .sections(keys::PLANT_CHANGE)

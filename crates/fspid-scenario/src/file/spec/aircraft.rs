@@ -7,6 +7,7 @@ use crate::keyed::{
 };
 use fspid_sim::ElevatorSign;
 
+use super::configuration::OF_FILES;
 use super::flight::{ALTITUDES, ALTITUDES_FT, CHORD_SHARE};
 use super::tables::OF_TABLES;
 
@@ -46,7 +47,7 @@ pub(crate) static AIRCRAFT_FILE: Table = of_kinds(
     "An aircraft.",
     &[&[&NAME, &TITLE, &SOURCE, &NOTES]],
     &[
-        variant(AircraftKind::Derivatives.name(), plain("Stability derivatives.", &[DERIVATIVES])),
+        variant(AircraftKind::Derivatives.name(), plain("Stability derivatives.", &[DERIVATIVES, OF_FILES])),
         variant(AircraftKind::Linear.name(), plain("A linear model.", &[LINEAR])),
         variant(AircraftKind::Tables.name(), plain("Tables in files of their own.", &[OF_TABLES])),
     ],
@@ -239,7 +240,7 @@ pub(crate) const SPEED: Key<f64> = optional("speed", COEFFICIENT, "By relative c
 pub(crate) const ELEVATOR: Key<f64> =
     optional("elevator", COEFFICIENT, "By elevator, trailing edge down positive.");
 
-static LONGITUDINAL_ROW_TABLE: Table = plain(
+pub(super) static LONGITUDINAL_ROW_TABLE: Table = plain(
     "A coefficient; what is left out is 0.",
     &[&[&COEFFICIENT_REFERENCE, &ALPHA, &ALPHA_RATE, &PITCH_RATE, &SPEED, &ELEVATOR]],
 );
@@ -260,7 +261,7 @@ pub(crate) const YAW_RATE: Key<f64> =
 pub(crate) const AILERON: Key<f64> = optional("aileron", COEFFICIENT, "By aileron.");
 pub(crate) const RUDDER: Key<f64> = optional("rudder", COEFFICIENT, "By rudder.");
 
-static LATERAL_ROW_TABLE: Table = plain(
+pub(super) static LATERAL_ROW_TABLE: Table = plain(
     "A coefficient; what is left out is 0.",
     &[&[&BETA, &ROLL_RATE, &YAW_RATE, &AILERON, &RUDDER]],
 );

@@ -1,6 +1,7 @@
 //! The aircraft of a scenario and where it flies.
 
 use super::angle;
+use super::configuration::OUT_AT_START;
 use crate::keyed::word::{words, words_of};
 use crate::keyed::{
     FILE_PATH, Key, KeyRow, KindOf, Range, Table, carried, choosing, defaulted, finite, number,
@@ -158,7 +159,7 @@ pub(super) static AIRCRAFT_TABLE: Table = choosing(
     &[
         &[&NAME, &FILE, &AIRSPEED[0], &AIRSPEED[1], &AIRSPEED[2], &ALTITUDE[0]],
         &[&ALTITUDE[1], &MODEL, &DRAG, &THRUST, &ATMOSPHERE, &CLIMB_ANGLE_DEG],
-        &[&HEADING_DEG, &GROUND_M, &VALIDITY],
+        &[&HEADING_DEG, &GROUND_M, &VALIDITY, &OUT_AT_START],
         LOADING,
     ],
     &[

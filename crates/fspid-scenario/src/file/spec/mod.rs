@@ -7,6 +7,7 @@ pub(crate) mod actuator;
 pub(crate) mod air;
 pub(crate) mod aircraft;
 pub(crate) mod autopilot;
+pub(crate) mod configuration;
 pub(crate) mod controller;
 pub(crate) mod data;
 pub(crate) mod dispersion;

@@ -15,6 +15,7 @@ use super::autopilot::{
     ENGINE_TABLE, GLIDE_SLOPE_TABLE, LATERAL_TABLE, MODE_TABLE, OUTER_LOOP_TABLE,
     TOTAL_ENERGY_TABLE,
 };
+use super::configuration::{CONFIGURATION, CONFIGURATION_CHANGE, FUEL, GROUND_EFFECT};
 use super::controller::CONTROLLER_TABLE;
 use super::dispersion::DISPERSION_TABLE;
 use super::flight::AIRCRAFT_TABLE;
@@ -123,6 +124,7 @@ pub(crate) static SCENARIO: Table = choosing(
     "A flight to be simulated, once for each controller.",
     &[
         &[&SCHEMA, &NAME, &PLANT, &AIRCRAFT, &SIMULATOR, &ACTUATOR, &LOOP, &SETPOINT, &SENSOR],
+        &[&CONFIGURATION, &CONFIGURATION_CHANGE, &GROUND_EFFECT, &FUEL],
         &[&ENGINE, &LATERAL, &GLIDE_SLOPE, &OUTER_LOOP, &TOTAL_ENERGY, &MODE],
         &[&WIND, &GUST, &TURBULENCE, &DISTURBANCE, &PLANT_CHANGE, &CONTROLLER],
         &[&REQUIREMENT, &DISPERSION, &TUNING, &CONTEST, &SET],

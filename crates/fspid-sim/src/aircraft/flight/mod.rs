@@ -1,5 +1,6 @@
 //! An aircraft from one sample to the next.
 
+mod changing;
 mod numbers;
 
 use fspid_aircraft::integrate::rk4;
@@ -76,6 +77,8 @@ struct Moving {
     power: f64,
     /// Time since the start, s.
     time_s: f64,
+    /// Fuel that was burnt, kg.
+    burnt_kg: f64,
     actuator: ActuatorState,
 }
 
@@ -133,6 +136,7 @@ impl AircraftFlight {
         timing: Timing,
     ) -> Result<Self, SimError> {
         let atmosphere = Atmosphere::new(weather, plant.trim().target.altitude_m)?;
+        let atmosphere = atmosphere.with_corners(plant.corners_s(), plant.corner_altitude_m());
         let start = start(plant, &atmosphere);
         Ok(Self {
             plant: plant.clone(),
@@ -178,6 +182,7 @@ impl AircraftFlight {
                 state: self.start,
                 distance_m: 0.0,
                 time_s: 0.0,
+                burnt_kg: 0.0,
                 power: self.gearing().power(self.plant.trim().controls.throttle),
                 actuator: ActuatorState::default(),
             },
@@ -278,7 +283,11 @@ impl AircraftFlight {
             self.reach(motion, self.grid.tick(motion.k));
         } else {
             for _ in 0..self.steps.count {
-                motion.body = self.stepped(&motion.body, &holding(motion, held), self.steps.step_s);
+                let held = holding(motion, held);
+                motion.body = match self.varying() {
+                    Some(_) => self.way(motion.body, &held, self.steps.step_s),
+                    None => self.stepped(&motion.body, &held, self.steps.step_s),
+                };
                 self.steer(motion);
             }
             motion.k += 1;
@@ -348,6 +357,9 @@ impl AircraftFlight {
 
     /// The motion after one step of Runge and Kutta, in the air of the place at each stage.
     fn stepped(&self, body: &Moving, held: &Holding, step_s: f64) -> Moving {
+        if let Some(varying) = self.varying() {
+            return self.stepped_varying(varying, (body, held), step_s);
+        }
         let mut next = *body;
         let [begin, middle, end] = self.stages(&mut next.actuator, held, step_s);
         let rate = |time_s: f64, values: &[f64; STATES]| {
@@ -428,10 +440,11 @@ impl AircraftFlight {
     pub(crate) fn sample(&self, motion: &AircraftMotion, elevator_rad: f64) -> AircraftSample {
         let (state, air) = (&motion.body.state, self.air(motion));
         let throttle = self.acting_throttle(motion.body.power, motion.throttle);
+        let throttle = self.fed_throttle(motion.body.burnt_kg, throttle);
         let &AircraftMotion { aileron_rad, rudder_rad, .. } = motion;
         let controls = Controls { elevator_rad, aileron_rad, rudder_rad, throttle };
-        let instant = self.aircraft().instant(state, &controls, &air);
-        let felt = self.load_factors(&instant);
+        let instant = self.instant(&motion.body, &controls, &air);
+        let felt = self.load_factors(&motion.body, &instant);
         let [north_m, east_m, _] = state.position_ned_m.to_array();
         let attitude = state.euler();
         let over_ground_m_s = state.attitude.to_ned(state.velocity_body_m_s);
@@ -461,7 +474,8 @@ impl AircraftFlight {
             air_rad_s: air.gust_rates_rad_s.to_array(),
             energy_height_m: self.energy_height_m(&instant),
             apparent_vertical_rad: apparent_vertical_rad(state, felt),
-            departure: self.aircraft().model().validity().departure(&instant.flow),
+            departure: self.departure(&motion.body, &instant),
+            shown: self.shown(&motion.body),
         }
     }
 
@@ -471,9 +485,9 @@ impl AircraftFlight {
         instant.flow.altitude_m + airspeed_m_s * airspeed_m_s / (2.0 * gravity_m_s2)
     }
 
-    fn load_factors(&self, instant: &Instant) -> Vector3 {
-        let aircraft = self.aircraft();
-        instant.load_factors(aircraft.mass().mass_kg, aircraft.environment().gravity_m_s2)
+    fn load_factors(&self, body: &Moving, instant: &Instant) -> Vector3 {
+        let gravity_m_s2 = self.aircraft().environment().gravity_m_s2;
+        instant.load_factors(self.mass(body).mass_kg, gravity_m_s2)
     }
 }
 
