@@ -30,7 +30,7 @@ pub const AIRCRAFT: [Named; 7] = texts![
 ];
 
 /// Sets of requirements.
-pub const REQUIREMENTS: [Named; 5] = texts!["requirements", ".toml": "mil-f-9490d", "mil-f-8785c", "ctms", "mil-f-9490d-altitude", "rvsm"];
+pub const REQUIREMENTS: [Named; 6] = texts!["requirements", ".toml": "mil-f-9490d", "mil-f-8785c", "ctms", "mil-f-9490d-altitude", "rvsm", "ac-25.1329"];
 
 /// Scenarios of the paper, found by `fspid reproduce --identify`; their names are paths below `paper/`.
 pub const PAPER: [Named; 17] = texts![

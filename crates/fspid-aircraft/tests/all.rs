@@ -9,3 +9,4 @@ mod qualities;
 mod support;
 mod trim_and_linearise;
 mod tumbling_brick;
+mod varied;

@@ -112,6 +112,10 @@ pub enum Measure {
     AlphaMargin,
     /// Largest size of the bank, deg.
     LargestBank,
+    /// Largest pitch above the horizon, deg.
+    LargestPitch,
+    /// Least pitch above the horizon, deg.
+    LeastPitch,
     /// Fastest descent, ft/min.
     LargestSink,
     /// Descent at the end, ft/min.
@@ -148,7 +152,7 @@ const fn row(
 
 /// One row a measure, in the order of the enumeration.
 #[rustfmt::skip] // a table: one row a measure
-const ROWS: [Row; 48] = {
+const ROWS: [Row; 50] = {
     use Family::{Aircraft, Airframe, Flight, Frozen, Loop, Step};
     use Measure as M;
     [
@@ -198,6 +202,8 @@ const ROWS: [Row; 48] = {
         row(M::LargestAlpha, ("largest_alpha_deg", "deg"), Aircraft, TIMES, "largest angle of attack, from the reference of the aircraft's data"),
         row(M::AlphaMargin, ("alpha_margin_deg", "deg"), Aircraft, TIMES, "least distance below the largest angle of attack for which the aircraft's data are trusted; below 0 beyond it"),
         row(M::LargestBank, ("largest_bank_deg", "deg"), Aircraft, TIMES, "largest size of the bank"),
+        row(M::LargestPitch, ("largest_pitch_deg", "deg"), Aircraft, TIMES, "largest pitch above the horizon, in the axes of the aircraft's data; below 0 for a nose that is always low"),
+        row(M::LeastPitch, ("least_pitch_deg", "deg"), Aircraft, TIMES, "least pitch above the horizon; its limits may be below 0"),
         row(M::LargestSink, ("largest_sink_ft_min", "ft/min"), Aircraft, TIMES, "fastest descent; 0 where it never descends"),
         row(M::FinalSink, ("final_sink_ft_min", "ft/min"), Aircraft, TIMES, "descent at the end of the time that counts; below 0 in a climb"),
     ]
@@ -270,6 +276,8 @@ impl Measure {
                 | Self::LeastLoadFactor
                 | Self::LargestAlpha
                 | Self::AlphaMargin
+                | Self::LargestPitch
+                | Self::LeastPitch
                 | Self::FinalSink
         )
     }

@@ -82,6 +82,7 @@ Measures of the flight:
 Measures of the flight of a nonlinear aircraft (from_s, to_s); a linear plant has none of them:
   largest_load_factor_g least_load_factor_g largest_bank_deg largest_alpha_deg alpha_margin_deg
   largest_airspeed_kt least_airspeed_kt airspeed_deviation_kt (true airspeed; from that of the trim)
+  largest_pitch_deg least_pitch_deg
   altitude_loss_ft altitude_deviation_ft (from the start, or from target_ft or target_m)
   altitude_overshoot_ft (needs target_ft or target_m) largest_sink_ft_min final_sink_ft_min
 Measures of the loop as sampled, at the gains it has at rest; the worst plant counts:
@@ -98,6 +99,7 @@ Ready sets and their choices, the first of each if left out:
   ctms         none
   mil-f-9490d-altitude  air=smooth|turbulent, target_ft=FT or target_m=M (that of the start)
   rvsm         air=smooth|turbulent, target_ft=FT or target_m=M (that of the start)
+  ac-25.1329   none
 
 Examples:
   fspid verify pitch.toml --set ctms

@@ -4,6 +4,7 @@
 mod agreement;
 mod at_rest;
 mod control_law;
+mod configurations;
 mod design_gusts;
 mod gallery;
 mod ground;

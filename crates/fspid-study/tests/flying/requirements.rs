@@ -62,6 +62,8 @@ fn every_measure_of_an_aircraft_is_what_its_trace_shows() {
     // The navion's data hold up to 10 deg.
     near(measured(Measure::AlphaMargin), 10.0 - most(of("alpha_rad")).to_degrees());
     near(measured(Measure::LargestBank), largest(&of("bank_rad")).to_degrees());
+    near(measured(Measure::LargestPitch), most(of("attitude_rad")).to_degrees());
+    near(measured(Measure::LeastPitch), least(of("attitude_rad")).to_degrees());
     near(measured(Measure::LargestSink), -60.0 * feet(least(of("climb_m_s"))).min(0.0));
     near(measured(Measure::FinalSink), -60.0 * feet(*of("climb_m_s").last().expect("flown")));
 }

@@ -204,7 +204,7 @@ fn everything_that_is_wrong_with_what_comes_from_outside_is_told_at_once() {
     let message = verify(&question).expect_err("seven mistakes").to_string();
     for part in [
         "--set cmts: unknown set; did you mean \"ctms\"?",
-        "a ready set: mil-f-9490d, mil-f-8785c, ctms, mil-f-9490d-altitude, rvsm; or a change: path=value",
+        "a ready set: mil-f-9490d, mil-f-8785c, ctms, mil-f-9490d-altitude, rvsm, ac-25.1329; or a change: path=value",
         "--set mil-f-8785c:level=4: requirement[0].level: out of range",
         "--set mil-f-9490d:speed: `speed` has no `=`",
         "--set ctms:air=1,air=2: `air` is chosen twice",

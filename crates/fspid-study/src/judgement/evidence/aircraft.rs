@@ -46,6 +46,8 @@ pub(super) fn case(
         Measure::LargestAlpha => seen.largest("alpha_rad", degrees),
         Measure::AlphaMargin => seen.alpha_margin(),
         Measure::LargestBank => seen.largest("bank_rad", |bank_rad| degrees(bank_rad.abs())),
+        Measure::LargestPitch => seen.largest("attitude_rad", degrees),
+        Measure::LeastPitch => seen.least("attitude_rad", degrees),
         Measure::LargestSink => seen.largest("climb_m_s", |climb| sink_ft_min(climb).max(0.0)),
         // The descent at the end, and nothing else comes here.
         _ => seen.at_end("climb_m_s", sink_ft_min),
