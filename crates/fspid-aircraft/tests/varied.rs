@@ -6,8 +6,7 @@ use fspid_aircraft::aerodynamics::varied::{Deployed, VariedModel};
 use fspid_aircraft::data::{DerivativeData, GroundData, Laws, Loading, Moment};
 use fspid_aircraft::{
     AirMotion, Aircraft, Controls, Environment, EulerAngles, ForceModel, FuelledBody, Instant,
-    Quaternion,
-    RigidState, Vector3,
+    Quaternion, RigidState, Vector3,
 };
 
 use crate::support::derivative_data;

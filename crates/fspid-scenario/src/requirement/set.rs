@@ -10,7 +10,8 @@ use super::{AskedIn, Conditions, Confidence, Origin, Requirement};
 use crate::measure::Measure;
 
 /// Names of the ready sets.
-pub const SET_NAMES: [&str; SETS.len()] = [SETS[0].0, SETS[1].0, SETS[2].0, SETS[3].0, SETS[4].0, SETS[5].0];
+pub const SET_NAMES: [&str; SETS.len()] =
+    [SETS[0].0, SETS[1].0, SETS[2].0, SETS[3].0, SETS[4].0, SETS[5].0];
 
 /// Names of the ready sets, for lists of allowed words.
 pub(crate) fn set_names() -> Vec<&'static str> {

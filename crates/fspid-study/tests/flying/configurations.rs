@@ -9,8 +9,12 @@ use fspid_study::analysis::{Analysis, Question};
 use crate::flying::{NAVION, apart, column, flown, study};
 
 /// Nobody answers, and nothing is asked: what is seen is the aircraft alone.
-const ALONE: [&str; 4] =
-    ["controller[0].kp=0.0", "controller[0].ki=0.0", "controller[0].kd=0.0", "setpoint.amplitude_deg=0.0"];
+const ALONE: [&str; 4] = [
+    "controller[0].kp=0.0",
+    "controller[0].ki=0.0",
+    "controller[0].kd=0.0",
+    "setpoint.amplitude_deg=0.0",
+];
 const FLAPS: &str = "configuration=[{name='flaps', assumption='made up', lift={reference=0.4, alpha=0.2}, \
                      drag={reference=0.03}, pitch={reference=-0.05}}]";
 const REFERENCE: [&str; 3] =
@@ -112,7 +116,8 @@ fn an_increment_flies_as_a_file_that_has_it_in_its_derivatives() {
     ];
     let rough = "turbulence={intensity='moderate', seed=3}";
     for more in [[rough, "aircraft.cg_mac=0.295"], [rough, "aircraft.cg_mac=0.32"]] {
-        let (one, other) = (flown(NAVION, &all(&[&out, &more])), flown(NAVION, &all(&[&own, &more])));
+        let (one, other) =
+            (flown(NAVION, &all(&[&out, &more])), flown(NAVION, &all(&[&own, &more])));
         assert!(apart(&one.theta_rad, &other.theta_rad) < 1e-9);
         let bank = |trace: &Trace| column(trace, "bank_rad").to_vec();
         assert!(apart(&bank(&one), &bank(&other)) < 1e-9);
@@ -124,7 +129,8 @@ fn a_flight_of_configurations_that_stay_retracted_is_that_without_them() {
     let plain = flown(NAVION, &[]);
     let known = flown(NAVION, &[FLAPS]);
     assert_eq!(plain, known);
-    let moved = flown(NAVION, &[FLAPS, "configuration_change=[{name='flaps', to=0.0, at_s=1, takes_s=1}]"]);
+    let moved =
+        flown(NAVION, &[FLAPS, "configuration_change=[{name='flaps', to=0.0, at_s=1, takes_s=1}]"]);
     assert!(apart(&plain.theta_rad, &moved.theta_rad) < 1e-12);
 }
 
@@ -133,7 +139,8 @@ fn a_flight_of_configurations_that_stay_retracted_is_that_without_them() {
 fn the_error_of_a_step_falls_with_its_fourth_power_while_everything_varies() {
     let theta = |dt_s: f64, more: &[&str]| {
         let period = format!("loop.sample_period_s={dt_s}");
-        let set = all(&[&ALONE, &["loop.duration_s=2.0", "aircraft.cg_mac=0.295"], &[&period], more]);
+        let set =
+            all(&[&ALONE, &["loop.duration_s=2.0", "aircraft.cg_mac=0.295"], &[&period], more]);
         flown(NAVION, &set).theta_rad
     };
     let quick = "configuration=[{name='flaps', assumption='made up', lift={reference=1.0}, \
@@ -307,9 +314,13 @@ fn everything_that_is_wrong_is_refused_by_its_key_and_all_at_once() {
     assert!(refusal(&[FLAPS, &out]).contains("configuration_change[0].to: out of range"));
     let none = change("{name='flaps', to=1, at_s=1, takes_s=0}");
     assert!(refusal(&[FLAPS, &none]).contains("configuration_change[0].takes_s"));
-    let both = change("{name='flaps', to=1, at_s=1, takes_s=2}, {name='flaps', to=0, at_s=2, takes_s=1}");
+    let both =
+        change("{name='flaps', to=1, at_s=1, takes_s=2}, {name='flaps', to=0, at_s=2, takes_s=1}");
     let told = refusal(&[FLAPS, &both]);
-    assert!(told.contains("configuration_change[1].at_s: configuration_change[0] has not ended"), "{told}");
+    assert!(
+        told.contains("configuration_change[1].at_s: configuration_change[0] has not ended"),
+        "{told}"
+    );
     let twice = FLAPS.replace("}]", "}, {name='flaps', source='none'}]");
     assert!(refusal(&[&twice]).contains("the name is taken"));
     let told = refusal(&["fuel={on_board_kg=2000, flow_kg_s=1}"]);
@@ -322,7 +333,10 @@ fn everything_that_is_wrong_is_refused_by_its_key_and_all_at_once() {
 
 #[test]
 fn what_has_no_derivatives_has_no_configurations() {
-    let plant = NAVION.replace("[aircraft]\nname = \"navion\"\nairspeed_ft_s = 176.0\naltitude_ft = 1000.0", "[plant]\npreset = \"navion-paper\"");
+    let plant = NAVION.replace(
+        "[aircraft]\nname = \"navion\"\nairspeed_ft_s = 176.0\naltitude_ft = 1000.0",
+        "[plant]\npreset = \"navion-paper\"",
+    );
     let set = [FLAPS, "fuel={on_board_kg=1, flow_kg_s=1}", "ground_effect={wing_height_m=1}"];
     let set: Vec<String> = set.iter().map(|&change| change.to_owned()).collect();
     let told = file::parse(&plant, "test.toml", None, &set).expect_err("linear").to_string();

@@ -5,9 +5,7 @@ use fspid_aircraft::aerodynamics::varied::Deployed;
 use fspid_aircraft::data::{AircraftData, DerivativeData, GroundData, ModelData};
 use fspid_aircraft::{Consumption, FuelledBody};
 use fspid_sim::AircraftPlant;
-use fspid_sim::aircraft::{
-    Changing, ConfigurationChange, Deployment, Fuel, MOST_CONFIGURATIONS,
-};
+use fspid_sim::aircraft::{Changing, ConfigurationChange, Deployment, Fuel, MOST_CONFIGURATIONS};
 
 use super::judged;
 use crate::file::aircraft::quantity;
@@ -178,9 +176,8 @@ fn deployment(report: &mut Report, parts: &[&Section], start: f64) -> Option<Dep
 fn fuel_of(report: &mut Report, part: &Section, data: &DerivativeData) -> Option<Fuel> {
     let full_kg = quantity(part, keys::ON_BOARD)?;
     let flow = quantity(part, keys::FLOW).map(|kg_s| Consumption::Flow { kg_s });
-    let by_thrust = || {
-        quantity(part, keys::SPECIFIC).map(|kg_n_s| Consumption::ThrustSpecific { kg_n_s })
-    };
+    let by_thrust =
+        || quantity(part, keys::SPECIFIC).map(|kg_n_s| Consumption::ThrustSpecific { kg_n_s });
     let consumption = flow.or_else(by_thrust)?;
     let cg_mac = data.reference.cg_mac.map(|reference| reference + data.cg_aft_chords());
     let tank_aft_m = match (part.get(keys::TANK_MAC), cg_mac) {

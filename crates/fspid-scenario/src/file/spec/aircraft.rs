@@ -47,7 +47,10 @@ pub(crate) static AIRCRAFT_FILE: Table = of_kinds(
     "An aircraft.",
     &[&[&NAME, &TITLE, &SOURCE, &NOTES]],
     &[
-        variant(AircraftKind::Derivatives.name(), plain("Stability derivatives.", &[DERIVATIVES, OF_FILES])),
+        variant(
+            AircraftKind::Derivatives.name(),
+            plain("Stability derivatives.", &[DERIVATIVES, OF_FILES]),
+        ),
         variant(AircraftKind::Linear.name(), plain("A linear model.", &[LINEAR])),
         variant(AircraftKind::Tables.name(), plain("Tables in files of their own.", &[OF_TABLES])),
     ],

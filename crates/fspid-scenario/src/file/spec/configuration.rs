@@ -72,8 +72,11 @@ fn names_schema() -> serde_json::Value {
 }
 
 pub(crate) const CHANGED: Key<str> = required("name", TEXT, "Name of the configuration.");
-pub(crate) const TO: Key<f64> =
-    required("to", number("", Range::UpTo(1.0)), "How far out it then is: 0 retracted, 1 fully out.");
+pub(crate) const TO: Key<f64> = required(
+    "to",
+    number("", Range::UpTo(1.0)),
+    "How far out it then is: 0 retracted, 1 fully out.",
+);
 pub(crate) const AT_S: Key<f64> = required("at_s", not_negative("s"), "When it begins to move.");
 pub(crate) const TAKES_S: Key<f64> =
     required("takes_s", positive("s"), "How long it moves, at a constant rate.");
@@ -131,7 +134,11 @@ pub(crate) const MACH_ROWS: Key<[Section]> = optional(
 );
 
 pub(crate) const ON_BOARD: [Key<f64>; 2] = [
-    optional("on_board_kg", positive("kg"), "Fuel at the start; the mass that flies then has it in it."),
+    optional(
+        "on_board_kg",
+        positive("kg"),
+        "Fuel at the start; the mass that flies then has it in it.",
+    ),
     optional("on_board_lb", positive("lb"), "As on_board_kg."),
 ];
 pub(crate) const FLOW: [Key<f64>; 2] = [
@@ -139,7 +146,11 @@ pub(crate) const FLOW: [Key<f64>; 2] = [
     optional("flow_lb_h", positive("lb/h"), "As flow_kg_s."),
 ];
 pub(crate) const SPECIFIC: [Key<f64>; 2] = [
-    optional("specific_kg_n_s", positive("kg/(N s)"), "Fuel that is burnt for each newton of thrust."),
+    optional(
+        "specific_kg_n_s",
+        positive("kg/(N s)"),
+        "Fuel that is burnt for each newton of thrust.",
+    ),
     optional("specific_lb_lbf_h", positive("lb/(lbf h)"), "As specific_kg_n_s."),
 ];
 pub(crate) const TANK_MAC: Key<f64> = optional(
@@ -151,10 +162,7 @@ pub(crate) const TANK_MAC: Key<f64> = optional(
 static FUEL_TABLE: Table = choosing(
     "Fuel that is burnt, so that mass, centre of gravity and inertia change; without fuel there is no thrust.",
     &[&[&ON_BOARD[0], &ON_BOARD[1], &FLOW[0], &FLOW[1], &SPECIFIC[0], &SPECIFIC[1], &TANK_MAC]],
-    &[
-        one_of!(ON_BOARD[0], ON_BOARD[1]),
-        one_of!(FLOW[0], FLOW[1], SPECIFIC[0], SPECIFIC[1]),
-    ],
+    &[one_of!(ON_BOARD[0], ON_BOARD[1]), one_of!(FLOW[0], FLOW[1], SPECIFIC[0], SPECIFIC[1])],
 );
 
 pub(crate) const FUEL: Key<Section> = optional(
@@ -171,5 +179,8 @@ pub(crate) const FILE_CONFIGURATION: Key<[Section]> = optional(
     tables(&CONFIGURATION_TABLE, 0, MOST),
     "Flaps, gear, speedbrake and the like.",
 );
-pub(crate) const FILE_GROUND_EFFECT: Key<Section> =
-    optional("ground_effect", table(&GROUND_EFFECT_TABLE), "What the ground does; nothing if left out.");
+pub(crate) const FILE_GROUND_EFFECT: Key<Section> = optional(
+    "ground_effect",
+    table(&GROUND_EFFECT_TABLE),
+    "What the ground does; nothing if left out.",
+);
