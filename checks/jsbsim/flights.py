@@ -8,6 +8,7 @@ import resource
 import subprocess
 import sys
 import time
+import tomllib
 
 import jsbsim
 
@@ -160,6 +161,146 @@ value = 4
     print(f"turbulence: load factor {min(felt):.2f} to {max(felt):.2f}, bank up to {max(bank):.1f} deg")
 
 
+def gusts():
+    """A small gust on the aircraft with its stick held, beside what the linear model of the same condition says of it:
+    rates of u, w, q and pitch by the states less the air, without the gust's rate of pitch, by Runge and Kutta."""
+    gust = """[[gust]]
+kind = "full-cycle"
+up_m_s = {up}
+gradient_m = {gradient}
+at_s = 1.0
+"""
+    for aircraft, speed, altitude, gradient in (
+        ("c172p", "calibrated_kt = 100", 4000, 60.0),
+        ("L17", "calibrated_kt = 104", 1000, 60.0),
+        ("737", "mach = 0.65", 20000, 250.0),
+        ("B747", "mach = 0.65", 20000, 250.0),
+    ):
+        held = {"kp": 1e-9, "ki": 0.0, "duration": 6.0}
+        thetas = []
+        for up in (0.0, 0.3):
+            behind = gust.format(up=up, gradient=gradient) if up else ""
+            path = write("gust", aircraft, speed, altitude, behind=behind, **held)
+            fspid("simulate", path, "--trace", "gust.csv", "--set", "controller[0].kd=0.0", codes=(0, 1))
+            thetas.append([row["theta_deg"] for row in rows("gust.csv")])
+        found = [math.radians(one - still) for still, one in zip(*thetas)]
+        fspid("aircraft", "import", path, "--out", "linear.toml", "--format", "json")
+        with open(f"{WORK}/linear.toml", "rb") as file:
+            model = tomllib.load(file)
+        a = [row["by_states"] for row in model["equations"]]
+        speed_m_s = model["condition"]["airspeed_m_s"]
+
+        def rate(state, time_s):
+            way = (time_s - 1.0) * speed_m_s
+            down = -0.5 * 0.3 * (1.0 - math.cos(math.pi * way / gradient)) if 0.0 <= way <= 2.0 * gradient else 0.0
+            relative = [state[0], state[1] - down, state[2], state[3]]
+            return [sum(entry * x for entry, x in zip(row, relative)) for row in a]
+
+        def moved(state, by, more):
+            return [x + more * y for x, y in zip(state, by)]
+
+        state, wanted, step = [0.0] * 4, [], 0.01
+        for k in range(len(found)):
+            wanted.append(state[3])
+            time_s = k * step
+            k1 = rate(state, time_s)
+            k2 = rate(moved(state, k1, 0.5 * step), time_s + 0.5 * step)
+            k3 = rate(moved(state, k2, 0.5 * step), time_s + 0.5 * step)
+            k4 = rate(moved(state, k3, step), time_s + step)
+            state = [x + step / 6.0 * (p + 2.0 * q + 2.0 * r + s) for x, p, q, r, s in zip(state, k1, k2, k3, k4)]
+        largest = max(abs(value) for value in wanted)
+        apart = max(abs(one - other) for one, other in zip(found, wanted)) / largest
+        print(f"gust on {aircraft}: pitch up to {math.degrees(largest):.4f} deg, {100.0 * apart:.1f} % of it apart from the linear model")
+        assert apart < 0.06, (aircraft, apart)
+
+
+AROUND = """[[outer_loop]]
+name = "altitude"
+kind = "pid"
+holds = "altitude"
+moves = "vertical speed"
+kp = 0.1
+least = -2.54
+most = 2.54
+most_per_s = 1.0
+[[outer_loop]]
+name = "vertical speed"
+kind = "pid"
+holds = "vertical-speed"
+moves = "pitch"
+kp = {path}
+ki = {path}
+least = -10.0
+most = 10.0
+most_per_s = 2.0
+[[outer_loop]]
+name = "autothrottle"
+kind = "pid"
+holds = "airspeed"
+moves = "throttle"
+kp = 0.1
+ki = 0.01
+[[outer_loop]]
+name = "heading"
+kind = "pid"
+holds = "heading"
+moves = "bank"
+kp = 1.0
+ki = 0.02
+least = -20.0
+most = 20.0
+most_per_s = 5.0
+[[mode]]
+name = "level"
+engage = ["altitude", "vertical speed", "autothrottle"]
+[[mode]]
+name = "capture"
+at_s = 5.0
+engage = ["altitude", "vertical speed", "autothrottle", "heading"]
+target = {{ altitude_ft = {altitude}, heading_deg = 20.0 }}
+[[requirement]]
+measure = "altitude_overshoot_ft"
+target_ft = {altitude}
+most = 20.0
+[[requirement]]
+measure = "altitude_deviation_ft"
+from_s = 80.0
+target_ft = {altitude}
+most = 10.0
+[[requirement]]
+measure = "airspeed_deviation_kt"
+most = 5.0
+[[requirement]]
+measure = "largest_alpha_deg"
+most = 8.0
+[[requirement]]
+measure = "largest_load_factor_g"
+most = 1.5
+"""
+
+
+def autopilots():
+    """An altitude and a heading are captured, with an autothrottle, and a mode that never begins fails its flight."""
+    for aircraft, speed, altitude, gain in (("c172p", "calibrated_kt = 100", 4000, 0.5), ("737", "mach = 0.65", 20000, 0.1)):
+        around = AROUND.format(path=gain, altitude=altitude + 200.0)
+        path = write("around", aircraft, speed, altitude, behind=around, period=0.02, duration=120.0)
+        asked = ["simulate", path, "--trace", "around.csv", "--set", "setpoint.amplitude_deg=0.0", "--format", "json"]
+        answer = json.loads(fspid(*asked, codes=(0, 1)).stdout)
+        missed = [it for it in answer["requirements"] if not it["met"]]
+        last = rows("around.csv")[-1]
+        assert all(it["measure"] == "altitude_overshoot_ft" and "not reached" in json.dumps(it) for it in missed), missed
+        assert abs(last["heading_deg"] - 20.0) < 1.0, last["heading_deg"]
+        assert abs(last["throttle"] - last["throttle_command"]) < 0.02, (last["throttle"], last["throttle_command"])
+        print(
+            f"autopilot on {aircraft}: {last['altitude_m'] / 0.3048:.1f} ft, heading {last['heading_deg']:.2f} deg, "
+            f"{last['airspeed_m_s']:.2f} m/s, throttle {last['throttle']:.3f}"
+        )
+    never = around + '[[mode]]\nname = "high"\nwhen = { altitude_above_ft = 30000.0 }\n'
+    path = write("never", aircraft, speed, altitude, behind=never, period=0.02, duration=20.0)
+    outcome = json.loads(fspid("simulate", path, "--format", "json", codes=(1,)).stdout)["controllers"][0]["outcome"]
+    assert outcome["kind"] == "mode never began", outcome
+
+
 def told():
     wrong = [
         (("c172y", "calibrated_kt = 100", 4000), {}, "there is no aircraft c172y; allowed is one of its aircraft, such as c172"),
@@ -227,7 +368,7 @@ def speed():
 
 def main():
     jsbsim.FGJSBBase().debug_lvl = 0
-    for part in (trims, linear_models, same_bits, turbulence, told, speed):
+    for part in (trims, linear_models, same_bits, turbulence, gusts, autopilots, told, speed):
         part()
     print("c172x:", json.loads(fspid("simulate", "same.toml", "--format", "json", codes=(0, 1)).stdout)["controllers"][0]["verdict"])
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use fspid_sim::external::{Answers, Host};
-use fspid_sim::external_plant::{JsbsimLinear, PlantHost, Simulates};
+use fspid_sim::external_plant::{Beginning, JsbsimLinear, PlantHost, Simulates};
 use fspid_sim::{External, ExternalPlant, SimError};
 
 /// What would start external controllers.
@@ -79,7 +79,7 @@ impl SimulatorHost {
 }
 
 impl PlantHost for SimulatorHost {
-    fn start(&self, plant: &ExternalPlant, _: f64, _: u32) -> Result<Box<dyn Simulates>, SimError> {
+    fn start(&self, plant: &ExternalPlant, _: &Beginning) -> Result<Box<dyn Simulates>, SimError> {
         Err(nowhere(plant))
     }
 

@@ -2,7 +2,7 @@
 
 use fspid_sim::core::Sample;
 use fspid_sim::external::{Answers, Host as _};
-use fspid_sim::external_plant::{FmuPlant, PlantSample, Simulates};
+use fspid_sim::external_plant::{FmuPlant, PlantSample, SampleInput, Simulates, StepInput};
 use fspid_sim::{External, ExternalPlant, ExternalSource, PlantLoss, SimError};
 
 use crate::pace::Pace;
@@ -73,10 +73,11 @@ impl Simulates for FmuFlight {
         self.start
     }
 
-    fn advance(&mut self, elevators_rad: &[f64]) -> Result<PlantSample, PlantLoss> {
+    /// It has an elevator alone: air and autopilots around an FMU are refused where they are read.
+    fn advance(&mut self, _: &SampleInput, steps: &[StepInput]) -> Result<PlantSample, PlantLoss> {
         let mut found = Err(PlantLoss::NoAnswer);
-        for elevator_rad in elevators_rad {
-            found = Ok(asked(self.answers.as_mut(), *elevator_rad)?);
+        for step in steps {
+            found = Ok(asked(self.answers.as_mut(), step.elevator_rad)?);
         }
         self.sample += 1;
         if let Some(pace) = &mut self.pace {

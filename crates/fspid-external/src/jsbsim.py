@@ -3,6 +3,7 @@
 A fresh executive for each flight, and a process for each: a reset of one does not repeat for several aircraft. All that
 JSBSim prints goes to standard error. Frames are in the order of bytes of the machine, as fspid writes them.
 """
+import math
 import os
 import struct
 import sys
@@ -15,6 +16,20 @@ import threading  # noqa: E402
 FOOT_M = 0.3048
 KNOT_M_S = 1852.0 / 3600.0
 READY, REFUSED, HOST, LINEAR = 0, 1, 2, 3
+# Of a sample.
+SHOWN = (
+    "attitude/theta-rad", "velocities/q-rad_sec", "attitude/phi-rad", "velocities/vt-fps", "position/h-sl-ft",
+    "position/h-agl-ft", "aero/alpha-rad", "fcs/elevator-pos-rad", "fcs/left-aileron-pos-rad",
+    "velocities/u-fps", "velocities/v-fps", "velocities/w-fps",
+    "velocities/u-aero-fps", "velocities/v-aero-fps", "velocities/w-aero-fps",
+    "forces/fbx-total-lbs", "forces/fby-total-lbs", "forces/fbz-total-lbs", "inertia/weight-lbs", "gear/wow",
+    "attitude/psi-rad", "aero/beta-rad", "velocities/p-rad_sec", "velocities/r-rad_sec", "fcs/throttle-pos-norm",
+    "velocities/h-dot-fps", "velocities/v-north-fps", "velocities/v-east-fps",
+    "position/distance-from-start-lat-mt", "position/distance-from-start-lon-mt",
+    "accelerations/udot-ft_sec2", "accelerations/vdot-ft_sec2", "accelerations/wdot-ft_sec2",
+)
+# And the command of the first throttle.
+NUMBERS = len(SHOWN) + 1
 # Of the elevator's map: points of the normalised command, and samples until its surface stands.
 MAP_POINTS, MAP_RUNS = 200, 4
 # Of the law that levels the wings: normalised aileron for a radian of bank, and for a radian a second of roll.
@@ -131,6 +146,46 @@ def elevator_map(executive):
     return rows
 
 
+def carried(executive, wind_m_s):
+    """Lets the wind blow in which the trimmed aircraft begins, and the aircraft move with it: JSBSim trims in still air
+    alone. Nothing else of the trim moves, engines and flight control system neither."""
+    north, east = (speed / FOOT_M for speed in wind_m_s)
+    rest = {
+        axis: executive[name]
+        for axis, name in (
+            ("ic/phi-rad", "attitude/phi-rad"), ("ic/theta-rad", "attitude/theta-rad"),
+            ("ic/psi-true-rad", "attitude/psi-rad"), ("ic/vn-fps", "velocities/v-north-fps"),
+            ("ic/ve-fps", "velocities/v-east-fps"), ("ic/vd-fps", "velocities/v-down-fps"),
+        )
+    }
+    executive["ic/vw-mag-fps"] = math.hypot(north, east)
+    executive["ic/vw-dir-deg"] = math.degrees(math.atan2(east, north))
+    rest["ic/vn-fps"] += north
+    rest["ic/ve-fps"] += east
+    # Angles first: JSBSim keeps the velocity over the ground where they are set.
+    for name, value in rest.items():
+        executive[name] = value
+    executive.run_ic()
+
+
+def nothing():
+    """Of what an aircraft has not."""
+    return 0.0
+
+
+def throttles(executive, asked):
+    """The commands of all engines, and where the trim has them."""
+    engines = executive.get_propulsion().get_num_engines()
+    names = ["fcs/throttle-cmd-norm" + ("" if k == 0 else f"[{k}]") for k in range(engines)]
+    manager = executive.get_property_manager()
+    nodes = [manager.get_node(name) for name in names]
+    nodes = [node for node in nodes if node is not None]
+    if asked["moves_throttle"] and not nodes:
+        words = f"{asked['aircraft']} has no engine, and an outer loop moves its throttle"
+        raise Refusal(REFUSED, words, "an aircraft with an engine, or loops that move pitch alone")
+    return nodes
+
+
 def known(executive, name):
     try:
         executive[name]
@@ -222,58 +277,40 @@ def flight(asked, wire):
     positions, commands = knots(rows, measured["fcs/elevator-cmd-norm"])
     del measured
     executive = loaded(jsbsim, asked)
+    if asked["wind_m_s"] is not None:
+        carried(executive, asked["wind_m_s"])
     for name, value in asked["properties"]:
         if not known(executive, name):
             raise Refusal(REFUSED, f"{asked['aircraft']} has no property {name}", "a property that JSBSim lists for it")
         executive[name] = value
     manager = executive.get_property_manager()
 
-    def node(name, unit=1.0):
-        found = manager.get_node(name) if known(executive, name) else None
-        return found, unit
+    def node(name):
+        return manager.get_node(name) if known(executive, name) else None
 
-    places = [
-        node("attitude/theta-rad"), node("velocities/q-rad_sec"), node("attitude/phi-rad"),
-        node("velocities/vt-fps", FOOT_M), node("position/h-sl-ft", FOOT_M), node("position/h-agl-ft", FOOT_M),
-        node("aero/alpha-rad"), node("fcs/elevator-pos-rad"), node("fcs/left-aileron-pos-rad"),
-    ]
-    axes = [(node(f"velocities/{axis}-fps"), node(f"velocities/{axis}-aero-fps")) for axis in "uvw"]
-    forces = [node(f"forces/fb{axis}-total-lbs") for axis in "xyz"]
-    weight, wow = node("inertia/weight-lbs")[0], node("gear/wow")[0]
-    rest = [
-        node("attitude/psi-rad"), node("aero/beta-rad"), node("velocities/p-rad_sec"), node("velocities/r-rad_sec"),
-        node("fcs/throttle-pos-norm"), node("velocities/h-dot-fps", FOOT_M),
-        node("velocities/v-north-fps", FOOT_M), node("velocities/v-east-fps", FOOT_M),
-        node("position/distance-from-start-lat-mt"), node("position/distance-from-start-lon-mt"),
-    ]
-    roll = node("velocities/p-rad_sec")[0]
-    bank = places[2][0]
+    engines = throttles(executive, asked)
+    gusts = [manager.get_node(f"atmosphere/gust-{axis}-fps") for axis in ("north", "east", "down")]
+    # As JSBSim counts them, in feet: what is made of them is made once they are across, since a call here costs a tenth
+    # of a step of JSBSim.
+    shown = [node(name) for name in SHOWN] + engines[:1]
+    gets = [nothing if it is None else it.get_double_value for it in shown]
+    gets += [nothing] * (NUMBERS - len(gets))
+    bank, roll = node("attitude/phi-rad"), node("velocities/p-rad_sec")
     elevator, aileron = (manager.get_node(f"fcs/{name}-cmd-norm") for name in ("elevator", "aileron"))
     level = aileron.get_double_value() if asked["levels_wings"] else None
-
-    def sample():
-        numbers = [0.0 if it is None else it.get_double_value() * unit for it, unit in places]
-        for (ground, _), (air, _) in axes:
-            # How the air moves is how the body moves less how it moves through the air.
-            numbers.append((ground.get_double_value() - air.get_double_value()) * FOOT_M)
-        heavy = weight.get_double_value()
-        numbers.extend(it.get_double_value() / heavy for it, _ in forces)
-        numbers.append(0.0 if wow is None else wow.get_double_value())
-        numbers.extend(0.0 if it is None else it.get_double_value() * unit for it, unit in rest)
-        return numbers
-
-    frame = struct.Struct("=Q26d")
-    steps = asked["steps"]
-    ask = struct.Struct(f"={steps}d")
-    wire.sendall(struct.pack("=B", READY) + text(jsbsim.__version__) + frame.pack(0, *sample()))
+    frame = struct.Struct(f"=Q{NUMBERS}d")
+    # Throttle and bank, and of each step its elevator and the air to the north, to the east and down.
+    ask = struct.Struct(f"={2 + 4 * asked['steps']}d")
+    wire.sendall(struct.pack("=B", READY) + text(jsbsim.__version__) + frame.pack(0, *[get() for get in gets]))
     from bisect import bisect_right
 
     least, most, last = positions[0], positions[-1], len(positions) - 2
     buffer = bytearray(ask.size)
     view = memoryview(buffer)
-    run, receive, send = executive.run, wire.recv_into, wire.sendall
+    run, receive, send, pack = executive.run, wire.recv_into, wire.sendall, frame.pack
     get_bank, get_roll, set_aileron = bank.get_double_value, roll.get_double_value, aileron.set_double_value
     set_elevator = elevator.set_double_value
+    air_moves = asked["wind_m_s"] is not None
     number = 1
     while True:
         got = 0
@@ -282,7 +319,16 @@ def flight(asked, wire):
             if more == 0:
                 return
             got += more
-        for wanted in ask.unpack(buffer):
+        values = ask.unpack(buffer)
+        throttle, bank_asked = values[:2]
+        if asked["moves_throttle"]:
+            for engine in engines:
+                engine.set_double_value(throttle)
+        for place in range(2, len(values), 4):
+            wanted = values[place]
+            if air_moves:
+                for gust, m_s in zip(gusts, values[place + 1 : place + 4]):
+                    gust.set_double_value(m_s / FOOT_M)
             if wanted <= least:
                 set_elevator(commands[0])
             elif wanted >= most:
@@ -292,13 +338,13 @@ def flight(asked, wire):
                 share = (wanted - positions[k]) / (positions[k + 1] - positions[k])
                 set_elevator(commands[k] + share * (commands[k + 1] - commands[k]))
             if level is not None:
-                turned = level - (BANK_GAIN * get_bank() + ROLL_RATE_GAIN * get_roll())
+                turned = level - (BANK_GAIN * (get_bank() - bank_asked) + ROLL_RATE_GAIN * get_roll())
                 set_aileron(-1.0 if turned < -1.0 else 1.0 if turned > 1.0 else turned)
             if not run():
                 # No number of a sample: it says that it cannot go on.
-                send(frame.pack(0xFFFF_FFFF_FFFF_FFFF, *([0.0] * 26)))
+                send(frame.pack(0xFFFF_FFFF_FFFF_FFFF, *([0.0] * NUMBERS)))
                 return
-        send(frame.pack(number, *sample()))
+        send(pack(number, *[get() for get in gets]))
         number += 1
 
 
@@ -310,7 +356,7 @@ def end_with(parent):
 
 
 def settings(arguments):
-    asked = {"properties": []}
+    asked = {"properties": [], "wind_m_s": None}
     for argument in arguments:
         key, _, value = argument.partition("=")
         if key == "property":
@@ -319,7 +365,9 @@ def settings(arguments):
         elif key == "speed":
             kind, _, number = value.partition("=")
             asked["speed"] = (kind, float(number))
-        elif key in ("steps", "seed", "levels_wings", "linear", "parent"):
+        elif key == "wind_m_s":
+            asked["wind_m_s"] = [float(number) for number in value.split("=")]
+        elif key in ("steps", "moves_throttle", "seed", "levels_wings", "linear", "parent"):
             asked[key] = int(value)
         elif key in ("aircraft", "folder", "version", "scratch"):
             asked[key] = value

@@ -12,8 +12,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use fspid_sim::external_plant::{
-    Jsbsim, JsbsimLinear, JsbsimSpeed, LongitudinalRates, PLANT_SAMPLE_NUMBERS, PlantHost,
-    PlantSample, Simulates,
+    Beginning, Jsbsim, JsbsimLinear, JsbsimSpeed, LongitudinalRates, PlantHost, PlantSample,
+    SampleInput, Simulates, StepInput,
 };
 use fspid_sim::{ControllerLoss, ExternalPlant, PlantLoss, SimError, Simulator};
 use rustix::process::{Pid, Signal, kill_process_group};
@@ -40,11 +40,14 @@ const MOST_TOLD: usize = 12;
 const CANNOT: u64 = u64::MAX;
 /// Numbers of a linear model: twice four rows and a column, and the trim.
 const LINEAR: usize = 46;
-/// Of a step that is never made, s.
-const LINEAR_STEP_S: f64 = 0.01;
+/// Of a linear model, which flies nowhere.
+const NO_FLIGHT: Beginning =
+    Beginning { step_s: 0.01, steps: 1, wind_m_s: None, moves_throttle: false };
 const FOOT_M: f64 = 0.3048;
+/// Numbers that JSBSim shows at a sample, in its units.
+const SHOWN: usize = 34;
 /// Bytes of a sample: its number, and the numbers.
-const SAMPLE: usize = 8 + 8 * PLANT_SAMPLE_NUMBERS;
+const SAMPLE: usize = 8 + 8 * SHOWN;
 
 /// Starts a process of Python for each flight of another simulator.
 #[derive(Clone, Debug)]
@@ -111,13 +114,15 @@ impl SimulatorHost {
             is_lost: false,
             start: PlantSample::default(),
             pace: None,
+            question: Vec::new(),
             _scratch: scratch,
         })
     }
 }
 
 /// What a flight is told.
-fn arguments(jsbsim: &Jsbsim, step_s: f64, steps: u32) -> Vec<String> {
+fn arguments(jsbsim: &Jsbsim, beginning: &Beginning) -> Vec<String> {
+    let Beginning { step_s, steps, wind_m_s, moves_throttle } = beginning;
     let speed = match jsbsim.speed {
         JsbsimSpeed::True(m_s) => format!("true={m_s:?}"),
         JsbsimSpeed::Calibrated(m_s) => format!("calibrated={m_s:?}"),
@@ -135,7 +140,9 @@ fn arguments(jsbsim: &Jsbsim, step_s: f64, steps: u32) -> Vec<String> {
         format!("seed={}", jsbsim.seed),
         format!("step_s={step_s:?}"),
         format!("steps={steps}"),
+        format!("moves_throttle={}", u8::from(*moves_throttle)),
     ];
+    all.extend(wind_m_s.map(|[north, east]| format!("wind_m_s={north:?}={east:?}")));
     all.extend(jsbsim.folder.iter().map(|folder| format!("folder={}", folder.display())));
     all.extend(jsbsim.properties.iter().map(|(name, value)| format!("property={name}={value:?}")));
     all
@@ -145,20 +152,20 @@ impl PlantHost for SimulatorHost {
     fn start(
         &self,
         plant: &ExternalPlant,
-        step_s: f64,
-        steps: u32,
+        beginning: &Beginning,
     ) -> Result<Box<dyn Simulates>, SimError> {
+        let period_s = beginning.step_s * f64::from(beginning.steps);
         if let Simulator::Fmu(fmu) = &plant.simulator {
-            let mut flight = FmuFlight::start(self.fmus.as_ref(), (fmu, plant), step_s)?;
-            flight.pace = self.real_time.map(|tell| Pace::new(step_s * f64::from(steps), tell));
+            let fmus = self.fmus.as_ref();
+            let mut flight = FmuFlight::start(fmus, (fmu, plant), beginning.step_s)?;
+            flight.pace = self.real_time.map(|tell| Pace::new(period_s, tell));
             return Ok(Box::new(flight));
         }
-        let (process, begun) = self.begun(plant, step_s, steps, false)?;
+        let (process, begun) = self.begun(plant, beginning, false)?;
         match begun {
             Begin::Ready => {
                 let mut process = process;
-                process.pace =
-                    self.real_time.map(|tell| Pace::new(step_s * f64::from(steps), tell));
+                process.pace = self.real_time.map(|tell| Pace::new(period_s, tell));
                 Ok(Box::new(process))
             }
             _ => Err(self.no_answer(plant, PlantLoss::NoAnswer, &process)),
@@ -166,7 +173,7 @@ impl PlantHost for SimulatorHost {
     }
 
     fn linear_model(&self, plant: &ExternalPlant) -> Result<JsbsimLinear, SimError> {
-        let (process, begun) = self.begun(plant, LINEAR_STEP_S, 1, true)?;
+        let (process, begun) = self.begun(plant, &NO_FLIGHT, true)?;
         match begun {
             Begin::Linear(numbers) => Ok(linear(&numbers)),
             _ => Err(self.no_answer(plant, PlantLoss::NoAnswer, &process)),
@@ -179,8 +186,7 @@ impl SimulatorHost {
     fn begun(
         &self,
         plant: &ExternalPlant,
-        step_s: f64,
-        steps: u32,
+        beginning: &Beginning,
         is_linear: bool,
     ) -> Result<(Process, Begin), SimError> {
         let Simulator::Jsbsim(jsbsim) = &plant.simulator else {
@@ -188,7 +194,7 @@ impl SimulatorHost {
         };
         let simulator = plant.simulator.name().to_owned();
         let of_host = |reason: String| SimError::PlantHost { name: simulator.clone(), reason };
-        let mut arguments = arguments(jsbsim, step_s, steps);
+        let mut arguments = arguments(jsbsim, beginning);
         arguments.push(format!("linear={}", u8::from(is_linear)));
         let spawned = self.spawn(&arguments, plant.answer_limit_s);
         let mut process = spawned.map_err(|error| of_host(self.unstarted(&error)))?;
@@ -304,6 +310,8 @@ struct Process {
     is_lost: bool,
     start: PlantSample,
     pace: Option<Pace>,
+    /// Bytes of the last question.
+    question: Vec<u8>,
     /// Where files of its own go, removed behind it.
     _scratch: TempDir,
 }
@@ -336,10 +344,16 @@ impl Process {
         loss.into()
     }
 
-    fn asked(&mut self, elevators_rad: &[f64]) -> io::Result<[u8; SAMPLE]> {
+    fn asked(&mut self, held: &SampleInput, steps: &[StepInput]) -> io::Result<[u8; SAMPLE]> {
         let mut timed = Timed::new(&self.stream, self.limit);
-        let bytes: Vec<u8> = elevators_rad.iter().flat_map(|rad| rad.to_ne_bytes()).collect();
-        timed.write_all(&bytes)?;
+        let numbers = [held.throttle, held.bank_rad];
+        self.question.clear();
+        self.question.extend(numbers.into_iter().flat_map(f64::to_ne_bytes));
+        for StepInput { elevator_rad, air_m_s: [north, east, down] } in steps {
+            let numbers = [*elevator_rad, *north, *east, *down];
+            self.question.extend(numbers.into_iter().flat_map(f64::to_ne_bytes));
+        }
+        timed.write_all(&self.question)?;
         read(&mut timed)
     }
 }
@@ -375,8 +389,51 @@ fn number_of(frame: &[u8; SAMPLE]) -> u64 {
     number.to_bits()
 }
 
+/// The sample of what JSBSim shows, in the order of the bridge, in feet and pounds.
 fn sample_of(frame: &[u8; SAMPLE]) -> Option<PlantSample> {
-    PlantSample::of(&numbers(frame.get(8..)?))
+    let [theta, q, bank, airspeed, altitude, height, alpha, elevator, aileron, rest @ ..] =
+        numbers::<SHOWN>(frame.get(8..)?);
+    let [u, v, w, u_aero, v_aero, w_aero, x_lb, y_lb, z_lb, weight_lb, touches, rest @ ..] = rest;
+    let [heading, sideslip, p, r, throttle, climb, north, east, north_m, east_m, rest @ ..] = rest;
+    let [u_dot, v_dot, w_dot, throttle_command] = rest;
+    // How the air moves is how the body moves less how it moves through the air.
+    let air = [u - u_aero, v - v_aero, w - w_aero].map(|ft_s| ft_s * FOOT_M);
+    let felt = [x_lb, y_lb, z_lb].map(|force_lb| force_lb / weight_lb);
+    // Turning with the body changes no length.
+    let speed = (u * u + v * v + w * w).sqrt();
+    let gained = (u * u_dot + v * v_dot + w * w_dot) / speed;
+    let [air_x, air_y, air_z] = air;
+    let [felt_x, felt_y, felt_z] = felt;
+    PlantSample::of(&[
+        theta,
+        q,
+        bank,
+        airspeed * FOOT_M,
+        altitude * FOOT_M,
+        height * FOOT_M,
+        alpha,
+        elevator,
+        aileron,
+        air_x,
+        air_y,
+        air_z,
+        felt_x,
+        felt_y,
+        felt_z,
+        touches,
+        heading,
+        sideslip,
+        p,
+        r,
+        throttle,
+        climb * FOOT_M,
+        north * FOOT_M,
+        east * FOOT_M,
+        north_m,
+        east_m,
+        if speed > 0.0 { gained * FOOT_M } else { 0.0 },
+        throttle_command,
+    ])
 }
 
 impl Simulates for Process {
@@ -384,8 +441,12 @@ impl Simulates for Process {
         self.start
     }
 
-    fn advance(&mut self, elevators_rad: &[f64]) -> Result<PlantSample, PlantLoss> {
-        let asked = self.asked(elevators_rad);
+    fn advance(
+        &mut self,
+        held: &SampleInput,
+        steps: &[StepInput],
+    ) -> Result<PlantSample, PlantLoss> {
+        let asked = self.asked(held, steps);
         let frame = asked.map_err(|error| self.lost(&error, self.limit))?;
         self.sample += 1;
         let found = match number_of(&frame) {

@@ -170,7 +170,7 @@ impl fmt::Display for SimError {
                 "a nonlinear aircraft cannot be changed in flight; allowed are changes of linear plants",
             ),
             Self::AutopilotNeedsAircraft => f.write_str(
-                "a linear plant shows neither altitude nor airspeed that outer loops could hold; allowed is a nonlinear aircraft",
+                "this plant shows neither altitude nor airspeed that outer loops could hold; allowed is a nonlinear aircraft, or one of JSBSim",
             ),
             Self::Autopilot(error) => error.fmt(f),
             Self::NotLinear => {

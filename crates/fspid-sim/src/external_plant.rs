@@ -10,9 +10,10 @@ use std::sync::OnceLock;
 use crate::error::SimError;
 use crate::external::{Contents, ControllerLoss, Renamed, SIGNALS};
 
+mod air;
 mod flight;
 
-pub(crate) use flight::{ExternalFlight, ExternalMotion};
+pub(crate) use flight::{Around, ExternalFlight, ExternalMotion};
 
 /// What JSBSim is called.
 pub(crate) const JSBSIM: &str = "JSBSim";
@@ -152,10 +153,14 @@ pub struct PlantSample {
     pub over_ground_m_s: [f64; 2],
     /// Way over the ground since the start, m north and m east.
     pub position_m: [f64; 2],
+    /// Rate of the speed along the path over the ground, m/s².
+    pub path_acceleration_m_s2: f64,
+    /// The throttle that the first engine is asked for, 0 to 1; 0 without one.
+    pub throttle_command: f64,
 }
 
 /// How many numbers a sample is made of.
-pub const PLANT_SAMPLE_NUMBERS: usize = 26;
+pub const PLANT_SAMPLE_NUMBERS: usize = 28;
 
 impl PlantSample {
     /// The sample of numbers in the order of the fields; nothing where one of them is not finite.
@@ -167,7 +172,7 @@ impl PlantSample {
         let [felt_x, felt_y, felt_z, touches, rest @ ..] = rest;
         let [heading_rad, sideslip_rad, roll_rad_s, yaw_rad_s, throttle, climb_m_s, rest @ ..] =
             rest;
-        let [north_m_s, east_m_s, north_m, east_m] = rest;
+        let [north_m_s, east_m_s, north_m, east_m, path_acceleration_m_s2, throttle_command] = rest;
         numbers.iter().all(|number| number.is_finite()).then_some(Self {
             theta_rad,
             q_rad_s,
@@ -188,6 +193,8 @@ impl PlantSample {
             climb_m_s,
             over_ground_m_s: [north_m_s, east_m_s],
             position_m: [north_m, east_m],
+            path_acceleration_m_s2,
+            throttle_command,
         })
     }
 }
@@ -277,21 +284,57 @@ impl fmt::Display for PlantLoss {
     }
 }
 
+/// What a simulator is told before a flight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Beginning {
+    /// Length of its steps, s.
+    pub step_s: f64,
+    /// How many of them a sample has.
+    pub steps: u32,
+    /// The wind to the north and to the east at the start, with which the aircraft moves, m/s; none in still air, where
+    /// nothing of the air is told in flight either.
+    pub wind_m_s: Option<[f64; 2]>,
+    /// Whether the throttle is moved, which an aircraft without an engine has not.
+    pub moves_throttle: bool,
+}
+
+/// What enters one step of a simulator.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StepInput {
+    /// Elevator in its middle, trailing edge down positive, rad.
+    pub elevator_rad: f64,
+    /// Velocity of the air to the north, to the east and down, m/s, less that of the start, where the aircraft comes to.
+    pub air_m_s: [f64; 3],
+}
+
+/// What is held over a sample.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SampleInput {
+    /// The throttle that is asked for, 0 to 1; nobody hears of it where nothing moves it.
+    pub throttle: f64,
+    /// The bank that is asked for, rad.
+    pub bank_rad: f64,
+}
+
 /// One flight of another simulator, at its trim first.
 pub trait Simulates: fmt::Debug + Send {
     /// Where the flight begins.
     fn start(&self) -> PlantSample;
 
-    /// The next sample, behind one step for each of the elevators, rad, trailing edge down positive.
+    /// The next sample, behind one step for each input.
     ///
     /// # Errors
     /// [`PlantLoss`] where there is none; the flight is over then.
-    fn advance(&mut self, elevators_rad: &[f64]) -> Result<PlantSample, PlantLoss>;
+    fn advance(
+        &mut self,
+        held: &SampleInput,
+        steps: &[StepInput],
+    ) -> Result<PlantSample, PlantLoss>;
 }
 
 /// What starts other simulators.
 pub trait PlantHost: Send + Sync {
-    /// Starts a flight of steps of `step_s`, so many a sample.
+    /// Starts a flight.
     ///
     /// # Errors
     /// [`SimError::PlantNotStarted`] says what is wrong with the flight and what would be right,
@@ -299,8 +342,7 @@ pub trait PlantHost: Send + Sync {
     fn start(
         &self,
         plant: &ExternalPlant,
-        step_s: f64,
-        steps: u32,
+        beginning: &Beginning,
     ) -> Result<Box<dyn Simulates>, SimError>;
 
     /// The linear model around its trim.
@@ -353,8 +395,8 @@ impl ExternalPlant {
     ///
     /// # Errors
     /// [`SimError::NoPlantHost`] in a program that starts none, and what the host says.
-    pub fn start(&self, step_s: f64, steps: u32) -> Result<Box<dyn Simulates>, SimError> {
-        HOST.get().ok_or(SimError::NoPlantHost)?.start(self, step_s, steps)
+    pub fn start(&self, beginning: &Beginning) -> Result<Box<dyn Simulates>, SimError> {
+        HOST.get().ok_or(SimError::NoPlantHost)?.start(self, beginning)
     }
 
     /// Its linear model around the trim, which the simulator is asked for.

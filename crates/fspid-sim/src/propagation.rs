@@ -3,7 +3,7 @@
 
 use crate::actuated::{Actuated, ActuatedState, Held};
 use crate::aircraft::{AircraftFlight, AircraftMotion, AircraftSample};
-use crate::autopilot::Cut;
+use crate::autopilot::{Cut, Throttle};
 use crate::error::SimError;
 use crate::external_plant::{ExternalFlight, ExternalMotion, PlantLoss};
 use crate::in_flight::BEYOND;
@@ -58,6 +58,14 @@ impl Motion {
         !(self.theta_rad().abs() <= DIVERGED_RAD)
             || matches!(self, Self::Aircraft(state) if state.is_lost())
             || matches!(self, Self::External(state) if state.is_lost())
+    }
+
+    /// The throttle at the trim of another simulator, which nobody knows before.
+    pub(crate) fn throttle(&self) -> Option<Throttle> {
+        match self {
+            Self::External(state) => state.throttle(),
+            _ => None,
+        }
     }
 
     /// How another simulator was lost, if it was.
@@ -157,7 +165,7 @@ impl Propagation {
                 it.advance(state, command_rad, held);
             }
             (Self::External(it), Motion::External(state)) => {
-                it.advance(state, command_rad, held.elevator_rad);
+                it.advance(state, command_rad, held);
             }
             _ => {}
         }
@@ -178,6 +186,7 @@ impl Propagation {
     pub(crate) fn cut(&self, motion: &Motion, command_rad: f64) -> Cut {
         match (self, motion) {
             (Self::Aircraft(it), Motion::Aircraft(state)) => it.cut(state, command_rad),
+            (Self::External(it), Motion::External(state)) => it.cut(state, command_rad),
             _ => Cut::Not,
         }
     }

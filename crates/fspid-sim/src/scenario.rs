@@ -7,7 +7,7 @@ use crate::autopilot::{Autopilot, Throttle};
 use crate::controller::Controller;
 use crate::error::SimError;
 use crate::external::{External, NamedExternal};
-use crate::external_plant::{ExternalFlight, ExternalPlant};
+use crate::external_plant::{Around, ExternalFlight, ExternalPlant};
 use crate::gust_response;
 use crate::plant::{LinearPlant, Plant, PlantChange};
 use crate::propagation::Propagation;
@@ -144,7 +144,7 @@ impl Scenario {
     /// [`SimError`] names the first that cannot fly.
     pub fn start_externals(&self) -> Result<(), SimError> {
         if let Plant::External(plant) = &self.plant {
-            ExternalFlight::new(plant, self.actuator, self.timing).start()?;
+            self.external_flight(plant)?.start()?;
         }
         self.externals.iter().try_for_each(|named| named.external.start().map(drop))
     }
@@ -213,10 +213,14 @@ impl Scenario {
     /// The autopilot, if this plant and this flight can have it.
     fn checked_autopilot(&self) -> Result<Option<&Autopilot>, SimError> {
         let Some(autopilot) = &self.autopilot else { return Ok(None) };
-        let Some(plant) = self.plant.aircraft() else {
-            return Err(SimError::AutopilotNeedsAircraft);
-        };
-        autopilot.check(plant, self.timing)?;
+        match &self.plant {
+            Plant::Aircraft(plant) => autopilot.check(plant, self.timing)?,
+            // Whether it has an engine is for the simulator to say.
+            Plant::External(plant) if plant.simulator.shows_aircraft() => {
+                autopilot.check_timing(self.timing)?;
+            }
+            Plant::Linear(_) | Plant::External(_) => return Err(SimError::AutopilotNeedsAircraft),
+        }
         Ok(Some(autopilot))
     }
 
@@ -257,8 +261,15 @@ impl Scenario {
         if !self.plant_changes.is_empty() {
             return Err(SimError::OtherSimulatorChanges);
         }
-        let flight = ExternalFlight::new(plant, self.actuator, self.timing);
+        let flight = self.external_flight(plant)?;
         Ok(vec![Stage { from: 0, propagation: Propagation::External(Box::new(flight)) }])
+    }
+
+    fn external_flight(&self, plant: &ExternalPlant) -> Result<ExternalFlight, SimError> {
+        let weather = self.surroundings.weather.as_ref();
+        let moves_throttle = self.autopilot.as_ref().is_some_and(Autopilot::moves_throttle);
+        let around = Around { weather, moves_throttle };
+        ExternalFlight::new(plant, self.actuator, self.timing, around)
     }
 
     /// The plant's discretisations, each with the sample from which it holds.

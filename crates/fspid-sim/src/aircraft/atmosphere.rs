@@ -9,7 +9,7 @@ use crate::surroundings::Weather;
 
 /// Winds and gusts by place, and turbulence by its own grid of time.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Atmosphere {
+pub(crate) struct Atmosphere {
     winds: Vec<Wind>,
     /// Distances and heights at which winds are not smooth.
     corners: Corners,
@@ -21,7 +21,7 @@ pub(super) struct Atmosphere {
 
 impl Atmosphere {
     /// The weather around an aircraft that starts at an altitude; calm air, heading north, without.
-    pub(super) fn new(weather: Option<&Weather>, altitude_m: f64) -> Result<Self, SimError> {
+    pub(crate) fn new(weather: Option<&Weather>, altitude_m: f64) -> Result<Self, SimError> {
         let Some(weather) = weather else {
             return Ok(Self::default());
         };
@@ -57,22 +57,22 @@ impl Atmosphere {
     }
 
     /// Winds and gusts at a place.
-    pub(super) fn wind(&self, place: &AirPlace) -> AirMotion {
+    pub(crate) fn wind(&self, place: &AirPlace) -> AirMotion {
         motion(self.winds_at(place))
     }
 
     /// True for air that changes along the way or in time.
-    pub(super) fn moves(&self) -> bool {
+    pub(crate) fn moves(&self) -> bool {
         !self.winds.is_empty() || self.turbulence.is_some()
     }
 
     /// Winds and gusts at a place with turbulence.
-    pub(super) fn at(&self, place: &AirPlace, turbulence: air::AirMotion) -> AirMotion {
+    pub(crate) fn at(&self, place: &AirPlace, turbulence: air::AirMotion) -> AirMotion {
         motion(self.winds_at(place) + turbulence)
     }
 
     /// The turbulence at the start.
-    pub(super) fn start_turbulence(&self) -> Option<Shaping> {
+    pub(crate) fn start_turbulence(&self) -> Option<Shaping> {
         self.turbulence.clone()
     }
 

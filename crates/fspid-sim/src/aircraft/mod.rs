@@ -35,7 +35,7 @@ mod forces;
 mod leveller;
 mod linear;
 
-use atmosphere::Atmosphere;
+pub(crate) use atmosphere::Atmosphere;
 pub use changing::{
     Changing, ConfigurationChange, DEPLOYMENT_COLUMNS, Deployment, Fuel, MOST_CONFIGURATIONS, Shown,
 };

@@ -81,14 +81,38 @@ impl Autopilot {
     /// # Errors
     /// [`AutopilotError`] for a throttle to be moved without an engine and for a mode that begins after the flight.
     pub fn check(&self, plant: &AircraftPlant, timing: Timing) -> Result<(), AutopilotError> {
-        check::within(&self.modes, timing)?;
-        let by_throttle = self.loops.iter().find(|outer| outer.moves == Moves::Throttle);
-        let name = by_throttle.map(|outer| outer.name.as_str());
-        let name = name.or_else(|| self.total_energy.map(|_| "total energy"));
-        match name.filter(|_| !plant.aircraft().model().has_engine()) {
+        self.check_timing(timing)?;
+        match self.mover_of_throttle().filter(|_| !plant.aircraft().model().has_engine()) {
             Some(name) => Err(AutopilotError::NoEngine { name: name.to_owned() }),
             None => Ok(()),
         }
+    }
+
+    /// Refuses what a flight of this length cannot have, whoever flies.
+    ///
+    /// # Errors
+    /// [`AutopilotError`] for a mode that begins after the flight.
+    pub fn check_timing(&self, timing: Timing) -> Result<(), AutopilotError> {
+        check::within(&self.modes, timing)
+    }
+
+    /// True where anything of it moves the throttle.
+    #[must_use]
+    pub fn moves_throttle(&self) -> bool {
+        self.mover_of_throttle().is_some()
+    }
+
+    /// True where anything of it asks for a bank.
+    #[must_use]
+    pub fn banks(&self) -> bool {
+        let by_mode = self.modes.iter().any(|mode| mode.bank_rad != 0.0);
+        by_mode || self.loops.iter().any(|outer| outer.moves == Moves::Bank)
+    }
+
+    fn mover_of_throttle(&self) -> Option<&str> {
+        let by_throttle = self.loops.iter().find(|outer| outer.moves == Moves::Throttle);
+        let name = by_throttle.map(|outer| outer.name.as_str());
+        name.or_else(|| self.total_energy.map(|_| "total energy"))
     }
 
     /// The outer loops, as they are written.

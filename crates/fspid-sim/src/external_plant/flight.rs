@@ -1,14 +1,24 @@
 //! Another simulator in the loop: our actuator moves its elevator, and its pitch is what is measured.
 
+use fspid_aircraft::Range;
 use fspid_aircraft::atmosphere::STANDARD_GRAVITY_M_S2;
 
+use crate::actuated::Held;
 use crate::actuator::{Actuator, ActuatorState};
 use crate::aircraft::{AircraftSample, MOST_STEP_S};
+use crate::autopilot::{Cut, Throttle};
 use crate::error::SimError;
 use crate::math::sin_cos;
+use crate::surroundings::Weather;
 use crate::timing::Timing;
 
-use super::{ExternalPlant, PlantLoss, PlantSample, Simulates};
+use super::air::{AirState, MovingAir};
+use super::{
+    Beginning, ExternalPlant, PlantLoss, PlantSample, SampleInput, Simulates, Simulator, StepInput,
+};
+
+/// How far a throttle goes.
+const THROTTLE_TRAVEL: Range = Range { min: 0.0, max: 1.0 };
 
 /// The flight of an external plant behind an actuator.
 #[derive(Clone, Debug)]
@@ -18,6 +28,17 @@ pub(crate) struct ExternalFlight {
     /// Steps of the simulator a sample, and their length, s.
     steps: u32,
     step_s: f64,
+    air: Option<MovingAir>,
+    moves_throttle: bool,
+}
+
+/// What is around the plant beside its actuator.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Around<'a> {
+    /// Air of ours.
+    pub(crate) weather: Option<&'a Weather>,
+    /// Whether an autopilot moves the throttle.
+    pub(crate) moves_throttle: bool,
 }
 
 /// Where it is.
@@ -28,6 +49,9 @@ pub(crate) struct ExternalMotion {
     start: PlantSample,
     now: PlantSample,
     actuator: ActuatorState,
+    air: Option<AirState>,
+    /// What enters each step of a sample.
+    inputs: Vec<StepInput>,
     shows_aircraft: bool,
 }
 
@@ -38,8 +62,9 @@ impl Clone for ExternalMotion {
             Ok(_) => Err(PlantLoss::Copied),
             Err(loss) => Err(*loss),
         };
+        let (air, inputs) = (self.air.clone(), self.inputs.clone());
         let Self { start, now, actuator, shows_aircraft, .. } = *self;
-        Self { flying, start, now, actuator, shows_aircraft }
+        Self { flying, start, now, actuator, air, inputs, shows_aircraft }
     }
 }
 
@@ -56,6 +81,12 @@ impl ExternalMotion {
     /// How it was lost, if it was.
     pub(crate) fn loss(&self) -> Option<PlantLoss> {
         self.flying.as_ref().err().copied()
+    }
+
+    /// The throttle that its trim asks for, and how far it goes; none of a simulator that shows none.
+    pub(crate) fn throttle(&self) -> Option<Throttle> {
+        let trim = self.start.throttle_command;
+        self.shows_aircraft.then_some(Throttle { trim, travel: THROTTLE_TRAVEL })
     }
 
     /// True for an aircraft on its back.
@@ -100,8 +131,7 @@ impl ExternalMotion {
             flight_path_rad: libm::atan2(now.climb_m_s, ground_speed_m_s),
             climb_m_s: now.climb_m_s,
             ground_speed_m_s,
-            // Nobody asks: an autopilot of ours flies aircraft of ours.
-            path_acceleration_m_s2: 0.0,
+            path_acceleration_m_s2: now.path_acceleration_m_s2,
             // Simulators tell how the air moves, and not how it turns.
             air_rad_s: [0.0; 3],
             energy_height_m: now.altitude_m
@@ -130,7 +160,16 @@ fn apparent_vertical_rad(sample: &PlantSample) -> f64 {
 
 impl ExternalFlight {
     /// Equal steps of the simulator, the longest of at most [`MOST_STEP_S`] that fit into the period.
-    pub(crate) fn new(plant: &ExternalPlant, actuator: Actuator, timing: Timing) -> Self {
+    ///
+    /// # Errors
+    /// [`SimError::NoGustEntry`] for moving air around a simulator that takes none, [`SimError::Number`] for air out of its
+    /// range.
+    pub(crate) fn new(
+        plant: &ExternalPlant,
+        actuator: Actuator,
+        timing: Timing,
+        around: Around<'_>,
+    ) -> Result<Self, SimError> {
         // A millionth more than whole is rounding.
         let count = (timing.dt_s() / MOST_STEP_S - 1e-6).ceil().max(1.0);
         #[allow(
@@ -139,7 +178,16 @@ impl ExternalFlight {
             reason = "at least 1, and the cast saturates"
         )]
         let steps = count as u32;
-        Self { plant: plant.clone(), actuator, steps, step_s: timing.dt_s() / count }
+        let step_s = timing.dt_s() / count;
+        let air = match (around.weather, &plant.simulator) {
+            (None, _) => None,
+            (Some(weather), Simulator::Jsbsim(jsbsim)) => {
+                MovingAir::new(weather, jsbsim.altitude_m, (step_s, steps))?
+            }
+            (Some(_), Simulator::Fmu(_)) => return Err(SimError::NoGustEntry),
+        };
+        let moves_throttle = around.moves_throttle;
+        Ok(Self { plant: plant.clone(), actuator, steps, step_s, air, moves_throttle })
     }
 
     /// True where a sample says more than pitch.
@@ -149,13 +197,20 @@ impl ExternalFlight {
 
     /// Starts the simulator.
     pub(crate) fn start(&self) -> Result<ExternalMotion, SimError> {
-        let flying = self.plant.start(self.step_s, self.steps)?;
+        let flying = self.plant.start(&Beginning {
+            step_s: self.step_s,
+            steps: self.steps,
+            wind_m_s: self.air.as_ref().map(MovingAir::start_m_s),
+            moves_throttle: self.moves_throttle,
+        })?;
         let start = flying.start();
         Ok(ExternalMotion {
             flying: Ok(flying),
             start,
             now: start,
             actuator: ActuatorState::default(),
+            air: self.air.as_ref().map(MovingAir::start),
+            inputs: vec![StepInput::default(); self.steps as usize],
             shows_aircraft: self.shows_aircraft(),
         })
     }
@@ -165,28 +220,41 @@ impl ExternalFlight {
         self.actuator.settle(&mut motion.actuator, command_rad);
     }
 
-    /// One sample period with command and disturbance held. The elevator of each step is that of its middle.
-    pub(crate) fn advance(
-        &self,
-        motion: &mut ExternalMotion,
-        command_rad: f64,
-        disturbance_rad: f64,
-    ) {
+    /// Which way the command cannot be followed by our actuator; how far the simulator's elevator goes is its own.
+    pub(crate) fn cut(&self, motion: &ExternalMotion, command_rad: f64) -> Cut {
+        let dt_s = self.step_s * f64::from(self.steps);
+        if !self.actuator.is_limited(&motion.actuator, command_rad, dt_s) {
+            return Cut::Not;
+        }
+        Cut::towards(command_rad - self.actuator.deflection_rad(&motion.actuator))
+    }
+
+    /// One sample period with command and disturbance held. The elevator of each step is that of its middle, the air that of
+    /// its end.
+    pub(crate) fn advance(&self, motion: &mut ExternalMotion, command_rad: f64, held: &Held<'_>) {
         let trim_rad = motion.start.elevator_rad;
-        let actuator = &mut motion.actuator;
-        let elevators_rad: Vec<f64> = (0..self.steps)
-            .map(|_| {
-                self.actuator.advance(actuator, command_rad, 0.5 * self.step_s);
-                let deflection_rad = self.actuator.deflection_rad(actuator);
-                self.actuator.advance(actuator, command_rad, 0.5 * self.step_s);
-                // Trailing edge down is nose down.
-                trim_rad - (deflection_rad + disturbance_rad)
-            })
-            .collect();
+        let (actuator, now) = (&mut motion.actuator, motion.now);
+        for input in &mut motion.inputs {
+            self.actuator.advance(actuator, command_rad, 0.5 * self.step_s);
+            let deflection_rad = self.actuator.deflection_rad(actuator);
+            self.actuator.advance(actuator, command_rad, 0.5 * self.step_s);
+            // Trailing edge down is nose down.
+            input.elevator_rad = trim_rad - (deflection_rad + held.elevator_rad);
+        }
+        if let Some((air, state)) = self.air.as_ref().zip(motion.air.as_mut()) {
+            air.tell(state, &now, &mut motion.inputs);
+        }
+        let asked = SampleInput {
+            throttle: motion.start.throttle_command + held.autopilot.throttle,
+            bank_rad: held.autopilot.bank_rad,
+        };
         let Ok(flying) = &mut motion.flying else { return };
-        match flying.advance(&elevators_rad) {
+        match flying.advance(&asked, &motion.inputs) {
             Ok(now) => motion.now = now,
             Err(loss) => motion.flying = Err(loss),
+        }
+        if let Some((air, state)) = self.air.as_ref().zip(motion.air.as_mut()) {
+            air.leave(state, [&now, &motion.now]);
         }
     }
 }

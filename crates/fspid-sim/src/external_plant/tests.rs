@@ -19,7 +19,8 @@ fn plant() -> ExternalPlant {
 
 #[test]
 fn without_a_host_an_external_plant_is_refused_and_says_why() {
-    let refused = plant().start(0.01, 1).expect_err("nobody starts it").to_string();
+    let beginning = Beginning { step_s: 0.01, steps: 1, wind_m_s: None, moves_throttle: false };
+    let refused = plant().start(&beginning).expect_err("nobody starts it").to_string();
     assert!(refused.contains("starts no other simulators; allowed"), "{refused}");
 }
 

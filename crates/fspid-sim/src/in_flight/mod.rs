@@ -125,8 +125,9 @@ struct Around {
 }
 
 impl Around {
-    fn start(prepared: &Prepared) -> Result<Option<Self>, SimError> {
-        let Some((autopilot, throttle)) = prepared.autopilot.as_ref().zip(prepared.throttle) else {
+    fn start(prepared: &Prepared, plant: &Motion) -> Result<Option<Self>, SimError> {
+        let throttle = prepared.throttle.or_else(|| plant.throttle());
+        let Some((autopilot, throttle)) = prepared.autopilot.as_ref().zip(throttle) else {
             return Ok(None);
         };
         let state = AutopilotState::start(autopilot, prepared.timing.dt_s(), throttle)?;
@@ -153,17 +154,18 @@ impl Around {
 impl<P: Borrow<Prepared>> Course<P> {
     pub(crate) fn start(prepared: P, perturbation: &Perturbation) -> Result<Self, SimError> {
         let all: &Prepared = prepared.borrow();
+        let plant = all.stages[0].propagation.start()?;
         Ok(Self {
             k: 0,
             stage: 0,
-            plant: all.stages[0].propagation.start()?,
             sensors: Sensors::start(all)?,
             path: perturbation.start()?,
             delayed: Delay::of(all.delay_samples),
             disturbance_rad: 0.0,
             aircraft: None,
-            around: Around::start(all)?,
             asked: Asked::default(),
+            around: Around::start(all, &plant)?,
+            plant,
             prepared,
         })
     }

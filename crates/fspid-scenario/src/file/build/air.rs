@@ -8,7 +8,7 @@ use fspid_sim::air::{
     Wind, design_gust_m_s,
 };
 use fspid_sim::signal::Noise;
-use fspid_sim::{Plant, Weather};
+use fspid_sim::{Plant, Simulator, Weather};
 
 use super::flown::{Flown, Way};
 use super::wind_table::table;
@@ -32,8 +32,9 @@ pub(super) fn weather(
     files: &mut Files<'_>,
     (section, flown): (&Section, &Flown),
 ) -> Option<Weather> {
-    // Another simulator has its own, and what the file lets move was refused.
-    if flown.plant.external().is_some() {
+    // An FMU has its own, and what the file lets move was refused.
+    let external = flown.plant.external();
+    if external.is_some_and(|plant| matches!(plant.simulator, Simulator::Fmu(_))) {
         return None;
     }
     let parts = [WIND, TURBULENCE].map(|key| section.get(key));
@@ -49,9 +50,15 @@ pub(super) fn weather(
         winds: winds(report, files, (section, way)),
         turbulence: turbulence(report, files, (section.get(TURBULENCE), way)),
     };
-    let linear = matches!(flown.plant, Plant::Linear(_));
-    (!(calm && linear)).then_some(weather)
+    if external.is_some() && !calm {
+        report.warn(WITHOUT_RATES.to_owned());
+    }
+    let has_course = matches!(flown.plant, Plant::Aircraft(_));
+    (!calm || has_course).then_some(weather)
 }
+
+/// What of our air JSBSim does not take.
+const WITHOUT_RATES: &str = "JSBSim takes velocities of the air alone: the rates p, q and r of gusts and turbulence, which aircraft of our own feel, are left out of this flight";
 
 /// Of a plant, or of an aircraft whose file has too little on it.
 fn refuse(report: &mut Report, part: &Section, (is_aircraft, silent): (bool, bool)) {

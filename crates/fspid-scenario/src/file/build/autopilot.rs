@@ -7,8 +7,9 @@ use fspid_sim::autopilot::{
     Autopilot, AutopilotError, Condition, Engagement, Entry, GlideSlope, Mode, Moves, OuterLoop,
     Quantity, Side, TotalEnergy, Units,
 };
+use fspid_sim::external_plant::Jsbsim;
 use fspid_sim::sensor::{Sensor, SensorModel};
-use fspid_sim::{Controller, Plant};
+use fspid_sim::{Controller, Plant, Simulator};
 
 use super::flown::Flown;
 use super::{controller, judged, rad};
@@ -19,8 +20,9 @@ use crate::file::spec::autopilot as keys;
 use crate::file::spec::autopilot::{EngineKind, HoldsWord};
 use crate::file::spec::flight::GROUND_M;
 use crate::file::spec::scenario::{
-    AIRCRAFT, ENGINE, GLIDE_SLOPE, LATERAL, MODE, OUTER_LOOP, TOTAL_ENERGY,
+    AIRCRAFT, ENGINE, GLIDE_SLOPE, LATERAL, MODE, OUTER_LOOP, SIMULATOR, TOTAL_ENERGY,
 };
+use crate::file::spec::simulator::WINGS;
 use crate::keyed::{Key, Section};
 use fspid_diagnostics::{Report, known_words};
 
@@ -47,7 +49,7 @@ pub(super) fn autopilot(
         return Some(None);
     }
     let before = report.count();
-    refuse_linear(report, section, flown);
+    refuse_pitch_alone(report, section, flown);
     let written = loops;
     let loops: Vec<Option<OuterLoop>> = (written.iter().enumerate())
         .map(|(number, part)| outer_loop(report, files, (part, number), (written, dt_s)))
@@ -59,7 +61,26 @@ pub(super) fn autopilot(
         return None;
     }
     let parts = (loops.into_iter().collect::<Option<_>>()?, energy.flatten(), beam.flatten());
-    joined(report, section, parts, modes.into_iter().collect::<Option<_>>()?).map(Some)
+    let autopilot = joined(report, section, parts, modes.into_iter().collect::<Option<_>>()?)?;
+    refuse_bank(report, section, (flown, &autopilot)).map(|()| Some(autopilot))
+}
+
+/// Refuses a bank that nothing holds: the wings of JSBSim's aircraft where the bridge leaves them alone.
+fn refuse_bank(
+    report: &mut Report,
+    section: &Section,
+    (flown, autopilot): (Option<&Flown>, &Autopilot),
+) -> Option<()> {
+    let is_free = |jsbsim: &Jsbsim| !jsbsim.levels_wings;
+    let free = flown.and_then(|flown| flown.plant.external()).is_some_and(
+        |plant| matches!(&plant.simulator, Simulator::Jsbsim(jsbsim) if is_free(jsbsim)),
+    );
+    let Some(part) = section.get(SIMULATOR).filter(|_| free && autopilot.banks()) else {
+        return Some(());
+    };
+    let message = "nothing holds the bank that the autopilot asks for";
+    part.wrong(report, WINGS, message, "\"levelled\", or an autopilot that asks for no bank");
+    None
 }
 
 /// The aircraft with its engine's lag and what looks after its lateral motion.
@@ -78,7 +99,10 @@ fn with_engine(report: &mut Report, section: &Section, flown: Flown) -> Option<F
         EngineKind::StevensLewis => Spool::StevensLewis,
     };
     let Plant::Aircraft(plant) = flown.plant else {
-        let message = "a linear plant has no engine";
+        let message = match flown.plant {
+            Plant::External(_) => "another simulator flies, whose engine is its own",
+            _ => "a linear plant has no engine",
+        };
         report.value(part.place, &part.path, message, "nothing; or a nonlinear aircraft");
         return Some(flown);
     };
@@ -95,7 +119,10 @@ fn with_lateral(report: &mut Report, section: &Section, flown: Flown) -> Option<
         yaw_damping: part.get(keys::YAW_DAMPING).unwrap_or(usual.yaw_damping),
     };
     let Plant::Aircraft(plant) = flown.plant else {
-        let message = "a linear plant has no lateral motion";
+        let message = match flown.plant {
+            Plant::External(_) => "another simulator flies, whose wings are held by `wings`",
+            _ => "a linear plant has no lateral motion",
+        };
         report.value(part.place, &part.path, message, "nothing; or a nonlinear aircraft");
         return Some(flown);
     };
@@ -104,15 +131,19 @@ fn with_lateral(report: &mut Report, section: &Section, flown: Flown) -> Option<
 }
 
 /// Refuses every table of an autopilot around a plant that shows pitch alone.
-fn refuse_linear(report: &mut Report, section: &Section, flown: Option<&Flown>) {
-    if flown.is_none_or(|flown| flown.plant.linear().is_none()) {
-        return;
-    }
+fn refuse_pitch_alone(report: &mut Report, section: &Section, flown: Option<&Flown>) {
+    let message = match flown.map(|flown| &flown.plant) {
+        Some(Plant::Linear(_)) => {
+            "a linear plant shows neither altitude nor airspeed that outer loops could hold"
+        }
+        Some(Plant::External(plant)) if matches!(plant.simulator, Simulator::Fmu(_)) => {
+            "an FMU shows neither altitude nor airspeed that outer loops could hold"
+        }
+        _ => return,
+    };
     let lists = [section.sections(OUTER_LOOP), section.sections(MODE)].into_iter().flatten();
     let single = [TOTAL_ENERGY, GLIDE_SLOPE].into_iter().filter_map(|key| section.get(key));
     for part in lists.chain(single) {
-        let message =
-            "a linear plant shows neither altitude nor airspeed that outer loops could hold";
         report.value(part.place, &part.path, message, "a nonlinear aircraft, or nothing");
     }
 }
@@ -334,7 +365,8 @@ fn glide_slope(
     let [north_m, east_m] = course.start_m;
     let altitude_m = match quantity(part, keys::ANTENNA_ALTITUDE) {
         Some(altitude_m) => altitude_m,
-        None => section.get(AIRCRAFT)?.get(GROUND_M)?,
+        // The ground of another simulator is at sea level.
+        None => section.get(AIRCRAFT).map_or(Some(0.0), |aircraft| aircraft.get(GROUND_M))?,
     };
     let seed = u64::try_from(part.get(keys::SEED)?).ok()?;
     let mut sensor = |(noise_density, bias): (f64, f64), channel: u32| {

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use fspid_aircraft::airspeed::true_of_calibrated_m_s;
 use fspid_aircraft::atmosphere::{Air, STANDARD_GRAVITY_M_S2};
 use fspid_sim::external::Contents;
 use fspid_sim::external_plant::{FmuPlant, Jsbsim, JsbsimSpeed};
@@ -25,7 +26,9 @@ pub(super) fn flown(
     section: &Section,
     part: &Section,
 ) -> Option<Flown> {
-    refuse_air(report, section);
+    if part.variant() == Some(SimulatorKind::Fmu) {
+        refuse_air(report, section);
+    }
     let simulator = match part.variant()? {
         SimulatorKind::Jsbsim => Simulator::Jsbsim(jsbsim(report, files, part)?),
         SimulatorKind::Fmu => Simulator::Fmu(fmu(report, files, part)?),
@@ -122,12 +125,21 @@ fn speed(part: &Section) -> Option<JsbsimSpeed> {
     quantity(part, keys::AIRSPEED).map(JsbsimSpeed::True)
 }
 
-/// The way of a flight whose true airspeed is given. That of another is the simulator's to say, so that nothing is
-/// scheduled by it.
+/// Wing span of turbulence around another simulator, m: the rates of the air depend on it alone, which are left out there.
+const ANY_SPAN_M: f64 = 10.0;
+
+/// The way of a flight of JSBSim, in the standard atmosphere as there.
 fn way(plant: &ExternalPlant) -> Option<Way> {
     let Simulator::Jsbsim(jsbsim) = &plant.simulator else { return None };
-    let JsbsimSpeed::True(airspeed_m_s) = jsbsim.speed else { return None };
-    let density_kg_m3 = Air::standard(jsbsim.altitude_m).ok()?.density_kg_m3;
+    let air = Air::standard(jsbsim.altitude_m).ok()?;
+    let airspeed_m_s = match jsbsim.speed {
+        JsbsimSpeed::True(airspeed_m_s) => airspeed_m_s,
+        JsbsimSpeed::Calibrated(calibrated_m_s) => {
+            true_of_calibrated_m_s(calibrated_m_s, &air).ok()?
+        }
+        JsbsimSpeed::Mach(mach) => mach * air.speed_of_sound_m_s,
+    };
+    let density_kg_m3 = air.density_kg_m3;
     Some(Way {
         course: Course {
             airspeed_m_s,
@@ -136,7 +148,7 @@ fn way(plant: &ExternalPlant) -> Option<Way> {
             heading_rad: jsbsim.heading_rad,
             start_m: [0.0; 2],
         },
-        span_m: None,
+        span_m: Some(ANY_SPAN_M),
         gravity_m_s2: STANDARD_GRAVITY_M_S2,
         altitude_m: jsbsim.altitude_m,
         dynamic_pressure_pa: 0.5 * density_kg_m3 * airspeed_m_s * airspeed_m_s,
@@ -144,13 +156,12 @@ fn way(plant: &ExternalPlant) -> Option<Way> {
     })
 }
 
-/// The simulator has air of its own.
+/// An FMU hears of an elevator alone.
 fn refuse_air(report: &mut Report, section: &Section) {
     let parts = [WIND, TURBULENCE].into_iter().filter_map(|key| section.get(key));
     for part in parts.chain(section.sections(GUST)) {
-        let message = "another simulator flies, whose air is its own";
-        let allowed =
-            "its properties, such as `[[simulator.property]]` with name = \"atmosphere/turb-type\"";
+        let message = "an FMU flies the aircraft, which hears of its elevator alone";
+        let allowed = "still air, or kind = \"jsbsim\"";
         report.value(part.place, &part.path, message, allowed);
     }
 }

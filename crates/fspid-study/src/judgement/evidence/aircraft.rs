@@ -23,7 +23,11 @@ pub(super) fn case(
 ) -> Result<Case, NotEvaluated> {
     let measure = requirement.measure;
     let none = || NotEvaluated::NoAircraft { measure: measure.name() };
-    let plant = study.scenario.plant.aircraft().ok_or_else(none)?;
+    // Of an aircraft that another simulator flies, what it shows is in the trace.
+    let plant = study.scenario.plant.aircraft();
+    if plant.is_none() && trace.column("airspeed_m_s").is_none() {
+        return Err(none());
+    }
     let seen = Seen { plant, trace, time, target_m: requirement.conditions.target_altitude_m() };
     match measure {
         Measure::LargestLoadFactor => seen.largest("load_factor", |value| value),
@@ -40,7 +44,7 @@ pub(super) fn case(
         Measure::LargestAirspeed => seen.largest("airspeed_m_s", |value| value / KNOT_M_S),
         Measure::LeastAirspeed => seen.least("airspeed_m_s", |value| value / KNOT_M_S),
         Measure::AirspeedDeviation => {
-            let trim_m_s = plant.trim().target.airspeed_m_s;
+            let trim_m_s = seen.trim_m_s()?;
             seen.largest("airspeed_m_s", |value| (value - trim_m_s).abs() / KNOT_M_S)
         }
         Measure::LargestAlpha => seen.largest("alpha_rad", degrees),
@@ -61,7 +65,8 @@ fn sink_ft_min(climb_m_s: f64) -> f64 {
 
 /// A part of a flight.
 struct Seen<'a> {
-    plant: &'a AircraftPlant,
+    /// Of our own.
+    plant: Option<&'a AircraftPlant>,
     trace: &'a Trace,
     time: RangeInclusive<usize>,
     target_m: Option<f64>,
@@ -85,7 +90,17 @@ impl Seen<'_> {
     }
 
     fn start_m(&self) -> Result<f64, NotEvaluated> {
-        let first = self.trace.column("altitude_m").and_then(|column| column.first());
+        self.first("altitude_m")
+    }
+
+    /// The airspeed of the trim, m/s; a flight of another simulator begins with it.
+    fn trim_m_s(&self) -> Result<f64, NotEvaluated> {
+        let trim_m_s = self.plant.map(|plant| plant.trim().target.airspeed_m_s);
+        trim_m_s.map_or_else(|| self.first("airspeed_m_s"), Ok)
+    }
+
+    fn first(&self, name: &str) -> Result<f64, NotEvaluated> {
+        let first = self.trace.column(name).and_then(|column| column.first());
         first.copied().ok_or(NotEvaluated::Absent(crate::metrics::Absent::NotFinite))
     }
 
@@ -141,7 +156,9 @@ impl Seen<'_> {
     }
 
     fn alpha_margin(&self) -> Result<Case, NotEvaluated> {
-        let most_rad = self.plant.aircraft().model().validity().alpha_rad.max;
+        // Another simulator does not say how far its data are trusted.
+        let validity = self.plant.map(|plant| plant.aircraft().model().validity());
+        let most_rad = validity.map_or(f64::INFINITY, |validity| validity.alpha_rad.max);
         if !most_rad.is_finite() {
             return Err(NotEvaluated::NoAlphaLimit);
         }
