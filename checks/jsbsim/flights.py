@@ -211,7 +211,7 @@ at_s = 1.0
         largest = max(abs(value) for value in wanted)
         apart = max(abs(one - other) for one, other in zip(found, wanted)) / largest
         print(f"gust on {aircraft}: pitch up to {math.degrees(largest):.4f} deg, {100.0 * apart:.1f} % of it apart from the linear model")
-        assert apart < 0.06, (aircraft, apart)
+        assert apart < 0.02, (aircraft, apart)
 
 
 AROUND = """[[outer_loop]]
@@ -240,24 +240,14 @@ holds = "airspeed"
 moves = "throttle"
 kp = 0.1
 ki = 0.01
-[[outer_loop]]
-name = "heading"
-kind = "pid"
-holds = "heading"
-moves = "bank"
-kp = 1.0
-ki = 0.02
-least = -20.0
-most = 20.0
-most_per_s = 5.0
 [[mode]]
 name = "level"
 engage = ["altitude", "vertical speed", "autothrottle"]
 [[mode]]
 name = "capture"
 at_s = 5.0
-engage = ["altitude", "vertical speed", "autothrottle", "heading"]
-target = {{ altitude_ft = {altitude}, heading_deg = 20.0 }}
+engage = ["altitude", "vertical speed", "autothrottle"]
+target = {{ altitude_ft = {altitude} }}
 [[requirement]]
 measure = "altitude_overshoot_ft"
 target_ft = {altitude}
@@ -280,7 +270,7 @@ most = 1.5
 
 
 def autopilots():
-    """An altitude and a heading are captured, with an autothrottle, and a mode that never begins fails its flight."""
+    """An altitude is captured, with an autothrottle, and a mode that never begins fails its flight."""
     for aircraft, speed, altitude, gain in (("c172p", "calibrated_kt = 100", 4000, 0.5), ("737", "mach = 0.65", 20000, 0.1)):
         around = AROUND.format(path=gain, altitude=altitude + 200.0)
         path = write("around", aircraft, speed, altitude, behind=around, period=0.02, duration=120.0)
@@ -289,10 +279,9 @@ def autopilots():
         missed = [it for it in answer["requirements"] if not it["met"]]
         last = rows("around.csv")[-1]
         assert all(it["measure"] == "altitude_overshoot_ft" and "not reached" in json.dumps(it) for it in missed), missed
-        assert abs(last["heading_deg"] - 20.0) < 1.0, last["heading_deg"]
         assert abs(last["throttle"] - last["throttle_command"]) < 0.02, (last["throttle"], last["throttle_command"])
         print(
-            f"autopilot on {aircraft}: {last['altitude_m'] / 0.3048:.1f} ft, heading {last['heading_deg']:.2f} deg, "
+            f"autopilot on {aircraft}: {last['altitude_m'] / 0.3048:.1f} ft, "
             f"{last['airspeed_m_s']:.2f} m/s, throttle {last['throttle']:.3f}"
         )
     never = around + '[[mode]]\nname = "high"\nwhen = { altitude_above_ft = 30000.0 }\n'

@@ -299,8 +299,8 @@ def flight(asked, wire):
     elevator, aileron = (manager.get_node(f"fcs/{name}-cmd-norm") for name in ("elevator", "aileron"))
     level = aileron.get_double_value() if asked["levels_wings"] else None
     frame = struct.Struct(f"=Q{NUMBERS}d")
-    # Throttle and bank, and of each step its elevator and the air to the north, to the east and down.
-    ask = struct.Struct(f"={2 + 4 * asked['steps']}d")
+    # The throttle, and of each step its elevator and the air to the north, to the east and down.
+    ask = struct.Struct(f"={1 + 4 * asked['steps']}d")
     wire.sendall(struct.pack("=B", READY) + text(jsbsim.__version__) + frame.pack(0, *[get() for get in gets]))
     from bisect import bisect_right
 
@@ -320,11 +320,10 @@ def flight(asked, wire):
                 return
             got += more
         values = ask.unpack(buffer)
-        throttle, bank_asked = values[:2]
         if asked["moves_throttle"]:
             for engine in engines:
-                engine.set_double_value(throttle)
-        for place in range(2, len(values), 4):
+                engine.set_double_value(values[0])
+        for place in range(1, len(values), 4):
             wanted = values[place]
             if air_moves:
                 for gust, m_s in zip(gusts, values[place + 1 : place + 4]):
@@ -338,7 +337,7 @@ def flight(asked, wire):
                 share = (wanted - positions[k]) / (positions[k + 1] - positions[k])
                 set_elevator(commands[k] + share * (commands[k + 1] - commands[k]))
             if level is not None:
-                turned = level - (BANK_GAIN * (get_bank() - bank_asked) + ROLL_RATE_GAIN * get_roll())
+                turned = level - (BANK_GAIN * get_bank() + ROLL_RATE_GAIN * get_roll())
                 set_aileron(-1.0 if turned < -1.0 else 1.0 if turned > 1.0 else turned)
             if not run():
                 # No number of a sample: it says that it cannot go on.

@@ -346,9 +346,8 @@ impl Process {
 
     fn asked(&mut self, held: &SampleInput, steps: &[StepInput]) -> io::Result<[u8; SAMPLE]> {
         let mut timed = Timed::new(&self.stream, self.limit);
-        let numbers = [held.throttle, held.bank_rad];
         self.question.clear();
-        self.question.extend(numbers.into_iter().flat_map(f64::to_ne_bytes));
+        self.question.extend(held.throttle.to_ne_bytes());
         for StepInput { elevator_rad, air_m_s: [north, east, down] } in steps {
             let numbers = [*elevator_rad, *north, *east, *down];
             self.question.extend(numbers.into_iter().flat_map(f64::to_ne_bytes));

@@ -312,8 +312,6 @@ pub struct StepInput {
 pub struct SampleInput {
     /// The throttle that is asked for, 0 to 1; nobody hears of it where nothing moves it.
     pub throttle: f64,
-    /// The bank that is asked for, rad.
-    pub bank_rad: f64,
 }
 
 /// One flight of another simulator, at its trim first.

@@ -102,13 +102,6 @@ impl Autopilot {
         self.mover_of_throttle().is_some()
     }
 
-    /// True where anything of it asks for a bank.
-    #[must_use]
-    pub fn banks(&self) -> bool {
-        let by_mode = self.modes.iter().any(|mode| mode.bank_rad != 0.0);
-        by_mode || self.loops.iter().any(|outer| outer.moves == Moves::Bank)
-    }
-
     fn mover_of_throttle(&self) -> Option<&str> {
         let by_throttle = self.loops.iter().find(|outer| outer.moves == Moves::Throttle);
         let name = by_throttle.map(|outer| outer.name.as_str());

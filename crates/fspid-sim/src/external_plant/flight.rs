@@ -244,10 +244,8 @@ impl ExternalFlight {
         if let Some((air, state)) = self.air.as_ref().zip(motion.air.as_mut()) {
             air.tell(state, &now, &mut motion.inputs);
         }
-        let asked = SampleInput {
-            throttle: motion.start.throttle_command + held.autopilot.throttle,
-            bank_rad: held.autopilot.bank_rad,
-        };
+        let throttle = motion.start.throttle_command + held.autopilot.throttle;
+        let asked = SampleInput { throttle };
         let Ok(flying) = &mut motion.flying else { return };
         match flying.advance(&asked, &motion.inputs) {
             Ok(now) => motion.now = now,

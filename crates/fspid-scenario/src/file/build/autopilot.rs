@@ -7,7 +7,6 @@ use fspid_sim::autopilot::{
     Autopilot, AutopilotError, Condition, Engagement, Entry, GlideSlope, Mode, Moves, OuterLoop,
     Quantity, Side, TotalEnergy, Units,
 };
-use fspid_sim::external_plant::Jsbsim;
 use fspid_sim::sensor::{Sensor, SensorModel};
 use fspid_sim::{Controller, Plant, Simulator};
 
@@ -20,9 +19,8 @@ use crate::file::spec::autopilot as keys;
 use crate::file::spec::autopilot::{EngineKind, HoldsWord};
 use crate::file::spec::flight::GROUND_M;
 use crate::file::spec::scenario::{
-    AIRCRAFT, ENGINE, GLIDE_SLOPE, LATERAL, MODE, OUTER_LOOP, SIMULATOR, TOTAL_ENERGY,
+    AIRCRAFT, ENGINE, GLIDE_SLOPE, LATERAL, MODE, OUTER_LOOP, TOTAL_ENERGY,
 };
-use crate::file::spec::simulator::WINGS;
 use crate::keyed::{Key, Section};
 use fspid_diagnostics::{Report, known_words};
 
@@ -65,22 +63,26 @@ pub(super) fn autopilot(
     refuse_bank(report, section, (flown, &autopilot)).map(|()| Some(autopilot))
 }
 
-/// Refuses a bank that nothing holds: the wings of JSBSim's aircraft where the bridge leaves them alone.
+/// Refuses a bank in JSBSim, at whatever asks for it.
 fn refuse_bank(
     report: &mut Report,
     section: &Section,
     (flown, autopilot): (Option<&Flown>, &Autopilot),
 ) -> Option<()> {
-    let is_free = |jsbsim: &Jsbsim| !jsbsim.levels_wings;
-    let free = flown.and_then(|flown| flown.plant.external()).is_some_and(
-        |plant| matches!(&plant.simulator, Simulator::Jsbsim(jsbsim) if is_free(jsbsim)),
-    );
-    let Some(part) = section.get(SIMULATOR).filter(|_| free && autopilot.banks()) else {
+    if flown.is_none_or(|flown| flown.plant.external().is_none()) {
         return Some(());
-    };
-    let message = "nothing holds the bank that the autopilot asks for";
-    part.wrong(report, WINGS, message, "\"levelled\", or an autopilot that asks for no bank");
-    None
+    }
+    let before = report.count();
+    let message = "the bridge to JSBSim levels the wings and holds no bank";
+    let loops = section.sections(OUTER_LOOP).iter().zip(autopilot.loops());
+    for (part, _) in loops.filter(|(_, outer)| outer.moves == Moves::Bank) {
+        part.wrong(report, keys::MOVES, message, "pitch, throttle, or another loop");
+    }
+    let modes = section.sections(MODE).iter().zip(autopilot.modes());
+    for (part, _) in modes.filter(|(_, mode)| mode.bank_rad != 0.0) {
+        part.wrong(report, keys::BANK_DEG, message, "0");
+    }
+    (report.count() == before).then_some(())
 }
 
 /// The aircraft with its engine's lag and what looks after its lateral motion.
