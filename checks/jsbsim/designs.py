@@ -1,8 +1,7 @@
 """Flies the shipped designs, and the PID that was tuned alike, at trims of JSBSim; called by designs.sh.
 
 Everything but the aircraft is that of the design's file: servo, noise, the change of trim, the step of 5 deg, and the same
-down. Prints the table in Markdown. The commands `fspid simulate` gives the numbers: IAE and way of the elevator command's
-servo as the simulator shows it.
+down, in calm air and in moderate turbulence. Prints the table in Markdown: means over both steps, of the PID's.
 """
 
 import json
@@ -37,6 +36,8 @@ MEASURES = ("iae_deg_s", "elevator_travel_deg", "overshoot_pct")
 ASKED = "".join(
     f'[[requirement]]\nmeasure = "{measure}"\nmost = {10.0 if measure == "overshoot_pct" else 1e6!r}\n' for measure in MEASURES
 )
+# Turbulence of ours around JSBSim's aircraft, the same for everybody.
+ROUGH = ["--set", "turbulence.intensity=moderate", "--set", "turbulence.seed=5"]
 DOWN = ["--set", "setpoint.amplitude_deg=-5", "--set", "disturbance[0].amplitude_deg=-1"]
 
 
@@ -52,13 +53,13 @@ def scenario(design, aircraft, speed, altitude_ft):
     return path
 
 
-def flown(design, condition):
+def flown(design, condition, air):
     """Of each controller, measures summed over the step up and the one down, the largest overshoot, and the verdicts."""
     path = scenario(design, *condition[:3])
     all_of = {}
     for more in ([], DOWN):
         done = subprocess.run(
-            [FSPID, "simulate", path, "--format", "json", *more], capture_output=True, text=True, env=os.environ
+            [FSPID, "simulate", path, "--format", "json", *more, *air], capture_output=True, text=True, env=os.environ
         )
         assert done.returncode < 2, done.stderr
         answer = json.loads(done.stdout)
@@ -73,27 +74,38 @@ def flown(design, condition):
     return all_of
 
 
+def ratios(pairs):
+    """Of the sums over all flights: IAE and travel, of the PID's."""
+    return [sum(of[m] for of, _ in pairs) / sum(pid[m] for _, pid in pairs) for m in MEASURES[:2]]
+
+
+def words(verdicts):
+    short = {"settled": "settled", "not settled within 14 s": "late"}
+    return ", ".join(sorted(short.get(verdict, verdict) for verdict in verdicts))
+
+
 def main():
     for design, conditions in CONDITIONS.items():
-        print(f"\n| {design} on | IAE PID, deg s | controller | IAE, of the PID's | elevator travel, of the PID's | overshoot (PID) | verdict (PID) |")
-        print("| --- | --- | --- | --- | --- | --- | --- |")
+        print(f"\n| {design}, not tuned on | IAE of the PID, deg s | controller | IAE | travel | overshoot (PID) | verdict (PID) | IAE in turbulence | travel |")
+        print("| --- | --- | --- | --- | --- | --- | --- | --- | --- |")
         sums = {}
         for condition in conditions:
             aircraft, _, altitude_ft, speed = condition
-            all_of = flown(design, condition)
-            pid = all_of.pop("PID")
-            for place, (name, of) in enumerate(all_of.items()):
-                iae, travel = (of[measure] / pid[measure] for measure in MEASURES[:2])
-                sums.setdefault(name, []).append((of, pid))
+            calm, rough = (flown(design, condition, air) for air in ([], ROUGH))
+            for place, name in enumerate(name for name in calm if name != "PID"):
+                pairs = [(all_of[name], all_of["PID"]) for all_of in (calm, rough)]
+                for air, pair in enumerate(pairs):
+                    sums.setdefault((name, air), []).append(pair)
                 where = f"{aircraft}, {altitude_ft} ft, {speed}" if place == 0 else ""
-                own = f"{0.5 * pid['iae_deg_s']:.2f}" if place == 0 else ""
-                words = [", ".join(sorted(it["verdicts"])) for it in (of, pid)]
-                overs = [f"{it['overshoot_pct']:.1f} %" for it in (of, pid)]
-                print(f"| {where} | {own} | {name} | {iae:.3f} | {travel:.3f} | {overs[0]} ({overs[1]}) | {words[0]} ({words[1]}) |")
-        for name, pairs in sums.items():
-            means = [sum(of[m] for of, _ in pairs) / sum(pid[m] for _, pid in pairs) for m in MEASURES[:2]]
-            ratios = sum(of["iae_deg_s"] / pid["iae_deg_s"] for of, pid in pairs) / len(pairs)
-            print(f"| all {len(pairs)} | | {name} | {means[0]:.3f} of the mean, ratios {ratios:.3f} | {means[1]:.3f} of the mean | | |")
+                own = f"{0.5 * calm['PID']['iae_deg_s']:.2f}" if place == 0 else ""
+                of, pid = pairs[0]
+                cells = [f"{value:.3f}" for pair in pairs for value in ratios([pair])]
+                over = f"{of['overshoot_pct']:.1f} % ({pid['overshoot_pct']:.1f} %)"
+                said = f"{words(of['verdicts'])} ({words(pid['verdicts'])})"
+                print(f"| {where} | {own} | {name} | {cells[0]} | {cells[1]} | {over} | {said} | {cells[2]} | {cells[3]} |")
+        for name in dict.fromkeys(name for name, _ in sums):
+            cells = [f"**{value:.3f}**" for air in (0, 1) for value in ratios(sums[name, air])]
+            print(f"| all {len(conditions)} | | {name} | {cells[0]} | {cells[1]} | | | {cells[2]} | {cells[3]} |")
 
 
 main()

@@ -290,6 +290,29 @@ def autopilots():
     assert outcome["kind"] == "mode never began", outcome
 
 
+def same_air():
+    """What JSBSim shows of the air is what an aircraft of ours meets at the same speed and height, with the same seed."""
+    rough = '[turbulence]\nintensity = "moderate"\nseed = 3\n'
+    path = write("theirs", "c172p", "calibrated_kt = 100", 4000, behind=rough)
+    fspid("simulate", path, "--trace", "theirs.csv", codes=(0, 1))
+    theirs = rows("theirs.csv")
+    with open(path) as file:
+        text = file.read()
+    own = f'[aircraft]\nname = "navion"\nairspeed_m_s = {theirs[0]["airspeed_m_s"]!r}\naltitude_ft = 4000.0\nvalidity = "warn"\n'
+    text = text[: text.index("[simulator]")] + own + text[text.index("[actuator]") :]
+    with open(f"{WORK}/ours.toml", "w") as file:
+        file.write(text)
+    fspid("simulate", "ours.toml", "--trace", "ours.csv", codes=(0, 1))
+    pairs = list(zip(theirs, rows("ours.csv")))[1:]
+    apart = {
+        axis: max(abs(one[axis] - other[axis]) for one, other in pairs)
+        for axis in ("air_forward_m_s", "air_right_m_s", "air_down_m_s")
+    }
+    largest = max(abs(one["air_down_m_s"]) for one, _ in pairs)
+    assert len(pairs) == 1000 and largest > 2.0 and max(apart.values()) < 0.02, (len(pairs), largest, apart)
+    print(f"air: {largest:.2f} m/s of turbulence, in JSBSim and around an aircraft of ours at most {max(apart.values()):.4f} m/s apart")
+
+
 def told():
     wrong = [
         (("c172y", "calibrated_kt = 100", 4000), {}, "there is no aircraft c172y; allowed is one of its aircraft, such as c172"),
@@ -357,7 +380,7 @@ def speed():
 
 def main():
     jsbsim.FGJSBBase().debug_lvl = 0
-    for part in (trims, linear_models, same_bits, turbulence, gusts, autopilots, told, speed):
+    for part in (trims, linear_models, same_bits, turbulence, same_air, gusts, autopilots, told, speed):
         part()
     print("c172x:", json.loads(fspid("simulate", "same.toml", "--format", "json", codes=(0, 1)).stdout)["controllers"][0]["verdict"])
 

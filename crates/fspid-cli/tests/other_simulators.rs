@@ -397,6 +397,8 @@ fn a_simulator_begins_in_the_wind_of_its_start_and_hears_of_its_changes() {
     rewrite(path, "windy.toml", &[FASTER, ("amplitude_deg = 2.0", "amplitude_deg = 0.0")], steady);
     let output = fspid(path, &python, &["simulate", "windy.toml", "--trace", "t.csv"]);
     assert!(code(&output) < 2, "{}", text(&output.stderr));
+    // A wind that is the same everywhere turns nothing, and nothing of it is left out.
+    assert!(!text(&output.stderr).contains("rates"), "{}", text(&output.stderr));
     let trace = columns(path, "t.csv");
     let (sine, cosine) = (30.0_f64).to_radians().sin_cos();
     let pitch_rad: Vec<f64> = trace("attitude_deg").into_iter().map(f64::to_radians).collect();

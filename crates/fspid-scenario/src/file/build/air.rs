@@ -50,7 +50,8 @@ pub(super) fn weather(
         winds: winds(report, files, (section, way)),
         turbulence: turbulence(report, files, (section.get(TURBULENCE), way)),
     };
-    if external.is_some() && !calm {
+    let is_steady = weather.winds.iter().all(|wind| matches!(wind, Wind::Steady(_)));
+    if external.is_some() && !(is_steady && weather.turbulence.is_none()) {
         report.warn(WITHOUT_RATES.to_owned());
     }
     let has_course = matches!(flown.plant, Plant::Aircraft(_));
