@@ -47,6 +47,12 @@ impl<M: ForceModel> Aircraft<M> {
         Ok(Self { mass, model, environment })
     }
 
+    /// The same of properties that are known to be those of a body.
+    #[inline(always)]
+    pub(crate) fn of(mass: MassProperties, model: M, environment: Environment) -> Self {
+        Self { mass, model, environment }
+    }
+
     /// The same aircraft elsewhere.
     #[must_use]
     pub fn in_environment(self, environment: Environment) -> Self {
@@ -81,14 +87,19 @@ impl<M: ForceModel> Aircraft<M> {
     /// $$ v_a = v - R^T v_{wind} - v_{gust}, \quad \omega_a = \omega - \omega_{gust} $$
     #[must_use]
     pub fn flow(&self, state: &RigidState, motion: &AirMotion) -> Flow {
-        let wind_body_m_s = state.attitude.to_body(motion.wind_ned_m_s);
         let altitude_m = state.altitude_m();
-        Flow::new(
+        let [velocity_m_s, rates_rad_s] = Self::through_air(state, motion);
+        Flow::new(velocity_m_s, rates_rad_s, altitude_m, self.environment.air_at(altitude_m))
+    }
+
+    /// Velocity and rates through the air in body axes.
+    #[inline(always)]
+    pub(crate) fn through_air(state: &RigidState, motion: &AirMotion) -> [Vector3; 2] {
+        let wind_body_m_s = state.attitude.to_body(motion.wind_ned_m_s);
+        [
             state.velocity_body_m_s - wind_body_m_s - motion.gust_body_m_s,
             state.rates_rad_s - motion.gust_rates_rad_s,
-            altitude_m,
-            self.environment.air_at(altitude_m),
-        )
+        ]
     }
 
     /// Everything at one instant.
@@ -101,7 +112,19 @@ impl<M: ForceModel> Aircraft<M> {
     /// The rate is that of the aircraft through the steady wind; the gust's own change is left to the gust rates.
     #[must_use]
     pub fn instant(&self, state: &RigidState, controls: &Controls, motion: &AirMotion) -> Instant {
-        let flow = self.flow(state, motion);
+        self.instant_in(self.flow(state, motion), state, controls, motion)
+    }
+
+    /// [`instant`](Self::instant) in the [`flow`](Self::flow) that is there, for who knows it already.
+    #[inline(always)]
+    #[must_use]
+    pub fn instant_in(
+        &self,
+        flow: Flow,
+        state: &RigidState,
+        controls: &Controls,
+        motion: &AirMotion,
+    ) -> Instant {
         let steady = self.model.loads(&flow, controls);
         let per_rate = self.model.loads_per_alpha_rate(&flow);
         let without = self.accelerations(state, steady);
@@ -114,12 +137,14 @@ impl<M: ForceModel> Aircraft<M> {
         Instant { flow, loads, accelerations, alpha_rate_rad_s }
     }
 
+    #[inline(always)]
     fn accelerations(&self, state: &RigidState, loads: Loads) -> Accelerations {
         let gravity = self.environment.gravity_m_s2;
         state.accelerations(&self.mass, gravity, loads.force_n, loads.moment_n_m)
     }
 
     /// Rate of change of the velocity through the wind: in body axes a steady wind turns against the body.
+    #[inline(always)]
     fn relative_acceleration(
         &self,
         state: &RigidState,

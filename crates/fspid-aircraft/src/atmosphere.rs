@@ -3,6 +3,8 @@
 //! Altitudes are geopotential: over a flat Earth of constant gravity there is no other. [`geopotential_altitude_m`]
 //! converts what a radar would measure. Not for days hotter than standard, humidity, or above 84.852 km.
 
+use fspid_numeric::straight;
+
 use crate::error::AircraftError;
 
 /// Standard gravity in m/s².
@@ -30,6 +32,9 @@ pub const SEA_LEVEL_PRESSURE_PA: f64 = 101_325.0;
 
 /// Density of the standard atmosphere at sea level, kg/m³.
 pub const SEA_LEVEL_DENSITY_KG_M3: f64 = 1.225;
+
+/// $g_0 / R$, K/m.
+const SCALE_K_M: f64 = STANDARD_GRAVITY_M_S2 / GAS_CONSTANT_J_KG_K;
 
 /// Temperature at sea level in K.
 const SEA_LEVEL_TEMPERATURE_K: f64 = 288.15;
@@ -127,6 +132,19 @@ impl Air {
         Self::of(base.temperature_k, base.pressure_pa)
     }
 
+    /// The air of the lowest layer, by the straight power: the bits of [`standard`](Self::standard) where the answer is true.
+    #[inline(always)]
+    pub(crate) fn in_lowest_layer(altitude_m: f64) -> (Self, bool) {
+        let [lowest, next, ..] = &LAYERS;
+        let base =
+            Base { temperature_k: SEA_LEVEL_TEMPERATURE_K, pressure_pa: SEA_LEVEL_PRESSURE_PA };
+        let (share, power) = lowest.power(base, altitude_m);
+        let ratio = straight::pow(share, power);
+        let Base { temperature_k, pressure_pa } = lowest.with_ratio(base, altitude_m, ratio);
+        let is_here = (altitude_m >= ALTITUDE_MIN_M) & (altitude_m <= next.base_m);
+        (Self::of(temperature_k, pressure_pa), is_here & straight::is_straight_pow(share, ratio))
+    }
+
     /// Air in which nothing can be computed: every number is NaN.
     pub(crate) const fn unknown() -> Self {
         Self {
@@ -148,16 +166,28 @@ struct Base {
 impl Layer {
     /// The air at an altitude, from that at the layer's base.
     fn above(&self, base: Base, altitude_m: f64) -> Base {
-        let Base { temperature_k, pressure_pa } = base;
-        let above_m = altitude_m - self.base_m;
-        let change_k = self.lapse_k_m * above_m;
-        let scale_k_m = STANDARD_GRAVITY_M_S2 / GAS_CONSTANT_J_KG_K;
         let ratio = if self.lapse_k_m == 0.0 {
-            libm::exp(-scale_k_m * above_m / temperature_k)
+            let above_m = altitude_m - self.base_m;
+            libm::exp(-SCALE_K_M * above_m / base.temperature_k)
         } else {
-            let exponent = -scale_k_m / self.lapse_k_m;
-            libm::pow(1.0 + change_k / temperature_k, exponent)
+            let (share, power) = self.power(base, altitude_m);
+            libm::pow(share, power)
         };
+        self.with_ratio(base, altitude_m, ratio)
+    }
+
+    /// The power that the ratio of the pressures is, where temperature changes.
+    #[inline(always)]
+    fn power(&self, base: Base, altitude_m: f64) -> (f64, f64) {
+        let change_k = self.lapse_k_m * (altitude_m - self.base_m);
+        (1.0 + change_k / base.temperature_k, -SCALE_K_M / self.lapse_k_m)
+    }
+
+    /// The air at an altitude with this ratio of its pressure to that of the base.
+    #[inline(always)]
+    fn with_ratio(&self, base: Base, altitude_m: f64, ratio: f64) -> Base {
+        let Base { temperature_k, pressure_pa } = base;
+        let change_k = self.lapse_k_m * (altitude_m - self.base_m);
         Base { temperature_k: temperature_k + change_k, pressure_pa: pressure_pa * ratio }
     }
 }
@@ -190,6 +220,11 @@ impl Environment {
     pub fn uniform(gravity_m_s2: f64, density_kg_m3: f64, speed_of_sound_m_s: f64) -> Self {
         let air = Air::with_density(density_kg_m3, speed_of_sound_m_s);
         Self { gravity_m_s2, air: AirModel::Uniform(air) }
+    }
+
+    /// True in the standard atmosphere.
+    pub(crate) fn is_standard(&self) -> bool {
+        self.air == AirModel::Standard
     }
 
     /// Air at a geopotential altitude; all NaN outside of the standard atmosphere.

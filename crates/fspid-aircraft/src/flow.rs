@@ -43,6 +43,8 @@ pub struct Flow {
     pub airspeed_m_s: f64,
     /// Angle of attack, air from below positive.
     pub alpha_rad: f64,
+    /// Sine and cosine of the angle of attack.
+    pub alpha_sin_cos: (f64, f64),
     /// Sideslip, air from the right positive.
     pub beta_rad: f64,
     /// Geopotential altitude.
@@ -65,12 +67,14 @@ impl Flow {
         air: Air,
     ) -> Self {
         let Vector3 { x: u, y: v, z: w } = velocity_body_m_s;
+        let alpha_rad = libm::atan2(w, u);
         Self {
             velocity_body_m_s,
             rates_rad_s,
             airspeed_m_s: velocity_body_m_s.norm(),
-            alpha_rad: libm::atan2(w, u),
-            beta_rad: libm::atan2(v, (u * u + w * w).sqrt()),
+            alpha_rad,
+            alpha_sin_cos: libm::sincos(alpha_rad),
+            beta_rad: libm::atan2(v, ahead_m_s(velocity_body_m_s)),
             altitude_m,
             air,
         }
@@ -79,6 +83,7 @@ impl Flow {
     /// Dynamic pressure.
     ///
     /// $$ \bar q = \tfrac{1}{2} \rho V^2 $$
+    #[inline(always)]
     #[must_use]
     pub fn dynamic_pressure_pa(&self) -> f64 {
         0.5 * self.air.density_kg_m3 * self.airspeed_m_s * self.airspeed_m_s
@@ -101,6 +106,7 @@ impl Flow {
     /// Rate of the angle of attack in rad/s when the velocity through the air changes like this; 0 at rest.
     ///
     /// $$ \dot\alpha = \frac{u \dot w - w \dot u}{u^2 + w^2} $$
+    #[inline(always)]
     #[must_use]
     pub fn alpha_rate_rad_s(&self, velocity_rate_body_m_s2: Vector3) -> f64 {
         let Vector3 { x: u, z: w, .. } = self.velocity_body_m_s;
@@ -108,4 +114,11 @@ impl Flow {
         let turning = u * velocity_rate_body_m_s2.z - w * velocity_rate_body_m_s2.x;
         if square == 0.0 { 0.0 } else { turning / square }
     }
+}
+
+/// Speed in the plane of symmetry, $\sqrt{u^2 + w^2}$.
+#[inline(always)]
+pub(crate) fn ahead_m_s(velocity_body_m_s: Vector3) -> f64 {
+    let Vector3 { x: u, z: w, .. } = velocity_body_m_s;
+    (u * u + w * w).sqrt()
 }

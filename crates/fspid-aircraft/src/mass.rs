@@ -43,6 +43,7 @@ impl MassProperties {
     }
 
     /// $\Gamma = I_x I_z - I_{xz}^2$.
+    #[inline(always)]
     fn determinant(&self) -> f64 {
         self.ix_kg_m2 * self.iz_kg_m2 - self.ixz_kg_m2 * self.ixz_kg_m2
     }
@@ -71,6 +72,7 @@ impl MassProperties {
     /// Angular momentum in kg m²/s at body rates, with the engine's.
     ///
     /// $$ H = (I_x p - I_{xz} r + h_E,\ I_y q,\ I_z r - I_{xz} p) $$
+    #[inline(always)]
     #[must_use]
     pub fn angular_momentum(&self, rates_rad_s: Vector3) -> Vector3 {
         let Vector3 { x: p, y: q, z: r } = rates_rad_s;
@@ -90,6 +92,7 @@ impl MassProperties {
     ///
     /// # Source
     /// Paper, Table 2. The paper prints r q for r p in pitch; with it a body gains energy out of nothing.
+    #[inline(always)]
     #[must_use]
     pub fn angular_acceleration(&self, rates_rad_s: Vector3, moment_n_m: Vector3) -> Vector3 {
         let turning = rates_rad_s.cross(self.angular_momentum(rates_rad_s));

@@ -54,20 +54,30 @@ impl Quaternion {
     /// Straight up or down, bank and heading are the same turn; then their split is arbitrary but finite.
     #[must_use]
     pub fn to_euler(self) -> EulerAngles {
-        let Self { w, x, y, z } = self.normalised();
-        // sin θ and cos θ apart: an arc sine alone loses half the digits near ±90°.
-        let forward_north = 1.0 - 2.0 * (y * y + z * z);
-        let forward_east = 2.0 * (x * y + w * z);
-        let sin_theta = 2.0 * (w * y - x * z);
+        let [bank_y, bank_x, sin_theta, _, forward_east, forward_north] = self.angle_sides();
         let cos_theta = libm::hypot(forward_north, forward_east);
         EulerAngles {
-            phi_rad: libm::atan2(2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)),
+            phi_rad: libm::atan2(bank_y, bank_x),
             theta_rad: libm::atan2(sin_theta, cos_theta),
             psi_rad: libm::atan2(forward_east, forward_north),
         }
     }
 
+    /// What the angles of bank, pitch and heading are the arc tangents of: above, below. The cosine of the pitch is left open;
+    /// it is the length of the last two.
+    #[inline(always)]
+    pub(crate) fn angle_sides(self) -> [f64; 6] {
+        let Self { w, x, y, z } = self.normalised();
+        // sin θ and cos θ apart: an arc sine alone loses half the digits near ±90°.
+        let forward_north = 1.0 - 2.0 * (y * y + z * z);
+        let forward_east = 2.0 * (x * y + w * z);
+        let sin_theta = 2.0 * (w * y - x * z);
+        let (bank_y, bank_x) = (2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y));
+        [bank_y, bank_x, sin_theta, 0.0, forward_east, forward_north]
+    }
+
     /// The same rotation with length one.
+    #[inline(always)]
     #[must_use]
     pub fn normalised(self) -> Self {
         let scale = 1.0 / self.norm_squared().sqrt();
@@ -75,28 +85,33 @@ impl Quaternion {
     }
 
     /// Square of the length: 1 but for rounding.
+    #[inline(always)]
     #[must_use]
     pub fn norm_squared(self) -> f64 {
         self.w * self.w + self.x * self.x + self.y * self.y + self.z * self.z
     }
 
     /// A vector of body axes in north, east, down.
+    #[inline(always)]
     #[must_use]
     pub fn to_ned(self, body: Vector3) -> Vector3 {
         self.rotate(self.axis(), body)
     }
 
     /// A vector of north, east, down in body axes.
+    #[inline(always)]
     #[must_use]
     pub fn to_body(self, ned: Vector3) -> Vector3 {
         self.rotate(-self.axis(), ned)
     }
 
+    #[inline(always)]
     fn axis(self) -> Vector3 {
         Vector3::new(self.x, self.y, self.z)
     }
 
     /// $$ v' = v + \frac{2}{|q|^2} \left( w a \times v + a \times (a \times v) \right) $$
+    #[inline(always)]
     fn rotate(self, axis: Vector3, vector: Vector3) -> Vector3 {
         let turned = axis.cross(vector);
         let scale = 2.0 / self.norm_squared();
@@ -106,6 +121,7 @@ impl Quaternion {
     /// Rate of change at body rates in rad/s; its length is kept by it.
     ///
     /// $$ \dot q = \tfrac{1}{2} q \otimes (0, p, q, r) $$
+    #[inline(always)]
     #[must_use]
     pub fn rate(self, rates_rad_s: Vector3) -> Self {
         let Vector3 { x: roll, y: pitch, z: yaw } = 0.5 * rates_rad_s;

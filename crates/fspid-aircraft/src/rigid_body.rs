@@ -30,6 +30,7 @@ impl RigidState {
     };
 
     /// Position, velocity, attitude (scalar first), rates: the order of a flight's state vector.
+    #[inline(always)]
     #[must_use]
     pub fn to_array(&self) -> [f64; RIGID_STATES] {
         let [north, east, down] = self.position_ned_m.to_array();
@@ -40,6 +41,7 @@ impl RigidState {
     }
 
     /// The inverse of [`RigidState::to_array`].
+    #[inline(always)]
     #[must_use]
     pub fn from_array(values: &[f64; RIGID_STATES]) -> Self {
         let [north, east, down, u, v, w, qw, qx, qy, qz, p, q, r] = *values;
@@ -52,6 +54,7 @@ impl RigidState {
     }
 
     /// Altitude over the origin.
+    #[inline(always)]
     #[must_use]
     pub fn altitude_m(&self) -> f64 {
         -self.position_ned_m.z
@@ -64,6 +67,7 @@ impl RigidState {
     }
 
     /// Velocity over the ground: north, east, down.
+    #[inline(always)]
     #[must_use]
     pub fn velocity_ned_m_s(&self) -> Vector3 {
         self.attitude.to_ned(self.velocity_body_m_s)
@@ -74,6 +78,7 @@ impl RigidState {
     /// `velocity_rate_body_m_s2` is the rate of change of the components u, v, w, not the acceleration in space.
     ///
     /// $$ \dot x_{NED} = R v, \quad \dot q = \tfrac{1}{2} q \otimes (0, \omega) $$
+    #[inline(always)]
     #[must_use]
     pub fn rate(&self, accelerations: &Accelerations) -> [f64; RIGID_STATES] {
         Self {
@@ -91,6 +96,7 @@ impl RigidState {
     ///
     /// # Source
     /// Paper, Table 2, with r p in the pitching moment.
+    #[inline(always)]
     #[must_use]
     pub fn accelerations(
         &self,

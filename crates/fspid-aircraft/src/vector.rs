@@ -18,6 +18,7 @@ impl Vector3 {
     pub const ZERO: Self = Self::new(0.0, 0.0, 0.0);
 
     /// Vector of three components.
+    #[inline(always)]
     #[must_use]
     pub const fn new(x: f64, y: f64, z: f64) -> Self {
         Self { x, y, z }
@@ -30,12 +31,14 @@ impl Vector3 {
     }
 
     /// Scalar product.
+    #[inline(always)]
     #[must_use]
     pub fn dot(self, other: Self) -> f64 {
         self.x * other.x + self.y * other.y + self.z * other.z
     }
 
     /// Vector product, right-handed.
+    #[inline(always)]
     #[must_use]
     pub fn cross(self, other: Self) -> Self {
         Self::new(
@@ -46,6 +49,7 @@ impl Vector3 {
     }
 
     /// Length.
+    #[inline(always)]
     #[must_use]
     pub fn norm(self) -> f64 {
         self.dot(self).sqrt()
@@ -61,6 +65,7 @@ impl From<[f64; 3]> for Vector3 {
 impl Add for Vector3 {
     type Output = Self;
 
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         Self::new(self.x + other.x, self.y + other.y, self.z + other.z)
     }
@@ -69,6 +74,7 @@ impl Add for Vector3 {
 impl Sub for Vector3 {
     type Output = Self;
 
+    #[inline(always)]
     fn sub(self, other: Self) -> Self {
         Self::new(self.x - other.x, self.y - other.y, self.z - other.z)
     }
@@ -77,6 +83,7 @@ impl Sub for Vector3 {
 impl Neg for Vector3 {
     type Output = Self;
 
+    #[inline(always)]
     fn neg(self) -> Self {
         Self::new(-self.x, -self.y, -self.z)
     }
@@ -85,6 +92,7 @@ impl Neg for Vector3 {
 impl Mul<Vector3> for f64 {
     type Output = Vector3;
 
+    #[inline(always)]
     fn mul(self, vector: Vector3) -> Vector3 {
         Vector3::new(self * vector.x, self * vector.y, self * vector.z)
     }

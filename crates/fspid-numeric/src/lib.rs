@@ -7,6 +7,7 @@
 //! - [`lanes`]: numbers side by side.
 //! - [`matrix`](mod@matrix): triangles, rotations and balancing of small matrices, over slices.
 //! - [`quadrature`]: integrals with bounds that are proved.
+//! - [`straight`]: elementary functions that a loop over lanes makes vectors of.
 //!
 //! | feature | adds | needs |
 //! | --- | --- | --- |
@@ -30,6 +31,7 @@ pub mod matrix;
 pub mod quadrature;
 mod real;
 pub mod scalar;
+pub mod straight;
 #[cfg(feature = "simd")]
 mod vector;
 

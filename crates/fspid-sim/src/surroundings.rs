@@ -142,7 +142,7 @@ impl TurbulenceWalk {
         while self.shaping.tick() < tick {
             let time_s = (self.shaping.tick() + 1) as f64 * GRID_S;
             let height_m = self.course.place(time_s).height_m;
-            self.shaping.advance(height_m, self.course.airspeed_m_s);
+            self.shaping.advance(height_m, || self.course.airspeed_m_s);
         }
         self.course.longitudinal(&self.shaping.motion())
     }

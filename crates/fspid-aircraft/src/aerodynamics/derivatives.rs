@@ -137,6 +137,7 @@ pub struct DerivativeModel {
 
 impl LongitudinalCoefficient {
     /// Value without the angle of attack's rate.
+    #[inline(always)]
     fn steady(&self, variables: &Variables) -> f64 {
         self.reference
             + self.alpha * variables.alpha_rad
@@ -147,6 +148,7 @@ impl LongitudinalCoefficient {
 }
 
 impl LateralCoefficient {
+    #[inline(always)]
     fn value(&self, variables: &Variables) -> f64 {
         self.beta * variables.beta_rad
             + self.roll_rate * variables.roll
@@ -170,6 +172,7 @@ struct Variables {
 }
 
 impl DerivativeModel {
+    #[inline(always)]
     fn variables(&self, flow: &Flow, controls: &Controls) -> Variables {
         let half_span_s = half_time_s(self.geometry.span_m, flow);
         Variables {
@@ -185,10 +188,12 @@ impl DerivativeModel {
         }
     }
 
+    #[inline(always)]
     fn relative_speed(&self, flow: &Flow) -> f64 {
         (flow.airspeed_m_s - self.reference_airspeed_m_s) / self.reference_airspeed_m_s
     }
 
+    #[inline(always)]
     fn drag(&self, variables: &Variables) -> f64 {
         let tangent = self.longitudinal.drag.steady(variables);
         match self.drag_law {
@@ -198,19 +203,22 @@ impl DerivativeModel {
     }
 
     /// Parabola less tangent: $k (C_{L_\alpha} \alpha)^2$.
+    #[inline(always)]
     fn polar_excess(&self, alpha_rad: f64) -> f64 {
         let Longitudinal { lift, drag, .. } = &self.longitudinal;
         0.5 * drag.alpha / lift.reference * lift.alpha * alpha_rad * alpha_rad
     }
 
     /// Lift and drag coefficients as a force, without the side force.
+    #[inline(always)]
     fn force(&self, flow: &Flow, lift: f64, drag: f64) -> Vector3 {
-        let (sin, cos) = libm::sincos(flow.alpha_rad);
+        let (sin, cos) = flow.alpha_sin_cos;
         let scale_n = flow.dynamic_pressure_pa() * self.geometry.area_m2;
         scale_n * Vector3::new(lift * sin - drag * cos, 0.0, -lift * cos - drag * sin)
     }
 
     /// Rolling, pitching and yawing moment coefficients as a moment.
+    #[inline(always)]
     fn moment(&self, flow: &Flow, roll: f64, pitch: f64, yaw: f64) -> Vector3 {
         let Geometry { area_m2, span_m, chord_m } = self.geometry;
         let scale_n = flow.dynamic_pressure_pa() * area_m2;
@@ -219,11 +227,13 @@ impl DerivativeModel {
 }
 
 /// Time in s in which half a length is flown; 0 at rest, where rates have no effect.
+#[inline(always)]
 fn half_time_s(length_m: f64, flow: &Flow) -> f64 {
     if flow.airspeed_m_s == 0.0 { 0.0 } else { 0.5 * length_m / flow.airspeed_m_s }
 }
 
 impl ForceModel for DerivativeModel {
+    #[inline(always)]
     fn loads(&self, flow: &Flow, controls: &Controls) -> Loads {
         let variables = self.variables(flow, controls);
         let Longitudinal { lift, pitch, .. } = &self.longitudinal;
@@ -242,6 +252,7 @@ impl ForceModel for DerivativeModel {
         }
     }
 
+    #[inline(always)]
     fn loads_per_alpha_rate(&self, flow: &Flow) -> Loads {
         let half_chord_s = half_time_s(self.geometry.chord_m, flow);
         let Longitudinal { lift, drag, pitch, .. } = &self.longitudinal;
@@ -255,6 +266,7 @@ impl ForceModel for DerivativeModel {
         }
     }
 
+    #[inline(always)]
     fn thrust_n(&self, flow: &Flow, controls: &Controls) -> f64 {
         let reference_n = match self.thrust_law {
             ThrustLaw::Constant => self.reference_thrust_n,

@@ -23,6 +23,7 @@ pub struct Loads {
 
 impl Loads {
     /// These loads and others together.
+    #[inline(always)]
     #[must_use]
     pub fn plus(self, other: Self) -> Self {
         Self {
@@ -32,6 +33,7 @@ impl Loads {
     }
 
     /// These loads times a factor.
+    #[inline(always)]
     #[must_use]
     pub fn scaled(self, factor: f64) -> Self {
         Self { force_n: factor * self.force_n, moment_n_m: factor * self.moment_n_m }

@@ -18,7 +18,7 @@ pub(super) enum Kind {
 /// Of $1 / \omega_n$: length of a piece that the response of second order is computed in.
 const PIECE: f64 = 1.0 / 16.0;
 /// Terms of its series; a piece leaves less than 10⁻¹⁸ behind them.
-const TERMS: u32 = 11;
+const TERMS: usize = 11;
 
 impl Lag {
     /// No lag: the position is the command.
@@ -130,35 +130,65 @@ impl Lag {
         pieces.max(1)
     }
 
-    /// Position and rate (0 below second order) a piece of time later, with the command held at
-    /// `target_rad`.
-    pub(super) fn after(
-        &self,
-        [position_rad, rate_rad_s]: [f64; 2],
-        target_rad: f64,
-        time_s: f64,
-    ) -> [f64; 2] {
-        let gap_rad = target_rad - position_rad;
+    /// A piece of time, for [`after`](Self::after): what does not depend on where the actuator is.
+    pub(super) fn piece(&self, time_s: f64) -> Piece {
         match self.0 {
-            Kind::None => [target_rad, 0.0],
+            Kind::None => Piece::AtOnce,
             Kind::First { time_constant_s } => {
-                let covered = -libm::expm1(-time_s / time_constant_s);
-                [position_rad + gap_rad * covered, 0.0]
+                Piece::First { covered: -libm::expm1(-time_s / time_constant_s) }
             }
             Kind::Second { natural_frequency_rad_s: wn, damping } => {
-                let (x, rate) = series([-gap_rad, rate_rad_s / wn], damping, wn * time_s);
+                Piece::Second { wn, damping, powers: powers(wn * time_s) }
+            }
+        }
+    }
+
+    /// Position and rate (0 below second order) a piece of time later, with the command held at
+    /// `target_rad`.
+    pub(super) fn after(&self, from: [f64; 2], target_rad: f64, time_s: f64) -> [f64; 2] {
+        self.piece(time_s).after(from, target_rad)
+    }
+}
+
+/// A piece of time as a lag passes through it.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Piece {
+    AtOnce,
+    First { covered: f64 },
+    Second { wn: f64, damping: f64, powers: [f64; TERMS] },
+}
+
+impl Piece {
+    /// Position and rate (0 below second order) behind it, with the command held at `target_rad`.
+    pub(super) fn after(&self, [position_rad, rate_rad_s]: [f64; 2], target_rad: f64) -> [f64; 2] {
+        let gap_rad = target_rad - position_rad;
+        match self {
+            Self::AtOnce => [target_rad, 0.0],
+            Self::First { covered } => [position_rad + gap_rad * covered, 0.0],
+            Self::Second { wn, damping, powers } => {
+                let (x, rate) = series([-gap_rad, rate_rad_s / wn], *damping, powers);
                 [position_rad + x, wn * rate]
             }
         }
     }
 }
 
-/// Change of x and rate of x'' + 2 ζ x' + x = 0 over `time`, by its Taylor series.
-fn series([x, rate]: [f64; 2], damping: f64, time: f64) -> (f64, f64) {
+/// $t^n / n!$ from n = 1 on.
+fn powers(time: f64) -> [f64; TERMS] {
+    let mut power = 1.0;
+    let mut term = 0.0;
+    [(); TERMS].map(|()| {
+        term += 1.0;
+        power *= time / term;
+        power
+    })
+}
+
+/// Change of x and rate of x'' + 2 ζ x' + x = 0 over a time, by its Taylor series.
+fn series([x, rate]: [f64; 2], damping: f64, powers: &[f64; TERMS]) -> (f64, f64) {
     let (mut here, mut next) = (x, rate);
-    let (mut change, mut rate_sum, mut power) = (0.0, rate, 1.0);
-    for term in 1..=TERMS {
-        power *= time / f64::from(term);
+    let (mut change, mut rate_sum) = (0.0, rate);
+    for power in powers {
         (here, next) = (next, -here - 2.0 * damping * next);
         change += here * power;
         rate_sum += next * power;

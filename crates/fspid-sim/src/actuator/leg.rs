@@ -198,13 +198,15 @@ impl Actuator {
     ) -> f64 {
         let pieces = self.lag.pieces(left_s);
         let piece_s = left_s / f64::from(pieces);
+        let whole = self.lag.piece(piece_s);
         for piece in 0..pieces {
             let from = [state.position_rad, state.rate_rad_s];
-            let at = |time_s: f64| self.lag.after(from, target_rad, time_s);
-            if self.event(state, direction, at(piece_s)).is_none() {
-                [state.position_rad, state.rate_rad_s] = at(piece_s);
+            let behind = whole.after(from, target_rad);
+            if self.event(state, direction, behind).is_none() {
+                [state.position_rad, state.rate_rad_s] = behind;
                 continue;
             }
+            let at = |time_s: f64| self.lag.after(from, target_rad, time_s);
             let (mut before_s, mut event_s) = (0.0, piece_s);
             for _ in 0..HALVINGS {
                 let middle_s = 0.5 * (before_s + event_s);

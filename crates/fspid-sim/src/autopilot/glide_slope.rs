@@ -83,6 +83,7 @@ mod tests {
             altitude_m,
             vertical_speed_m_s: 0.0,
             ground_speed_m_s: 70.0,
+            path_rad: 0.0,
             airspeed_m_s: 70.0,
             path_acceleration_m_s2: 0.0,
             north_m,

@@ -10,6 +10,8 @@ pub(crate) struct Observed {
     pub(crate) vertical_speed_m_s: f64,
     /// Over the ground.
     pub(crate) ground_speed_m_s: f64,
+    /// Angle of the path over the horizon, climbing positive.
+    pub(crate) path_rad: f64,
     /// True.
     pub(crate) airspeed_m_s: f64,
     /// Acceleration along the path over the ground, m/s².
@@ -27,19 +29,13 @@ impl From<&AircraftSample> for Observed {
             altitude_m: sample.altitude_m,
             vertical_speed_m_s: sample.climb_m_s,
             ground_speed_m_s: sample.ground_speed_m_s,
+            path_rad: sample.flight_path_rad,
             airspeed_m_s: sample.airspeed_m_s,
             path_acceleration_m_s2: sample.path_acceleration_m_s2,
             north_m,
             east_m,
             heading_rad: sample.heading_rad,
         }
-    }
-}
-
-impl Observed {
-    /// Angle of the path over the horizon, climbing positive, rad.
-    pub(crate) fn path_rad(&self) -> f64 {
-        libm::atan2(self.vertical_speed_m_s, self.ground_speed_m_s)
     }
 }
 
@@ -95,7 +91,7 @@ impl Quantity {
         match self {
             Self::Altitude => observed.altitude_m,
             Self::VerticalSpeed => observed.vertical_speed_m_s,
-            Self::FlightPath => observed.path_rad(),
+            Self::FlightPath => observed.path_rad,
             Self::Airspeed => observed.airspeed_m_s,
             Self::GlideSlope => above_beam_m,
             Self::Heading => observed.heading_rad,

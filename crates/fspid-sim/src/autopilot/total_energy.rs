@@ -55,7 +55,7 @@ impl TotalEnergy {
         let speeding = (wanted_m_s2 / STANDARD_GRAVITY_M_S2)
             .clamp(-self.most_acceleration_g, self.most_acceleration_g);
         let (path_found, speeding_found) =
-            (observed.path_rad(), observed.path_acceleration_m_s2 / STANDARD_GRAVITY_M_S2);
+            (observed.path_rad, observed.path_acceleration_m_s2 / STANDARD_GRAVITY_M_S2);
         [
             Rates { commanded: path + speeding, found: path_found + speeding_found },
             Rates { commanded: path - speeding, found: path_found - speeding_found },

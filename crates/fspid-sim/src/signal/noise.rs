@@ -2,6 +2,8 @@
 
 use std::cell::RefCell;
 
+use fearless_simd::dispatch;
+use fspid_numeric::{InstructionSet, straight};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
@@ -61,12 +63,35 @@ fn drawn(of: BlockOf) -> [f64; AT_ONCE] {
     let mut generator = ChaCha8Rng::seed_from_u64(of.seed);
     generator.set_stream(of.stream);
     generator.set_word_pos((of.block * AT_ONCE) as u128 * WORDS);
-    std::array::from_fn(|_| {
+    let bits = [(); AT_ONCE].map(|()| [generator.next_u64(), generator.next_u64()]);
+    let mut numbers = [0.0; AT_ONCE];
+    dispatch!(InstructionSet::best().level(), _simd => transform(&bits, &mut numbers));
+    numbers
+}
+
+/// Normal numbers from random bits, with the bits of `libm`.
+#[inline(always)]
+fn transform(bits: &[[u64; 2]; AT_ONCE], numbers: &mut [f64; AT_ONCE]) {
+    let (mut radius, mut angle_rad) = ([0.0; AT_ONCE], [0.0; AT_ONCE]);
+    for ([of_radius, of_angle], (radius, angle_rad)) in
+        bits.iter().zip(radius.iter_mut().zip(&mut angle_rad))
+    {
         // In (0, 1], so that the logarithm is finite.
-        let radius = unit(generator.next_u64()) + UNIT;
-        let angle = unit(generator.next_u64());
-        libm::sqrt(-2.0 * libm::log(radius)) * libm::cos(std::f64::consts::TAU * angle)
-    })
+        *radius = unit(*of_radius) + UNIT;
+        *angle_rad = std::f64::consts::TAU * unit(*of_angle);
+    }
+    let mut all_straight = true;
+    for place in 0..AT_ONCE {
+        all_straight &= straight::is_straight_cos_of_turn(angle_rad[place]);
+        let length = (-2.0 * straight::ln_of_normal(radius[place])).sqrt();
+        numbers[place] = length * straight::cos_of_turn(angle_rad[place]);
+    }
+    if !all_straight {
+        for place in 0..AT_ONCE {
+            let length = (-2.0 * libm::log(radius[place])).sqrt();
+            numbers[place] = length * libm::cos(angle_rad[place]);
+        }
+    }
 }
 
 /// 2^-53.

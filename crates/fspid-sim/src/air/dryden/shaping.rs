@@ -38,10 +38,11 @@ impl Shaping {
         self.tick
     }
 
-    /// On to the next time of the grid, reached at a height above the ground with an airspeed.
-    pub(crate) fn advance(&mut self, height_m: f64, airspeed_m_s: f64) {
+    /// On to the next time of the grid, reached at a height above the ground with an airspeed, which is asked for where it
+    /// counts.
+    pub(crate) fn advance(&mut self, height_m: f64, airspeed_m_s: impl FnOnce() -> f64) {
         if self.turbulence.follows == Follows::Flight {
-            self.follow(height_m, airspeed_m_s);
+            self.follow(height_m, airspeed_m_s());
         }
         self.tick += 1;
         self.filters.advance(&mut self.state, self.tick);
@@ -88,7 +89,7 @@ mod tests {
     fn gusts(follows: Follows, height_m: impl Fn(usize) -> f64) -> Vec<f64> {
         let mut shaping = Shaping::start(&turbulence(height_m(0), follows)).expect("allowed");
         let mut next = |tick| {
-            shaping.advance(height_m(tick), 60.0);
+            shaping.advance(height_m(tick), || 60.0);
             shaping.motion().body_m_s[2]
         };
         (1..=6000).map(&mut next).collect()
@@ -116,7 +117,7 @@ mod tests {
         for (height_m, airspeed_m_s) in
             [(f64::NAN, 60.0), (-50.0, 0.0), (1e9, 1e5), (0.0, f64::NAN)]
         {
-            shaping.advance(height_m, airspeed_m_s);
+            shaping.advance(height_m, || airspeed_m_s);
             assert!(shaping.motion().body_m_s.iter().all(|value| value.is_finite()));
         }
     }

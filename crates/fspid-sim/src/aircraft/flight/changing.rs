@@ -2,7 +2,7 @@
 
 use fspid_aircraft::aerodynamics::varied::VariedModel;
 use fspid_aircraft::integrate::rk4;
-use fspid_aircraft::{Controls, ForceModel, Instant, MassProperties, RIGID_STATES, RigidState};
+use fspid_aircraft::{Controls, Flow, ForceModel, Instant, MassProperties, RIGID_STATES, RigidState};
 
 use super::{AircraftFlight, Holding, MOST_TRIES, Moving, STATES, Way, joined, parted, place};
 use crate::aircraft::changing::{Changing, Fuel, Shown};
@@ -182,9 +182,10 @@ impl AircraftFlight {
         all
     }
 
-    /// Everything at one instant of the motion.
-    pub(super) fn instant(
+    /// Everything at one instant of the motion, in the flow that is there.
+    pub(super) fn instant_in(
         &self,
+        flow: Flow,
         body: &Moving,
         controls: &Controls,
         air: &fspid_aircraft::AirMotion,
@@ -192,9 +193,9 @@ impl AircraftFlight {
         match self.varying() {
             Some(varying) => {
                 let now = varying.at(self, body.time_s, body.burnt_kg);
-                now.instant(&body.state, controls, air)
+                now.instant_in(flow, &body.state, controls, air)
             }
-            None => self.aircraft().instant(&body.state, controls, air),
+            None => self.aircraft().instant_in(flow, &body.state, controls, air),
         }
     }
 }

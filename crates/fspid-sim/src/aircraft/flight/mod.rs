@@ -5,7 +5,7 @@ mod numbers;
 
 use fspid_aircraft::integrate::rk4;
 use fspid_aircraft::{
-    AirMotion, Aircraft, Controls, EulerAngles, ForceModel, Gearing, Instant, Quaternion,
+    AirMotion, Aircraft, Controls, EulerAngles, Flow, ForceModel, Gearing, Instant, Quaternion,
     RIGID_STATES, RigidState, Spool, Vector3,
 };
 
@@ -65,6 +65,15 @@ pub(crate) struct AircraftMotion {
     /// Pitch less that of the trim, rad.
     theta_rad: f64,
     body: Moving,
+    sight: Sight,
+}
+
+/// What follows from where a body and its air are, and is asked for by many.
+#[derive(Clone, Copy, Debug)]
+struct Sight {
+    euler: EulerAngles,
+    /// The air as the aircraft meets it.
+    flow: Flow,
 }
 
 /// What moves between the times of the grid.
@@ -168,25 +177,39 @@ impl AircraftFlight {
     }
 
     pub(crate) fn at_rest(&self) -> AircraftMotion {
+        let body = Moving {
+            state: self.start,
+            distance_m: 0.0,
+            time_s: 0.0,
+            burnt_kg: 0.0,
+            power: self.gearing().power(self.plant.trim().controls.throttle),
+            actuator: ActuatorState::default(),
+        };
+        let turbulence = self.atmosphere.start_turbulence();
+        let sight = self.sight(&body, turbulence.as_ref());
         AircraftMotion {
             k: 0,
             tick: 0,
-            turbulence: self.atmosphere.start_turbulence(),
-            aileron_rad: self.aileron_rad(&self.start, 0.0),
-            rudder_rad: self.rudder_rad(&self.start),
+            aileron_rad: self.aileron_rad(&sight.euler, 0.0),
+            rudder_rad: self.rudder_rad(&self.start, &sight.euler),
             bank_rad: 0.0,
             is_steered: false,
             throttle: self.plant.trim().controls.throttle,
             theta_rad: 0.0,
-            body: Moving {
-                state: self.start,
-                distance_m: 0.0,
-                time_s: 0.0,
-                burnt_kg: 0.0,
-                power: self.gearing().power(self.plant.trim().controls.throttle),
-                actuator: ActuatorState::default(),
-            },
+            turbulence,
+            body,
+            sight,
         }
+    }
+
+    fn sight(&self, body: &Moving, turbulence: Option<&Shaping>) -> Sight {
+        let air = self.atmosphere.at(&self.place(body), held_motion(turbulence));
+        Sight { euler: body.state.euler(), flow: self.aircraft().flow(&body.state, &air) }
+    }
+
+    /// Looks again, where body or air are no longer what they were.
+    fn look(&self, motion: &mut AircraftMotion) {
+        motion.sight = self.sight(&motion.body, motion.turbulence.as_ref());
     }
 
     fn gearing(&self) -> Gearing {
@@ -217,15 +240,15 @@ impl AircraftFlight {
         travel.clamp(self.plant.trim().point.elevator_rad - deflection_rad)
     }
 
-    fn aileron_rad(&self, state: &RigidState, bank_rad: f64) -> f64 {
+    fn aileron_rad(&self, euler: &EulerAngles, bank_rad: f64) -> f64 {
         let travel = self.aircraft().model().travel().aileron_rad;
-        travel.clamp(self.leveller.aileron_rad(state.euler().phi_rad - bank_rad))
+        travel.clamp(self.leveller.aileron_rad(euler.phi_rad - bank_rad))
     }
 
-    fn rudder_rad(&self, state: &RigidState) -> f64 {
+    fn rudder_rad(&self, state: &RigidState, euler: &EulerAngles) -> f64 {
         let trimmed_rad = self.plant.trim().controls.rudder_rad;
         let Some(damper) = &self.damper else { return trimmed_rad };
-        let EulerAngles { phi_rad, theta_rad, .. } = state.euler();
+        let &EulerAngles { phi_rad, theta_rad, .. } = euler;
         let (sine, _) = crate::math::sin_cos(phi_rad);
         let (_, cosine) = crate::math::sin_cos(theta_rad);
         let speed_m_s = state.velocity_body_m_s.norm().max(1.0);
@@ -235,12 +258,12 @@ impl AircraftFlight {
     }
 
     /// Moves aileron and rudder to where leveller and damper have them now.
-    fn steer(&self, motion: &mut AircraftMotion) {
+    fn steer(&self, motion: &mut AircraftMotion, euler: &EulerAngles) {
         if motion.is_steered {
             return;
         }
-        motion.aileron_rad = self.aileron_rad(&motion.body.state, motion.bank_rad);
-        motion.rudder_rad = self.rudder_rad(&motion.body.state);
+        motion.aileron_rad = self.aileron_rad(euler, motion.bank_rad);
+        motion.rudder_rad = self.rudder_rad(&motion.body.state, euler);
     }
 
     /// Takes what an autopilot commands until the next sample.
@@ -275,48 +298,62 @@ impl AircraftFlight {
         let held = [command_rad, outside.elevator_rad];
         self.follow(motion, &outside.autopilot);
         if self.atmosphere.moves() {
-            for piece in self.grid.pieces(motion.k) {
-                self.reach(motion, piece.tick);
-                motion.body = self.way(motion.body, &holding(motion, held), piece.length_s);
+            for (number, piece) in self.grid.pieces(motion.k).enumerate() {
+                self.reach(motion, piece.tick, None);
+                // What was seen at the sample holds at its beginning alone.
+                let seen = (number == 0).then_some(motion.sight.flow);
+                let held = holding(motion, held);
+                motion.body = self.way(motion.body, &held, piece.length_s, seen);
             }
             motion.k += 1;
-            self.reach(motion, self.grid.tick(motion.k));
+            let euler = motion.body.state.euler();
+            self.reach(motion, self.grid.tick(motion.k), Some(&euler));
         } else {
+            let mut seen = Some(motion.sight.flow);
             for _ in 0..self.steps.count {
                 let held = holding(motion, held);
                 motion.body = match self.varying() {
-                    Some(_) => self.way(motion.body, &held, self.steps.step_s),
-                    None => self.stepped(&motion.body, &held, self.steps.step_s),
+                    Some(_) => self.way(motion.body, &held, self.steps.step_s, seen.take()),
+                    None => self.stepped(&motion.body, &held, self.steps.step_s, seen.take()),
                 };
-                self.steer(motion);
+                let euler = motion.body.state.euler();
+                self.steer(motion, &euler);
             }
             motion.k += 1;
         }
         // From the sample, not by a running sum.
         motion.body.time_s = motion.k as f64 * self.dt_s;
-        motion.theta_rad = motion.body.state.euler().theta_rad - self.trim_theta_rad;
+        self.look(motion);
+        motion.theta_rad = motion.sight.euler.theta_rad - self.trim_theta_rad;
     }
 
-    /// Takes the turbulence and the aileron of a time of the grid.
-    fn reach(&self, motion: &mut AircraftMotion, tick: usize) {
+    /// Takes the turbulence and the aileron of a time of the grid; angles of the body, if they are known.
+    fn reach(&self, motion: &mut AircraftMotion, tick: usize, known: Option<&EulerAngles>) {
         while motion.tick < tick {
             motion.tick += 1;
-            let height_m = self.place(&motion.body).height_m;
-            let airspeed_m_s =
-                self.aircraft().flow(&motion.body.state, &self.air(motion)).airspeed_m_s;
+            let (place, air) = (self.place(&motion.body), self.air(motion));
+            let state = &motion.body.state;
             if let Some(shaping) = &mut motion.turbulence {
-                shaping.advance(height_m, airspeed_m_s);
+                let airspeed_m_s = || self.aircraft().flow(state, &air).airspeed_m_s;
+                shaping.advance(place.height_m, airspeed_m_s);
             }
-            self.steer(motion);
+            let euler = known.copied().unwrap_or_else(|| state.euler());
+            self.steer(motion, &euler);
         }
     }
 
     /// A part of a period in moving air, cut where winds are not smooth.
-    fn way(&self, mut body: Moving, held: &Holding, length_s: f64) -> Moving {
+    fn way(
+        &self,
+        mut body: Moving,
+        held: &Holding,
+        length_s: f64,
+        mut seen: Option<Flow>,
+    ) -> Moving {
         let mut left_s = length_s;
         // Every corner is met once; the bound is for air that carries an aircraft to and fro.
         for _ in 0..MOST_CORNERS {
-            let next = self.stepped(&body, held, left_s);
+            let next = self.stepped(&body, held, left_s, seen.take());
             let Some(corner) = self.atmosphere.corner(&self.place(&body), &self.place(&next))
             else {
                 return next;
@@ -325,7 +362,7 @@ impl AircraftFlight {
             body = there;
             left_s -= step_s;
         }
-        self.stepped(&body, held, left_s)
+        self.stepped(&body, held, left_s, None)
     }
 
     /// The motion at a corner that a step of `most_s` passes, and how long a step reaches it: by regula falsi.
@@ -341,7 +378,7 @@ impl AircraftFlight {
         let mut found = (*body, 0.0);
         for _ in 0..MOST_TRIES {
             let step_s = before.0 + (after.0 - before.0) * before.1 / (before.1 - after.1);
-            found = (self.stepped(body, held, step_s), step_s);
+            found = (self.stepped(body, held, step_s, None), step_s);
             if corner.is_at(&self.place(&found.0)) {
                 break;
             }
@@ -355,8 +392,9 @@ impl AircraftFlight {
         found
     }
 
-    /// The motion after one step of Runge and Kutta, in the air of the place at each stage.
-    fn stepped(&self, body: &Moving, held: &Holding, step_s: f64) -> Moving {
+    /// The motion after one step of Runge and Kutta, in the air of the place at each stage; `seen` is the flow of the first
+    /// stage, if it is known.
+    fn stepped(&self, body: &Moving, held: &Holding, step_s: f64, seen: Option<Flow>) -> Moving {
         if let Some(varying) = self.varying() {
             return self.stepped_varying(varying, (body, held), step_s);
         }
@@ -368,7 +406,8 @@ impl AircraftFlight {
                 t if t < step_s => &middle,
                 _ => &end,
             };
-            self.rate((values, body.time_s + time_s), controls, held)
+            let seen = seen.filter(|_| time_s <= 0.0);
+            self.rate((values, body.time_s + time_s), controls, held, seen)
         };
         let values = rk4::step(rate, 0.0, &joined(body), step_s);
         let Way { state, distance_m, power } = parted(&values);
@@ -387,12 +426,15 @@ impl AircraftFlight {
         (values, time_s): (&[f64; STATES], f64),
         controls: &Controls,
         held: &Holding,
+        seen: Option<Flow>,
     ) -> [f64; STATES] {
         let Way { state, distance_m, power } = parted(values);
         let place = place(&state, &self.atmosphere, [distance_m, time_s]);
         let air = self.atmosphere.at(&place, held.turbulence);
         let throttle = self.acting_throttle(power, held.throttle);
-        let instant = self.aircraft().instant(&state, &Controls { throttle, ..*controls }, &air);
+        let controls = Controls { throttle, ..*controls };
+        let flow = seen.unwrap_or_else(|| self.aircraft().flow(&state, &air));
+        let instant = self.aircraft().instant_in(flow, &state, &controls, &air);
         let rates = state.rate(&instant.accelerations);
         let mut all = [0.0; STATES];
         all[..RIGID_STATES].copy_from_slice(&rates);
@@ -443,10 +485,10 @@ impl AircraftFlight {
         let throttle = self.fed_throttle(motion.body.burnt_kg, throttle);
         let &AircraftMotion { aileron_rad, rudder_rad, .. } = motion;
         let controls = Controls { elevator_rad, aileron_rad, rudder_rad, throttle };
-        let instant = self.instant(&motion.body, &controls, &air);
+        let Sight { euler: attitude, flow } = motion.sight;
+        let instant = self.instant_in(flow, &motion.body, &controls, &air);
         let felt = self.load_factors(&motion.body, &instant);
         let [north_m, east_m, _] = state.position_ned_m.to_array();
-        let attitude = state.euler();
         let over_ground_m_s = state.attitude.to_ned(state.velocity_body_m_s);
         let [over_north_m_s, over_east_m_s, sink_m_s] = over_ground_m_s.to_array();
         let climb_m_s = -sink_m_s;
@@ -473,7 +515,7 @@ impl AircraftFlight {
             path_acceleration_m_s2: path_acceleration_m_s2(state, &instant),
             air_rad_s: air.gust_rates_rad_s.to_array(),
             energy_height_m: self.energy_height_m(&instant),
-            apparent_vertical_rad: apparent_vertical_rad(state, felt),
+            apparent_vertical_rad: apparent_vertical_rad(state, attitude.psi_rad, felt),
             departure: self.departure(&motion.body, &instant),
             shown: self.shown(&motion.body),
         }
@@ -493,9 +535,9 @@ impl AircraftFlight {
 
 /// Angle between the true vertical and that of a pendulum, $\arctan(a_x / g)$ with the acceleration
 /// along the heading, rad.
-fn apparent_vertical_rad(state: &RigidState, load_factors: Vector3) -> f64 {
+fn apparent_vertical_rad(state: &RigidState, heading_rad: f64, load_factors: Vector3) -> f64 {
     let felt = state.attitude.to_ned(load_factors);
-    let (sine, cosine) = crate::math::sin_cos(state.euler().psi_rad);
+    let (sine, cosine) = crate::math::sin_cos(heading_rad);
     libm::atan2(felt.x * cosine + felt.y * sine, 1.0)
 }
 
@@ -516,7 +558,11 @@ const MOST_TRIES: usize = 20;
 
 /// The air's turbulence in a motion; none without.
 fn turbulence(motion: &AircraftMotion) -> air::AirMotion {
-    motion.turbulence.as_ref().map(Shaping::motion).unwrap_or_default()
+    held_motion(motion.turbulence.as_ref())
+}
+
+fn held_motion(turbulence: Option<&Shaping>) -> air::AirMotion {
+    turbulence.map(Shaping::motion).unwrap_or_default()
 }
 
 /// The yaw damper of a plant that has one.

@@ -36,6 +36,7 @@ impl AircraftFlight {
             3 => motion.body.state.rates_rad_s.y += by,
             _ => motion.body.actuator.nudge(place - 4, by),
         }
+        self.look(motion);
     }
 
     /// True for an engine that does not follow its throttle at once.
@@ -77,6 +78,8 @@ impl AircraftFlight {
             }
             _ => *power += by,
         }
-        self.steer(motion);
+        self.look(motion);
+        let euler = motion.sight.euler;
+        self.steer(motion, &euler);
     }
 }
