@@ -197,6 +197,12 @@ impl Instant {
     /// In level flight the third is near −1; pilots quote its negative.
     #[must_use]
     pub fn load_factors(&self, mass_kg: f64, gravity_m_s2: f64) -> Vector3 {
-        (1.0 / (mass_kg * gravity_m_s2)) * self.loads.force_n
+        load_factors(self.loads.force_n, mass_kg, gravity_m_s2)
     }
+}
+
+/// [`Instant::load_factors`] of a force of air and engine in N.
+#[must_use]
+pub fn load_factors(force_n: Vector3, mass_kg: f64, gravity_m_s2: f64) -> Vector3 {
+    (1.0 / (mass_kg * gravity_m_s2)) * force_n
 }

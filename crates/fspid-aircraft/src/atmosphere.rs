@@ -142,7 +142,7 @@ impl Air {
         let ratio = straight::pow(share, power);
         let Base { temperature_k, pressure_pa } = lowest.with_ratio(base, altitude_m, ratio);
         let is_here = (altitude_m >= ALTITUDE_MIN_M) & (altitude_m <= next.base_m);
-        (Self::of(temperature_k, pressure_pa), is_here & straight::is_straight_pow(share, ratio))
+        (Self::of(temperature_k, pressure_pa), is_here & straight::is_straight_pow(share))
     }
 
     /// Air in which nothing can be computed: every number is NaN.

@@ -9,6 +9,7 @@
 //! # The same bits on every machine
 //! As in `fspid-lti`: sums in a fixed order, nothing fused, elementary functions from `libm`, nothing random.
 
+pub mod abreast;
 pub mod aerodynamics;
 mod aircraft;
 pub mod airspeed;
@@ -34,7 +35,7 @@ mod validity;
 mod vector;
 
 pub use aerodynamics::{ForceModel, Loads};
-pub use aircraft::{Aircraft, Instant};
+pub use aircraft::{Aircraft, Instant, load_factors};
 pub use atmosphere::{Air, AirModel, Environment};
 pub use controls::{CONTROLS, Controls};
 pub use engine::{Gearing, Spool, power_rate_per_s};

@@ -157,7 +157,7 @@ fn watch_answers(
             Ok(seen) => seen,
             Err(outcome) => return Ok(outcome),
         };
-        let step = match answer(&seen, course.aircraft()) {
+        let step = match answer(&seen, course.observed()) {
             Ok((step, asked)) => {
                 course.ask(asked);
                 step

@@ -66,6 +66,11 @@ impl Atmosphere {
         !self.winds.is_empty() || self.turbulence.is_some()
     }
 
+    /// True for air that depends on the place.
+    pub(super) fn has_winds(&self) -> bool {
+        !self.winds.is_empty()
+    }
+
     /// Winds and gusts at a place with turbulence.
     pub(crate) fn at(&self, place: &AirPlace, turbulence: air::AirMotion) -> AirMotion {
         motion(self.winds_at(place) + turbulence)

@@ -22,6 +22,14 @@ pub enum Forces {
 }
 
 impl Forces {
+    /// Stability derivatives, if these are they.
+    pub(crate) fn derivatives(&self) -> Option<&DerivativeModel> {
+        match self {
+            Self::Derivatives(model) => Some(model),
+            Self::Other(_) => None,
+        }
+    }
+
     fn model(&self) -> &dyn ForceModel {
         match self {
             Self::Derivatives(model) => model.as_ref(),

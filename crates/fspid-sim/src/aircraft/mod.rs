@@ -40,7 +40,7 @@ pub use changing::{
     Changing, ConfigurationChange, DEPLOYMENT_COLUMNS, Deployment, Fuel, MOST_CONFIGURATIONS, Shown,
 };
 pub use column::{AIRCRAFT_COLUMNS, AircraftSample};
-pub(crate) use flight::{AircraftFlight, AircraftMotion};
+pub(crate) use flight::{AircraftAbreast, AircraftFlight, AircraftMotion, NotAbreast, Wing};
 pub use forces::Forces;
 pub use leveller::{LEVELLING_TIME_S, WingLeveller, YawDamper};
 

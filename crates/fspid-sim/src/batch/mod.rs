@@ -10,8 +10,11 @@
 //! acts. A flight that diverges is parked: its lane computes zeros from then on.
 //!
 //! Flights of a group may differ in all numbers: plant, servo, gains, factors, limits, signals. They
-//! share what [`Refusal`] lists. What has no lanes (aircraft, actuators that are no first-order servo,
-//! gusts, sensors) is refused, and flies by [`fly`](crate::fly).
+//! share what [`Refusal`] lists. What has no lanes (linear plants behind actuators that are no first-order servo, in gusts or
+//! seen through sensors) is refused, and flies by [`fly`](crate::fly).
+//!
+//! Nonlinear aircraft from derivatives have lanes of their own, [`fly_aircraft`]: their continuous part flies in lanes, with any
+//! actuator, sensors, air and autopilot around it.
 //!
 //! Threads are the caller's business: groups know nothing of each other.
 
@@ -32,6 +35,7 @@ mod queue;
 mod refusal;
 mod row;
 mod samples;
+mod squadron;
 #[cfg(test)]
 mod tests;
 
@@ -39,6 +43,7 @@ pub use formation::Formation;
 pub use fspid_numeric::InstructionSet;
 pub use refusal::Refusal;
 pub use row::BatchRow;
+pub use squadron::{fly_aircraft, fly_aircraft_by};
 
 use fearless_simd::dispatch;
 

@@ -7,7 +7,7 @@ use std::borrow::Borrow;
 use fspid_core::{Sample, Step};
 
 use crate::actuated::Held;
-use crate::aircraft::AircraftSample;
+use crate::aircraft::{AircraftFlight, AircraftMotion, AircraftSample, Wing};
 use crate::autopilot::{AutopilotSample, AutopilotState, Commands, Cut, Observed, Throttle};
 use crate::error::SimError;
 use crate::external::Asked;
@@ -196,6 +196,17 @@ impl<P: Borrow<Prepared>> Course<P> {
     /// Looks at this sample; how the flight ended, where it is no longer flown.
     #[inline]
     pub(crate) fn look(&mut self) -> Result<Seen, Outcome> {
+        self.look_at(|propagation, plant, disturbance_rad| {
+            propagation.sample(plant, disturbance_rad)
+        })
+    }
+
+    /// The same, by who knows what the plant shows beyond pitch.
+    #[inline]
+    pub(crate) fn look_at(
+        &mut self,
+        shown: impl FnOnce(&Propagation, &Motion, f64) -> Option<AircraftSample>,
+    ) -> Result<Seen, Outcome> {
         let k = self.k;
         let prepared: &Prepared = self.prepared.borrow();
         let Some(&setpoint_rad) = prepared.setpoint_rad.get(k) else {
@@ -218,7 +229,7 @@ impl<P: Borrow<Prepared>> Course<P> {
         let disturbance_rad = self.at(|prepared| &prepared.at_elevator);
         let theta_rad = self.plant.theta_rad();
         let q_rad_s = propagation.rate_rad_s(&self.plant, disturbance_rad);
-        let aircraft = propagation.sample(&self.plant, disturbance_rad);
+        let aircraft = shown(propagation, &self.plant, disturbance_rad);
         let at_measurement = self.at(|prepared| &prepared.at_measurement);
         self.sensors.erect(&aircraft);
         let measurement_rad = self.sensors.pitch_rad(k, theta_rad) + at_measurement;
@@ -296,7 +307,7 @@ impl<P: Borrow<Prepared>> Course<P> {
 
     /// What an aircraft shows of the sample that was looked at.
     #[inline]
-    pub(crate) fn aircraft(&self) -> Option<&AircraftSample> {
+    pub(crate) fn observed(&self) -> Option<&AircraftSample> {
         self.aircraft.as_ref()
     }
 
@@ -304,6 +315,35 @@ impl<P: Borrow<Prepared>> Course<P> {
     #[inline]
     pub(crate) fn ask(&mut self, asked: Asked) {
         self.asked = asked;
+    }
+
+    /// An aircraft, where it is, and its elevator, rad.
+    pub(crate) fn aircraft(&self) -> Option<(&AircraftFlight, &AircraftMotion, f64)> {
+        let (Propagation::Aircraft(flight), Motion::Aircraft(motion)) =
+            (self.propagation(), &self.plant)
+        else {
+            return None;
+        };
+        let disturbance_rad = self.at(|prepared| &prepared.at_elevator);
+        Some((flight, motion, flight.elevator_rad(motion, disturbance_rad)))
+    }
+
+    /// An aircraft on its way to the next sample, which others fly; the sample counts as left.
+    pub(crate) fn leave(&mut self, command_rad: f64) -> Option<Wing<'_>> {
+        self.k += 1;
+        self.wing(command_rad)
+    }
+
+    /// An aircraft with what is held until the next sample.
+    pub(crate) fn wing(&mut self, command_rad: f64) -> Option<Wing<'_>> {
+        let (autopilot, disturbance_rad) = (self.commands(), self.disturbance_rad);
+        let prepared: &Prepared = self.prepared.borrow();
+        let (Propagation::Aircraft(flight), Motion::Aircraft(motion)) =
+            (&prepared.stages[self.stage].propagation, &mut self.plant)
+        else {
+            return None;
+        };
+        Some(Wing { flight, motion, command_rad, disturbance_rad, autopilot })
     }
 
     /// Flies to the next sample.

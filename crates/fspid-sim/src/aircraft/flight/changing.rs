@@ -44,13 +44,13 @@ impl AircraftFlight {
     pub(super) fn departure(
         &self,
         body: &Moving,
-        instant: &Instant,
+        flow: &Flow,
     ) -> Option<fspid_aircraft::Departure> {
         let Some(varying) = self.varying() else {
-            return self.aircraft().model().validity().departure(&instant.flow);
+            return self.aircraft().model().validity().departure(flow);
         };
         let now = varying.at(self, body.time_s, body.burnt_kg);
-        let left = now.model().validity().departure(&instant.flow);
+        let left = now.model().validity().departure(flow);
         let dry = || varying.changing.fuel().and_then(|fuel| fuel.departure(body.burnt_kg));
         left.or_else(dry)
     }

@@ -1,13 +1,16 @@
 //! An aircraft from one sample to the next.
 
+mod abreast;
 mod changing;
 mod numbers;
 
 use fspid_aircraft::integrate::rk4;
 use fspid_aircraft::{
-    AirMotion, Aircraft, Controls, EulerAngles, Flow, ForceModel, Gearing, Instant, Quaternion,
-    RIGID_STATES, RigidState, Spool, Vector3,
+    AirMotion, Aircraft, Controls, EulerAngles, Flow, ForceModel, Gearing, Quaternion,
+    RIGID_STATES, RigidState, Spool, Vector3, load_factors,
 };
+
+pub(crate) use abreast::{AircraftAbreast, NotAbreast, Wing};
 
 use super::corner::Corner;
 use super::{
@@ -258,12 +261,13 @@ impl AircraftFlight {
     }
 
     /// Moves aileron and rudder to where leveller and damper have them now.
-    fn steer(&self, motion: &mut AircraftMotion, euler: &EulerAngles) {
+    fn steer(&self, motion: &mut AircraftMotion) {
         if motion.is_steered {
             return;
         }
-        motion.aileron_rad = self.aileron_rad(euler, motion.bank_rad);
-        motion.rudder_rad = self.rudder_rad(&motion.body.state, euler);
+        let euler = motion.sight.euler;
+        motion.aileron_rad = self.aileron_rad(&euler, motion.bank_rad);
+        motion.rudder_rad = self.rudder_rad(&motion.body.state, &euler);
     }
 
     /// Takes what an autopilot commands until the next sample.
@@ -299,15 +303,14 @@ impl AircraftFlight {
         self.follow(motion, &outside.autopilot);
         if self.atmosphere.moves() {
             for (number, piece) in self.grid.pieces(motion.k).enumerate() {
-                self.reach(motion, piece.tick, None);
+                self.reach(motion, piece.tick);
                 // What was seen at the sample holds at its beginning alone.
                 let seen = (number == 0).then_some(motion.sight.flow);
                 let held = holding(motion, held);
                 motion.body = self.way(motion.body, &held, piece.length_s, seen);
+                motion.sight.euler = motion.body.state.euler();
             }
-            motion.k += 1;
-            let euler = motion.body.state.euler();
-            self.reach(motion, self.grid.tick(motion.k), Some(&euler));
+            self.arrive(motion);
         } else {
             let mut seen = Some(motion.sight.flow);
             for _ in 0..self.steps.count {
@@ -316,19 +319,28 @@ impl AircraftFlight {
                     Some(_) => self.way(motion.body, &held, self.steps.step_s, seen.take()),
                     None => self.stepped(&motion.body, &held, self.steps.step_s, seen.take()),
                 };
-                let euler = motion.body.state.euler();
-                self.steer(motion, &euler);
+                motion.sight.euler = motion.body.state.euler();
+                self.steer(motion);
             }
-            motion.k += 1;
+            self.arrive(motion);
+        }
+        let air = self.air(motion);
+        motion.sight.flow = self.aircraft().flow(&motion.body.state, &air);
+    }
+
+    /// At the next sample, but for the flow there.
+    fn arrive(&self, motion: &mut AircraftMotion) {
+        motion.k += 1;
+        if self.atmosphere.moves() {
+            self.reach(motion, self.grid.tick(motion.k));
         }
         // From the sample, not by a running sum.
         motion.body.time_s = motion.k as f64 * self.dt_s;
-        self.look(motion);
         motion.theta_rad = motion.sight.euler.theta_rad - self.trim_theta_rad;
     }
 
-    /// Takes the turbulence and the aileron of a time of the grid; angles of the body, if they are known.
-    fn reach(&self, motion: &mut AircraftMotion, tick: usize, known: Option<&EulerAngles>) {
+    /// Takes the turbulence and the aileron of a time of the grid.
+    fn reach(&self, motion: &mut AircraftMotion, tick: usize) {
         while motion.tick < tick {
             motion.tick += 1;
             let (place, air) = (self.place(&motion.body), self.air(motion));
@@ -337,8 +349,7 @@ impl AircraftFlight {
                 let airspeed_m_s = || self.aircraft().flow(state, &air).airspeed_m_s;
                 shaping.advance(place.height_m, airspeed_m_s);
             }
-            let euler = known.copied().unwrap_or_else(|| state.euler());
-            self.steer(motion, &euler);
+            self.steer(motion);
         }
     }
 
@@ -480,25 +491,42 @@ impl AircraftFlight {
 
     /// What is observable at a sample beyond pitch.
     pub(crate) fn sample(&self, motion: &AircraftMotion, elevator_rad: f64) -> AircraftSample {
-        let (state, air) = (&motion.body.state, self.air(motion));
+        let air = self.air(motion);
+        let controls = self.controls(motion, elevator_rad);
+        let instant = self.instant_in(motion.sight.flow, &motion.body, &controls, &air);
+        let felt = [instant.loads.force_n, instant.accelerations.velocity_rate_body_m_s2];
+        self.observed(motion, &controls, &air, felt)
+    }
+
+    /// Controls at a sample.
+    fn controls(&self, motion: &AircraftMotion, elevator_rad: f64) -> Controls {
         let throttle = self.acting_throttle(motion.body.power, motion.throttle);
         let throttle = self.fed_throttle(motion.body.burnt_kg, throttle);
         let &AircraftMotion { aileron_rad, rudder_rad, .. } = motion;
-        let controls = Controls { elevator_rad, aileron_rad, rudder_rad, throttle };
-        let Sight { euler: attitude, flow } = motion.sight;
-        let instant = self.instant_in(flow, &motion.body, &controls, &air);
-        let felt = self.load_factors(&motion.body, &instant);
+        Controls { elevator_rad, aileron_rad, rudder_rad, throttle }
+    }
+
+    /// What is observable with a force of air and engine, N, and a rate of change of the velocity's components, m/s².
+    fn observed(
+        &self,
+        motion: &AircraftMotion,
+        controls: &Controls,
+        air: &AirMotion,
+        [force_n, velocity_rate_m_s2]: [Vector3; 2],
+    ) -> AircraftSample {
+        let (state, Sight { euler: attitude, flow }) = (&motion.body.state, &motion.sight);
+        let felt = self.load_factors(&motion.body, force_n);
         let [north_m, east_m, _] = state.position_ned_m.to_array();
         let over_ground_m_s = state.attitude.to_ned(state.velocity_body_m_s);
         let [over_north_m_s, over_east_m_s, sink_m_s] = over_ground_m_s.to_array();
         let climb_m_s = -sink_m_s;
         let ground_speed_m_s = libm::hypot(over_north_m_s, over_east_m_s);
         AircraftSample {
-            airspeed_m_s: instant.flow.airspeed_m_s,
-            equivalent_airspeed_m_s: instant.flow.equivalent_airspeed_m_s(),
-            mach: instant.flow.mach(),
+            airspeed_m_s: flow.airspeed_m_s,
+            equivalent_airspeed_m_s: flow.equivalent_airspeed_m_s(),
+            mach: flow.mach(),
             altitude_m: state.altitude_m(),
-            alpha_rad: instant.flow.alpha_rad,
+            alpha_rad: flow.alpha_rad,
             bank_rad: attitude.phi_rad,
             aileron_rad: motion.aileron_rad,
             load_factor: -felt.z,
@@ -506,30 +534,30 @@ impl AircraftFlight {
             position_m: [north_m, east_m],
             heading_rad: attitude.psi_rad,
             attitude_rad: attitude.theta_rad,
-            sideslip_rad: instant.flow.beta_rad,
+            sideslip_rad: flow.beta_rad,
             roll_yaw_rad_s: [state.rates_rad_s.x, state.rates_rad_s.z],
             throttle: controls.throttle,
             flight_path_rad: libm::atan2(climb_m_s, ground_speed_m_s),
             climb_m_s,
             ground_speed_m_s,
-            path_acceleration_m_s2: path_acceleration_m_s2(state, &instant),
+            path_acceleration_m_s2: path_acceleration_m_s2(state, velocity_rate_m_s2),
             air_rad_s: air.gust_rates_rad_s.to_array(),
-            energy_height_m: self.energy_height_m(&instant),
+            energy_height_m: self.energy_height_m(flow),
             apparent_vertical_rad: apparent_vertical_rad(state, attitude.psi_rad, felt),
-            departure: self.departure(&motion.body, &instant),
+            departure: self.departure(&motion.body, flow),
             shown: self.shown(&motion.body),
         }
     }
 
-    fn energy_height_m(&self, instant: &Instant) -> f64 {
+    fn energy_height_m(&self, flow: &Flow) -> f64 {
         let gravity_m_s2 = self.aircraft().environment().gravity_m_s2;
-        let airspeed_m_s = instant.flow.airspeed_m_s;
-        instant.flow.altitude_m + airspeed_m_s * airspeed_m_s / (2.0 * gravity_m_s2)
+        let airspeed_m_s = flow.airspeed_m_s;
+        flow.altitude_m + airspeed_m_s * airspeed_m_s / (2.0 * gravity_m_s2)
     }
 
-    fn load_factors(&self, body: &Moving, instant: &Instant) -> Vector3 {
+    fn load_factors(&self, body: &Moving, force_n: Vector3) -> Vector3 {
         let gravity_m_s2 = self.aircraft().environment().gravity_m_s2;
-        instant.load_factors(self.mass(body).mass_kg, gravity_m_s2)
+        load_factors(force_n, self.mass(body).mass_kg, gravity_m_s2)
     }
 }
 
@@ -542,10 +570,10 @@ fn apparent_vertical_rad(state: &RigidState, heading_rad: f64, load_factors: Vec
 }
 
 /// How fast the speed over the ground changes, m/s²; 0 at rest. Turning with the body changes no length.
-fn path_acceleration_m_s2(state: &RigidState, instant: &Instant) -> f64 {
+fn path_acceleration_m_s2(state: &RigidState, velocity_rate_m_s2: Vector3) -> f64 {
     let velocity_m_s = state.velocity_body_m_s;
     let speed_m_s = velocity_m_s.norm();
-    let along = velocity_m_s.dot(instant.accelerations.velocity_rate_body_m_s2);
+    let along = velocity_m_s.dot(velocity_rate_m_s2);
     if speed_m_s > 0.0 { along / speed_m_s } else { 0.0 }
 }
 

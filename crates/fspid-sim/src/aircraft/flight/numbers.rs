@@ -79,7 +79,6 @@ impl AircraftFlight {
             _ => *power += by,
         }
         self.look(motion);
-        let euler = motion.sight.euler;
-        self.steer(motion, &euler);
+        self.steer(motion);
     }
 }
