@@ -452,8 +452,14 @@ impl Coefficients {
         }
         let Longitudinal { lift, drag, pitch, thrust_speed } = model.longitudinal;
         for (rows, coefficient) in self.longitudinal.iter_mut().zip([lift, drag, pitch]) {
-            let LongitudinalCoefficient { reference, alpha, alpha_rate, pitch_rate, speed, elevator } =
-                coefficient;
+            let LongitudinalCoefficient {
+                reference,
+                alpha,
+                alpha_rate,
+                pitch_rate,
+                speed,
+                elevator,
+            } = coefficient;
             let values = [reference, alpha, alpha_rate, pitch_rate, speed, elevator];
             for (lanes, value) in rows.iter_mut().zip(values) {
                 lanes[lane] = value;

@@ -479,7 +479,8 @@ mod tests {
         let mut random = Random(4);
         let mut straight = 0;
         for draw in 0..DRAWS {
-            let x = if draw % 4 == 0 { random.between(0.0, 100.0) } else { random.between(0.6, 1.6) };
+            let x =
+                if draw % 4 == 0 { random.between(0.0, 100.0) } else { random.between(0.6, 1.6) };
             let power = match draw % 3 {
                 0 => 9.806_65 / 287.052_87 / 0.0065,
                 1 => random.between(-7.0, 7.0),

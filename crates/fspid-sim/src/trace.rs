@@ -169,14 +169,22 @@ impl Trace {
         let measured = prepared.has_sensors().then_some(instant.measured);
         let gust = prepared.gusts().and_then(|gusts| gusts.get(instant.k));
         let aircraft = instant.aircraft.map(|sample| sample.values());
-        let values = measured.iter().flatten().chain(gust.into_iter().flatten());
         let autopilot = instant.autopilot.map(|sample| sample.values());
         let shown = instant.aircraft.and_then(|sample| sample.shown);
-        let shown = shown.iter().flat_map(|shown| shown.values());
-        let values = values.chain(aircraft.iter().flatten()).chain(shown);
-        let values = values.chain(autopilot.iter().flatten());
-        for (column, value) in self.columns.iter_mut().zip(values) {
-            column.values.push(*value);
+        let parts: [&[f64]; 5] = [
+            measured.as_ref().map_or(&[], |values| values),
+            gust.map_or(&[], |values| values),
+            aircraft.as_ref().map_or(&[], |values| values),
+            shown.as_ref().map_or(&[], |shown| shown.values()),
+            autopilot.as_ref().map_or(&[], |values| values),
+        ];
+        let mut columns = self.columns.as_mut_slice();
+        for part in parts {
+            let (these, rest) = columns.split_at_mut(part.len().min(columns.len()));
+            for (column, value) in these.iter_mut().zip(part) {
+                column.values.push(*value);
+            }
+            columns = rest;
         }
     }
 

@@ -9,6 +9,7 @@ mod in_flight;
 mod moving_air;
 mod reference;
 mod set_centres;
+mod squadron;
 #[path = "../../fspid-aircraft/tests/support/mod.rs"]
 mod support;
 mod surroundings;

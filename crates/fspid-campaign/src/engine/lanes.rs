@@ -1,7 +1,7 @@
 //! One controller of each study, in lanes as far as they go.
 
 use fspid_scenario::file::Study;
-use fspid_sim::batch::{BatchRow, Entrant, LANES, fly_group};
+use fspid_sim::batch::{BatchRow, Entrant, LANES, fly_aircraft, fly_group};
 use fspid_sim::{Flyer, Prepared, SimError, Trace};
 
 use super::memory::Memory;
@@ -38,7 +38,14 @@ pub(super) fn fly(
 
 /// Up to as many flights as there are lanes; one by one where they cannot fly side by side.
 fn fly_together(memory: &mut Memory, group: &[Ready<'_>]) -> Vec<Result<Trace, SimError>> {
-    in_lanes(memory, group).unwrap_or_else(|| {
+    let together = match entrants(group) {
+        Some(entrants) if group.iter().all(|flight| flight.prepared.is_aircraft()) => {
+            aircraft_in_lanes(memory, &entrants)
+        }
+        Some(entrants) => in_lanes(memory, group, &entrants),
+        None => None,
+    };
+    together.unwrap_or_else(|| {
         let alone = |flight: &Ready<'_>| {
             let trace = memory.empty_trace(flight.prepared.timing().rows());
             single::record(trace, flight.prepared, flight.flyer)
@@ -47,19 +54,48 @@ fn fly_together(memory: &mut Memory, group: &[Ready<'_>]) -> Vec<Result<Trace, S
     })
 }
 
-fn in_lanes(memory: &mut Memory, group: &[Ready<'_>]) -> Option<Vec<Result<Trace, SimError>>> {
-    let entrants: Vec<Entrant<'_>> = group
-        .iter()
-        .map(|flight| {
-            let controller = flight.flyer.controller()?;
-            Some(Entrant { prepared: flight.prepared, controller })
-        })
-        .collect::<Option<_>>()?;
+/// What flies side by side, if all have equations.
+fn entrants<'a>(group: &[Ready<'a>]) -> Option<Vec<Entrant<'a>>> {
+    let entrant = |flight: &Ready<'a>| {
+        let controller = flight.flyer.controller()?;
+        Some(Entrant { prepared: flight.prepared, controller })
+    };
+    group.iter().map(entrant).collect()
+}
+
+/// Aircraft, recorded as single flights are.
+fn aircraft_in_lanes(
+    memory: &mut Memory,
+    entrants: &[Entrant<'_>],
+) -> Option<Vec<Result<Trace, SimError>>> {
+    let empty = |entrant: &Entrant<'_>| {
+        let trace = memory.empty_trace(entrant.prepared.timing().rows());
+        single::with_columns(trace, entrant.prepared)
+    };
+    let mut traces: Vec<Trace> = entrants.iter().map(empty).collect();
+    let outcomes = fly_aircraft(entrants, |place, instant| {
+        if let (Some(trace), Some(entrant)) = (traces.get_mut(place), entrants.get(place)) {
+            single::take_in(trace, entrant.prepared, instant);
+        }
+    });
+    let outcomes = outcomes.ok()?;
+    let traces = traces.into_iter().zip(outcomes).map(|(mut trace, outcome)| {
+        trace.outcome = outcome?;
+        Ok(trace)
+    });
+    Some(traces.collect())
+}
+
+fn in_lanes(
+    memory: &mut Memory,
+    group: &[Ready<'_>],
+    entrants: &[Entrant<'_>],
+) -> Option<Vec<Result<Trace, SimError>>> {
     let recorder = &mut memory.recorder;
     let rows = group.first()?.prepared.timing().rows();
     recorder.begin(rows);
     let outcomes =
-        fly_group::<LANES>(&entrants, |row: &BatchRow<'_, LANES>| recorder.push(row)).ok()?;
+        fly_group::<LANES>(entrants, |row: &BatchRow<'_, LANES>| recorder.push(row)).ok()?;
     let mut traces: Vec<Trace> = group.iter().map(|_| memory.empty_trace(rows)).collect();
     let prepared: Vec<&Prepared> = group.iter().map(|flight| flight.prepared).collect();
     memory.recorder.fill(&mut traces, &prepared);

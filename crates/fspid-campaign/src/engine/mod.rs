@@ -10,7 +10,9 @@ mod single;
 
 use fspid_core::Faults;
 use fspid_scenario::file::{RangeRule, Study};
-use fspid_sim::{Exit, Prepared, SimError, Trace};
+use fspid_sim::aircraft::{AIRCRAFT_COLUMNS, Forces};
+use fspid_sim::autopilot::AUTOPILOT_COLUMNS;
+use fspid_sim::{Exit, Plant, Prepared, SimError, Trace};
 use fspid_study::analysis::AtRest;
 use fspid_study::judgement::{Judgement, judge};
 use fspid_study::metrics::{CommandEffort, FlightMetrics, Verdict, largest_error_rad};
@@ -64,6 +66,9 @@ pub struct Judging {
     pub loads: bool,
 }
 
+/// Columns that an aircraft with sensors and an autopilot has beyond those of every trace.
+const MOST_COLUMNS_BEYOND: usize = 2 + AIRCRAFT_COLUMNS.len() + AUTOPILOT_COLUMNS.len();
+
 /// Most memory for traces that are being measured, in numbers: 16 MiB a thread.
 const MOST_NUMBERS: usize = 2 << 20;
 
@@ -72,10 +77,17 @@ const MOST_NUMBERS: usize = 2 << 20;
 #[must_use]
 pub fn at_once(study: &Study) -> usize {
     let scenario = &study.scenario;
-    if scenario.plant.linear().is_none() || !scenario.externals.is_empty() {
+    let columns = match &scenario.plant {
+        Plant::Linear(_) => recorder::COLUMNS,
+        Plant::Aircraft(plant) if matches!(plant.aircraft().model(), Forces::Derivatives(_)) => {
+            recorder::COLUMNS + MOST_COLUMNS_BEYOND
+        }
+        Plant::Aircraft(_) | Plant::External(_) => return 1,
+    };
+    if !scenario.externals.is_empty() {
         return 1;
     }
-    let numbers = scenario.timing.rows() * scenario.flyers().count() * recorder::COLUMNS;
+    let numbers = scenario.timing.rows() * scenario.flyers().count() * columns;
     (MOST_NUMBERS / numbers.max(1)).clamp(1, fspid_sim::batch::LANES)
 }
 

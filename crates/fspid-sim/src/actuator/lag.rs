@@ -18,7 +18,7 @@ pub(super) enum Kind {
 /// Of $1 / \omega_n$: length of a piece that the response of second order is computed in.
 const PIECE: f64 = 1.0 / 16.0;
 /// Terms of its series; a piece leaves less than 10⁻¹⁸ behind them.
-const TERMS: usize = 11;
+pub(crate) const TERMS: usize = 11;
 
 impl Lag {
     /// No lag: the position is the command.
@@ -161,20 +161,32 @@ pub(super) enum Piece {
 impl Piece {
     /// Position and rate (0 below second order) behind it, with the command held at `target_rad`.
     pub(super) fn after(&self, [position_rad, rate_rad_s]: [f64; 2], target_rad: f64) -> [f64; 2] {
-        let gap_rad = target_rad - position_rad;
         match self {
             Self::AtOnce => [target_rad, 0.0],
-            Self::First { covered } => [position_rad + gap_rad * covered, 0.0],
+            Self::First { covered } => [position_rad + (target_rad - position_rad) * covered, 0.0],
             Self::Second { wn, damping, powers } => {
-                let (x, rate) = series([-gap_rad, rate_rad_s / wn], *damping, powers);
-                [position_rad + x, wn * rate]
+                second_order_after([position_rad, rate_rad_s], target_rad, [*wn, *damping], powers)
             }
         }
     }
 }
 
+/// Position and rate of a lag of second order behind a piece of time, given by its [`powers`] of $\omega_n t$.
+#[inline(always)]
+pub(crate) fn second_order_after(
+    [position_rad, rate_rad_s]: [f64; 2],
+    target_rad: f64,
+    [wn, damping]: [f64; 2],
+    powers: &[f64; TERMS],
+) -> [f64; 2] {
+    let gap_rad = target_rad - position_rad;
+    let (x, rate) = series([-gap_rad, rate_rad_s / wn], damping, powers);
+    [position_rad + x, wn * rate]
+}
+
 /// $t^n / n!$ from n = 1 on.
-fn powers(time: f64) -> [f64; TERMS] {
+#[inline(always)]
+pub(crate) fn powers(time: f64) -> [f64; TERMS] {
     let mut power = 1.0;
     let mut term = 0.0;
     [(); TERMS].map(|()| {
@@ -185,6 +197,7 @@ fn powers(time: f64) -> [f64; TERMS] {
 }
 
 /// Change of x and rate of x'' + 2 ζ x' + x = 0 over a time, by its Taylor series.
+#[inline(always)]
 fn series([x, rate]: [f64; 2], damping: f64, powers: &[f64; TERMS]) -> (f64, f64) {
     let (mut here, mut next) = (x, rate);
     let (mut change, mut rate_sum) = (0.0, rate);

@@ -78,6 +78,26 @@ impl Actuator {
         each(self.leg(state, left_s, Drive::Held, target_rad));
     }
 
+    /// The target, rad, of one that nothing but a lag of second order ever moves, so that every time is one leg of it without
+    /// an event; for who moves the position by [`second_order_after`](super::lag::second_order_after) and says so by
+    /// [`land`](Self::land).
+    pub(crate) fn set_off(&self, state: &mut ActuatorState, command_rad: f64) -> Option<f64> {
+        let is_free = self.rate_limit_rad_s.or(self.travel_rad.map(|(most, _)| most)).is_none();
+        if !(is_free && self.play_rad == 0.0 && self.lag.order() == 2) {
+            return None;
+        }
+        let target_rad = self.target_rad(command_rad);
+        let direction = self.direction(state, target_rad, Drive::Free);
+        self.meet(state, direction);
+        Some(target_rad)
+    }
+
+    /// Where a leg by the lag has led, rad and rad/s.
+    pub(crate) fn land(&self, state: &mut ActuatorState, [position_rad, rate_rad_s]: [f64; 2]) {
+        (state.position_rad, state.rate_rad_s) = (position_rad, rate_rad_s);
+        state.surface_rad = state.position_rad - state.contact * 0.5 * self.play_rad;
+    }
+
     /// Moves an actuator without lag and rate limit to its command at once.
     pub(crate) fn settle(&self, state: &mut ActuatorState, command_rad: f64) {
         if self.is_at_once() {

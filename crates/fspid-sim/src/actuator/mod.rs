@@ -22,7 +22,7 @@
 //! linear plant in calm air: there it is sampled with it by matrix exponentials, in place of leg by leg. The two ways
 //! differ by rounding, and the first is the one that lanes fly.
 
-mod lag;
+pub(crate) mod lag;
 mod leg;
 mod preset;
 
@@ -83,6 +83,11 @@ impl ActuatorState {
     /// Rate, rad/s; kept for lags of second order only.
     pub(crate) fn rate_rad_s(&self) -> f64 {
         self.rate_rad_s
+    }
+
+    /// Position before the play, rad.
+    pub(crate) fn position_rad(&self) -> f64 {
+        self.position_rad
     }
 
     /// Moves the position, and the surface with it (part 0), or the rate (part 1).

@@ -26,7 +26,7 @@ impl Forces {
     pub(crate) fn derivatives(&self) -> Option<&DerivativeModel> {
         match self {
             Self::Derivatives(model) => Some(model),
-            Self::Other(_) => None,
+            Self::Varied(_) | Self::Other(_) => None,
         }
     }
 

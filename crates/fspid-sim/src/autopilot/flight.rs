@@ -2,6 +2,7 @@
 
 pub(crate) use super::channel::Cut;
 use super::channel::{Asked, Channel};
+use super::glide_slope::Bearing;
 use super::mode::Target;
 use super::quantity::{Observed, Quantity};
 use super::sample::AutopilotSample;
@@ -43,6 +44,7 @@ pub(crate) struct AutopilotState {
     energy: [Channel; 2],
     /// What each quantity is held at; none before somebody holds it.
     held: [Option<f64>; Quantity::ALL.len()],
+    bearing: Bearing,
     beam: [Option<SensorState>; 2],
     /// Angle above the beam, rad, and range, m, where there was one last.
     last_shown: [f64; 2],
@@ -92,6 +94,7 @@ impl AutopilotState {
             found: vec![0.0; autopilot.loops.len()],
             energy: [Channel::default(); 2],
             held: [None; Quantity::ALL.len()],
+            bearing: Bearing::of(beam),
             beam: [
                 start(&beam.and_then(|beam| beam.angle_sensor))?,
                 start(&beam.and_then(|beam| beam.range_sensor))?,
@@ -172,7 +175,8 @@ impl AutopilotState {
 
     /// Reads every sensor, whoever is engaged: a sensor has to see each sample.
     fn look(&mut self, autopilot: &Autopilot, k: usize, observed: &Observed) {
-        let shown = autopilot.glide_slope.as_ref().and_then(|beam| beam.shown(observed));
+        let shown =
+            autopilot.glide_slope.as_ref().and_then(|beam| beam.shown(&self.bearing, observed));
         self.last_shown = shown.unwrap_or(self.last_shown);
         let ([angle, range], [angle_rad, range_m]) = (&mut self.beam, self.last_shown);
         let angle_rad = measured(angle.as_mut(), k, angle_rad);
@@ -248,21 +252,34 @@ impl AutopilotState {
             self.targets[number] = *held;
         }
         let target = self.targets[number];
-        let (sign, base) = (outer.sign(), base(autopilot, outer, observed));
+        let (sign, base) = (outer.sign(), self.base(autopilot, outer, observed));
         let current = self.current(autopilot, outer, observed);
         let base = base.map_or(0.0, |base| base + self.faded(outer, number, current - base));
-        let beam_rad = autopilot.glide_slope.as_ref().map_or(0.0, |beam| beam.angle_rad);
         let Units { held, moved } = outer.units;
         let asked = Asked {
             target: held * target,
             measured: held * nearest(outer.holds, target, found),
-            rate: held * outer.holds.rate(observed, beam_rad),
+            rate: held * outer.holds.rate(observed, self.bearing.tangent),
             current: moved * sign * (current - base),
             blocked: self.blocked(outer, pitch_cut).through(sign),
         };
         let answer = self.channels[number].answer(&outer.controller, &asked);
         let command = base + sign * answer / moved;
         self.move_to(outer, command);
+    }
+
+    /// What a loop of the glide slope commands on the beam: the path of the beam itself. None for every other loop.
+    fn base(&self, autopilot: &Autopilot, outer: &OuterLoop, observed: &Observed) -> Option<f64> {
+        let (Quantity::GlideSlope, Moves::Loop(number), Some(beam)) =
+            (outer.holds, outer.moves, autopilot.glide_slope.as_ref())
+        else {
+            return None;
+        };
+        match autopilot.loops.get(number).map(|below| below.holds)? {
+            Quantity::FlightPath => Some(-beam.angle_rad),
+            Quantity::VerticalSpeed => Some(-observed.ground_speed_m_s * self.bearing.tangent),
+            _ => None,
+        }
     }
 
     /// What is left of the step from what was commanded to what a beam commands: it goes at the rate limit of the loop, so
@@ -374,20 +391,6 @@ impl AutopilotState {
 
 fn measured(sensor: Option<&mut SensorState>, k: usize, value: f64) -> f64 {
     sensor.map_or(value, |sensor| sensor.measure(k, Truth { value, ..Truth::default() }))
-}
-
-/// What a loop of the glide slope commands on the beam: the path of the beam itself. None for every other loop.
-fn base(autopilot: &Autopilot, outer: &OuterLoop, observed: &Observed) -> Option<f64> {
-    let (Quantity::GlideSlope, Moves::Loop(number), Some(beam)) =
-        (outer.holds, outer.moves, autopilot.glide_slope.as_ref())
-    else {
-        return None;
-    };
-    match autopilot.loops.get(number).map(|below| below.holds)? {
-        Quantity::FlightPath => Some(-beam.angle_rad),
-        Quantity::VerticalSpeed => Some(-observed.ground_speed_m_s * libm::tan(beam.angle_rad)),
-        _ => None,
-    }
 }
 
 /// A heading as the one of its turns that is nearest to the target; everything else as it is.

@@ -48,14 +48,32 @@ impl GlideSlope {
     }
 
     /// Angle above the beam, rad, and range, m, without errors; none behind the antenna.
-    pub(crate) fn shown(&self, observed: &Observed) -> Option<[f64; 2]> {
+    pub(crate) fn shown(&self, bearing: &Bearing, observed: &Observed) -> Option<[f64; 2]> {
         let [north_m, east_m] = self.antenna_m;
-        let (sine, cosine) = sin_cos(self.course_rad);
+        let (sine, cosine) = bearing.course_sin_cos;
         let distance_m = (north_m - observed.north_m) * cosine + (east_m - observed.east_m) * sine;
         let height_m = observed.altitude_m - self.altitude_m;
         (distance_m > 0.0).then(|| {
             let angle_rad = libm::atan2(height_m, distance_m) - self.angle_rad;
             [angle_rad, (distance_m * distance_m + height_m * height_m).sqrt()]
+        })
+    }
+}
+
+/// What is asked of a beam at every sample and never changes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Bearing {
+    course_sin_cos: (f64, f64),
+    /// Of its angle.
+    pub(crate) tangent: f64,
+}
+
+impl Bearing {
+    /// Of a beam; nothing without one.
+    pub(crate) fn of(beam: Option<&GlideSlope>) -> Self {
+        beam.map_or_else(Self::default, |beam| Self {
+            course_sin_cos: sin_cos(beam.course_rad),
+            tangent: libm::tan(beam.angle_rad),
         })
     }
 }
@@ -92,19 +110,22 @@ mod tests {
         }
     }
 
+    fn shown(observed: &Observed) -> Option<[f64; 2]> {
+        beam().shown(&Bearing::of(Some(&beam())), observed)
+    }
+
     /// tan 3 deg · 10 km = 524.08 m above the antenna.
     #[test]
     fn on_the_beam_the_receiver_shows_nothing() {
-        let [angle_rad, range_m] =
-            beam().shown(&at(0.0, 624.077_792_8)).expect("before the antenna");
+        let [angle_rad, range_m] = shown(&at(0.0, 624.077_792_8)).expect("before the antenna");
         assert!(angle_rad.abs() < 1e-11, "{angle_rad}");
         assert!((range_m - 10_000.0 / libm::cos(3.0_f64.to_radians())).abs() < 1e-6, "{range_m}");
     }
 
     #[test]
     fn above_it_is_positive_and_behind_the_antenna_there_is_none() {
-        assert!(beam().shown(&at(0.0, 700.0)).is_some_and(|[angle_rad, _]| angle_rad > 0.0));
-        assert_eq!(beam().shown(&at(10_000.0, 100.0)), None);
+        assert!(shown(&at(0.0, 700.0)).is_some_and(|[angle_rad, _]| angle_rad > 0.0));
+        assert_eq!(shown(&at(10_000.0, 100.0)), None);
     }
 
     #[test]

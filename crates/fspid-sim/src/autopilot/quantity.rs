@@ -98,12 +98,12 @@ impl Quantity {
         }
     }
 
-    /// Its rate of change, where the flight shows one; 0 else. `beam_rad` is the angle of the beam.
-    pub(crate) fn rate(self, observed: &Observed, beam_rad: f64) -> f64 {
+    /// Its rate of change, where the flight shows one; 0 else. `beam_tangent` is that of the angle of the beam.
+    pub(crate) fn rate(self, observed: &Observed, beam_tangent: f64) -> f64 {
         match self {
             Self::Altitude => observed.vertical_speed_m_s,
             Self::GlideSlope => {
-                observed.vertical_speed_m_s + observed.ground_speed_m_s * libm::tan(beam_rad)
+                observed.vertical_speed_m_s + observed.ground_speed_m_s * beam_tangent
             }
             Self::Airspeed => observed.path_acceleration_m_s2,
             Self::VerticalSpeed | Self::FlightPath | Self::Heading => 0.0,

@@ -63,7 +63,9 @@ fn drawn(of: BlockOf) -> [f64; AT_ONCE] {
     let mut generator = ChaCha8Rng::seed_from_u64(of.seed);
     generator.set_stream(of.stream);
     generator.set_word_pos((of.block * AT_ONCE) as u128 * WORDS);
-    let bits = [(); AT_ONCE].map(|()| [generator.next_u64(), generator.next_u64()]);
+    let mut bytes = [[[0; 8]; 2]; AT_ONCE];
+    generator.fill_bytes(bytes.as_flattened_mut().as_flattened_mut());
+    let bits = bytes.map(|pair| pair.map(u64::from_le_bytes));
     let mut numbers = [0.0; AT_ONCE];
     dispatch!(InstructionSet::best().level(), _simd => transform(&bits, &mut numbers));
     numbers

@@ -16,7 +16,9 @@ use fspid_aircraft::abreast::{
 use fspid_aircraft::{CONTROLS, RIGID_STATES, RigidState};
 use fspid_numeric::InstructionSet;
 
-use super::{AircraftFlight, AircraftMotion, AircraftSample, Holding, Moving, holding};
+use super::{AircraftFlight, AircraftMotion, AircraftSample, Moving, holding, turbulence};
+use crate::actuator::lag::{TERMS, powers, second_order_after};
+use crate::actuator::{ActuatorState, Lag};
 use crate::autopilot::Commands;
 
 /// One of the flights, on its way to the next sample.
@@ -66,25 +68,26 @@ impl Numbers {
         RigidState::from_array(&self.states.map(|lanes| lanes[lane]))
     }
 
-    /// These and multiples of rates, added in order.
+    /// Becomes others and multiples of rates, added in order.
     #[inline(always)]
-    fn and<const K: usize>(&self, factors: [f64; K], rates: [&Self; K]) -> Self {
-        let mut sum = *self;
-        for (factor, rates) in factors.into_iter().zip(rates) {
-            for (lanes, rates) in sum.states.iter_mut().zip(&rates.states) {
-                add(lanes, factor, rates);
-            }
-            add(&mut sum.distance_m, factor, &rates.distance_m);
-            add(&mut sum.power, factor, &rates.power);
+    fn become_sum<const K: usize>(&mut self, of: &Self, factors: [f64; K], rates: [&Self; K]) {
+        for (place, sum) in self.states.iter_mut().enumerate() {
+            add(sum, &of.states[place], factors, rates.map(|rates| &rates.states[place]));
         }
-        sum
+        let rates_of = rates.map(|rates| &rates.distance_m);
+        add(&mut self.distance_m, &of.distance_m, factors, rates_of);
+        add(&mut self.power, &of.power, factors, rates.map(|rates| &rates.power));
     }
 }
 
 #[inline(always)]
-fn add(lanes: &mut Lanes, factor: f64, rates: &Lanes) {
+fn add<const K: usize>(sum: &mut Lanes, of: &Lanes, factors: [f64; K], rates: [&Lanes; K]) {
     for lane in 0..LANES {
-        lanes[lane] += factor * rates[lane];
+        let mut value = of[lane];
+        for number in 0..K {
+            value += factors[number] * rates[number][lane];
+        }
+        sum[lane] = value;
     }
 }
 
@@ -93,10 +96,14 @@ fn add(lanes: &mut Lanes, factor: f64, rates: &Lanes) {
 pub(crate) struct AircraftAbreast {
     instructions: InstructionSet,
     aircraft: Abreast,
+    /// Where all are, where they are at a stage, and their rates there.
     here: Numbers,
+    stage: Numbers,
+    rates: [Numbers; 4],
     airs: Airs,
     flows: Flows,
     angles: Angles,
+    way: Way,
 }
 
 fn member(flight: &AircraftFlight) -> Result<Member<'_>, NotAbreast> {
@@ -118,9 +125,12 @@ impl AircraftAbreast {
             instructions,
             aircraft: Abreast::new(member(first)?),
             here: Numbers::default(),
+            stage: Numbers::default(),
+            rates: [Numbers::default(); 4],
             airs: Airs::default(),
             flows: Flows::default(),
             angles: Angles::default(),
+            way: Way::default(),
         })
     }
 
@@ -187,7 +197,8 @@ impl AircraftAbreast {
         for (lane, &motion) in motions.iter().enumerate() {
             let Some((flight, motion, elevator_rad)) = motion else { continue };
             let controls = flight.controls(motion, elevator_rad);
-            samples[lane] = Some(flight.observed(motion, &controls, &flight.air(motion), felt.at(lane)));
+            samples[lane] =
+                Some(flight.observed(motion, &controls, &flight.air(motion), felt.at(lane)));
         }
         samples
     }
@@ -222,58 +233,51 @@ impl AircraftAbreast {
 
     /// A part of a period, as [`AircraftFlight::way`]; `seen` where the flow at its beginning is known.
     fn step(&mut self, wings: &mut Wings<'_>, step_s: f64, seen: bool) {
-        let mut way = Way::new(wings, step_s);
         self.load(wings);
-        way.enter(&self.here, &mut self.airs, 0);
-        let rates = |all: &mut Self, way: &Way<'_>, stage: usize, numbers: &Numbers, known: bool| {
-            let mut rates = Numbers { power: way.power_rates(numbers), ..Numbers::default() };
-            let controls = way.controls(stage, numbers);
-            let Self { aircraft, airs, flows, .. } = all;
-            dispatch!(all.instructions.level(), _simd => stage_rates(aircraft, numbers, (&controls, airs), (flows, known), &mut rates));
-            rates
-        };
         let level = self.instructions.level();
-        let (base, half_s) = (self.here, 0.5 * step_s);
-        let k1 = rates(self, &way, 0, &base, seen);
-        let at = dispatch!(level, _simd => base.and([half_s], [&k1]));
-        way.enter(&at, &mut self.airs, 1);
-        let k2 = rates(self, &way, 1, &at, false);
-        let at = dispatch!(level, _simd => base.and([half_s], [&k2]));
-        way.enter(&at, &mut self.airs, 1);
-        let k3 = rates(self, &way, 1, &at, false);
-        let at = dispatch!(level, _simd => base.and([step_s], [&k3]));
-        way.enter(&at, &mut self.airs, 2);
-        let k4 = rates(self, &way, 2, &at, false);
+        let Self { aircraft, here, stage, rates, airs, flows, angles, way, .. } = self;
+        way.begin(wings, step_s);
+        dispatch!(level, _simd => way.drives.move_on());
+        way.turn(wings, 1);
+        dispatch!(level, _simd => way.drives.move_on());
+        way.turn(wings, 2);
+        way.enter(wings, here, airs, 0);
+        let controls = way.controls(wings, here, &mut rates[0], 0);
+        let first = &mut rates[0];
+        dispatch!(level, _simd => stage_rates(aircraft, here, (&controls, airs), (flows, seen), first));
+        for (number, part) in [(1, 1), (2, 1), (3, 2)] {
+            let (done, coming) = rates.split_at_mut(number);
+            let (before, after) = (&done[number - 1], &mut coming[0]);
+            let after_s = way.after_s[part];
+            dispatch!(level, _simd => stage.become_sum(here, [after_s], [before]));
+            way.enter(wings, stage, airs, part);
+            let controls = way.controls(wings, stage, after, part);
+            dispatch!(level, _simd => stage_rates(aircraft, stage, (&controls, airs), (flows, false), after));
+        }
         let weights = [step_s / 6.0, step_s / 3.0, step_s / 3.0, step_s / 6.0];
-        let (here, turned) = (&mut self.here, &mut self.angles);
-        dispatch!(level, _simd => end(&base, weights, [&k1, &k2, &k3, &k4], here, turned));
-        let ends = way.ends;
+        dispatch!(level, _simd => end(here, weights, rates.each_ref(), stage, angles));
+        std::mem::swap(here, stage);
         for (lane, wing) in wings.iter_mut().enumerate() {
-            if let (Some(wing), Some((held, actuator))) = (wing, ends[lane]) {
-                self.arrive(lane, wing, (&held, actuator), step_s);
+            if let Some(wing) = wing {
+                self.arrive(lane, wing, step_s);
             }
         }
     }
 
     /// Puts a flight where its lane has come to, or where it comes to alone if there is a corner on its way.
-    fn arrive(
-        &self,
-        lane: usize,
-        wing: &mut Wing<'_>,
-        (held, actuator): (&Holding, crate::actuator::ActuatorState),
-        step_s: f64,
-    ) {
+    fn arrive(&self, lane: usize, wing: &mut Wing<'_>, step_s: f64) {
         let (flight, before) = (wing.flight, wing.motion.body);
         let next = Moving {
             state: self.here.state(lane),
             distance_m: self.here.distance_m[lane],
             power: self.here.power[lane],
             time_s: before.time_s + step_s,
-            actuator,
+            actuator: self.way.actuators[lane],
         };
-        let (from, to) = (flight.place(&before), flight.place(&next));
-        if flight.atmosphere.corner(&from, &to).is_some() {
-            wing.motion.body = flight.way(before, held, step_s, None);
+        let has_corner = || flight.atmosphere.corner(&flight.place(&before), &flight.place(&next));
+        if flight.atmosphere.has_winds() && has_corner().is_some() {
+            let held = holding(wing.motion, [wing.command_rad, wing.disturbance_rad]);
+            wing.motion.body = flight.way(before, &held, step_s, None);
             wing.motion.sight.euler = wing.motion.body.state.euler();
         } else {
             wing.motion.body = next;
@@ -307,85 +311,165 @@ fn end(
     here: &mut Numbers,
     turned: &mut Angles,
 ) {
-    *here = base.and(weights, rates);
+    here.become_sum(base, weights, rates);
     normalise(&mut here.states);
     angles(&here.states, turned);
 }
 
 /// What a step of each flight is made with.
-struct Way<'a> {
-    flights: [Option<&'a AircraftFlight>; LANES],
+#[derive(Clone, Debug, Default)]
+struct Way {
     /// Controls at the beginning, the middle and the end; the throttle that is asked for.
     stages: [[Lanes; CONTROLS]; 3],
-    /// What is held, and the actuator at the end.
-    ends: [Option<(Holding, crate::actuator::ActuatorState)>; LANES],
-    /// Time of the beginning, s.
-    from_s: Lanes,
-    step_s: f64,
+    /// Where they have come to.
+    actuators: [ActuatorState; LANES],
+    drives: Drives,
+    /// From the beginning of the step to its stages, s.
+    after_s: [f64; 3],
 }
 
-impl<'a> Way<'a> {
-    fn new(wings: &Wings<'a>, step_s: f64) -> Self {
-        let mut way = Self {
-            flights: [None; LANES],
-            stages: [[[0.0; LANES]; CONTROLS]; 3],
-            ends: [None; LANES],
-            from_s: [0.0; LANES],
-            step_s,
-        };
+impl Way {
+    /// Everything at the beginning of a step.
+    fn begin(&mut self, wings: &Wings<'_>, step_s: f64) {
+        self.after_s = [0.0, 0.5 * step_s, step_s];
+        self.drives.most = 0;
         for (lane, wing) in wings.iter().enumerate() {
-            let Some(Wing { flight, motion, command_rad, disturbance_rad, .. }) = wing else {
-                continue;
-            };
-            let held = holding(motion, [*command_rad, *disturbance_rad]);
-            let mut actuator = motion.body.actuator;
-            let stages = flight.stages(&mut actuator, &held, step_s);
-            for (lanes, controls) in way.stages.iter_mut().zip(stages) {
-                for (lanes, value) in lanes.iter_mut().zip(controls.to_array()) {
-                    lanes[lane] = value;
-                }
+            let Some(Wing { flight, motion, command_rad, .. }) = wing else { continue };
+            self.actuators[lane] = motion.body.actuator;
+            let held = [motion.aileron_rad, motion.rudder_rad, motion.throttle];
+            for stage in &mut self.stages {
+                let [_, aileron_rad, rudder_rad, throttle] = stage;
+                (aileron_rad[lane], rudder_rad[lane], throttle[lane]) = held.into();
             }
-            way.flights[lane] = Some(flight);
-            way.ends[lane] = Some((held, actuator));
-            way.from_s[lane] = motion.body.time_s;
+            self.stages[0][0][lane] = self.elevator_rad(lane, wing.as_ref());
+            let actuator = &mut self.actuators[lane];
+            let target_rad = flight.actuator.set_off(actuator, *command_rad);
+            self.drives.put(lane, flight.actuator.lag(), target_rad, self.after_s[1], actuator);
         }
-        way
+    }
+
+    /// Where the elevators are behind another half of the step.
+    fn turn(&mut self, wings: &Wings<'_>, stage: usize) {
+        for (lane, wing) in wings.iter().enumerate() {
+            let Some(Wing { flight, command_rad, .. }) = wing else { continue };
+            let actuator = &mut self.actuators[lane];
+            if self.drives.is_in_lane[lane] {
+                flight.actuator.land(actuator, self.drives.at(lane));
+                flight.actuator.set_off(actuator, *command_rad);
+            } else {
+                flight.actuator.advance(actuator, *command_rad, self.after_s[1]);
+            }
+            self.stages[stage][0][lane] = self.elevator_rad(lane, wing.as_ref());
+        }
+    }
+
+    fn elevator_rad(&self, lane: usize, wing: Option<&Wing<'_>>) -> f64 {
+        wing.map_or(0.0, |wing| {
+            wing.flight.elevator_at_rad(&self.actuators[lane], wing.disturbance_rad)
+        })
     }
 
     /// Takes the winds of the places of a stage; where there are none, the air is held.
-    fn enter(&self, numbers: &Numbers, airs: &mut Airs, stage: usize) {
-        let after_s = [0.0, 0.5 * self.step_s, self.step_s][stage];
-        for lane in 0..LANES {
-            let (Some(flight), Some((held, _))) = (self.flights[lane], &self.ends[lane]) else {
-                continue;
-            };
+    fn enter(&self, wings: &Wings<'_>, numbers: &Numbers, airs: &mut Airs, stage: usize) {
+        for (lane, wing) in wings.iter().enumerate() {
+            let Some(Wing { flight, motion, .. }) = wing else { continue };
             if flight.atmosphere.has_winds() {
-                let way = [numbers.distance_m[lane], self.from_s[lane] + after_s];
+                let time_s = motion.body.time_s + self.after_s[stage];
+                let way = [numbers.distance_m[lane], time_s];
                 let place = super::place(&numbers.state(lane), &flight.atmosphere, way);
-                airs.put(lane, &flight.atmosphere.at(&place, held.turbulence));
+                airs.put(lane, &flight.atmosphere.at(&place, turbulence(motion)));
             }
         }
     }
 
-    fn power_rates(&self, numbers: &Numbers) -> Lanes {
-        let mut rates = [0.0; LANES];
-        for lane in 0..LANES {
-            if let (Some(flight), Some((held, _))) = (self.flights[lane], &self.ends[lane]) {
-                let asked = flight.gearing().power(held.throttle);
-                rates[lane] = flight.plant.spool().rate_per_s(numbers.power[lane], asked);
-            }
-        }
-        rates
-    }
-
-    /// Controls of a stage, with the throttle that acts.
-    fn controls(&self, stage: usize, numbers: &Numbers) -> [Lanes; CONTROLS] {
+    /// Controls of a stage, with the throttle that acts; the rates of the powers.
+    fn controls(
+        &self,
+        wings: &Wings<'_>,
+        numbers: &Numbers,
+        rates: &mut Numbers,
+        stage: usize,
+    ) -> [Lanes; CONTROLS] {
         let mut controls = self.stages[stage];
-        for lane in 0..LANES {
-            if let (Some(flight), Some((held, _))) = (self.flights[lane], &self.ends[lane]) {
-                controls[3][lane] = flight.acting_throttle(numbers.power[lane], held.throttle);
-            }
+        for (lane, wing) in wings.iter().enumerate() {
+            let Some(Wing { flight, motion, .. }) = wing else { continue };
+            let (power, asked) = (numbers.power[lane], motion.throttle);
+            controls[3][lane] = flight.acting_throttle(power, asked);
+            let wanted = flight.gearing().power(asked);
+            rates.power[lane] = flight.plant.spool().rate_per_s(power, wanted);
         }
         controls
+    }
+}
+
+/// Actuators that nothing but a lag of second order moves, over half a step.
+#[derive(Clone, Debug, Default)]
+struct Drives {
+    is_in_lane: [bool; LANES],
+    position_rad: Lanes,
+    rate_rad_s: Lanes,
+    target_rad: Lanes,
+    wn: Lanes,
+    damping: Lanes,
+    piece_s: Lanes,
+    pieces: Lanes,
+    most: u32,
+}
+
+impl Drives {
+    fn put(
+        &mut self,
+        lane: usize,
+        lag: Lag,
+        target_rad: Option<f64>,
+        time_s: f64,
+        actuator: &ActuatorState,
+    ) {
+        self.is_in_lane[lane] = target_rad.is_some();
+        let (Some(target_rad), Some((wn, damping))) = (target_rad, lag.second_order_parameters())
+        else {
+            // One second of nothing.
+            (self.wn[lane], self.damping[lane], self.pieces[lane]) = (1.0, 1.0, 0.0);
+            return;
+        };
+        let pieces = lag.pieces(time_s);
+        self.most = self.most.max(pieces);
+        self.pieces[lane] = f64::from(pieces);
+        self.piece_s[lane] = time_s / f64::from(pieces);
+        (self.wn[lane], self.damping[lane]) = (wn, damping);
+        self.target_rad[lane] = target_rad;
+        self.position_rad[lane] = actuator.position_rad();
+        self.rate_rad_s[lane] = actuator.rate_rad_s();
+    }
+
+    fn at(&self, lane: usize) -> [f64; 2] {
+        [self.position_rad[lane], self.rate_rad_s[lane]]
+    }
+
+    /// All behind half a step.
+    #[inline(always)]
+    fn move_on(&mut self) {
+        let mut all = [[0.0; LANES]; TERMS];
+        for lane in 0..LANES {
+            let of_lane = powers(self.wn[lane] * self.piece_s[lane]);
+            for term in 0..TERMS {
+                all[term][lane] = of_lane[term];
+            }
+        }
+        for piece in 0..self.most {
+            let piece = f64::from(piece);
+            for lane in 0..LANES {
+                let from = [self.position_rad[lane], self.rate_rad_s[lane]];
+                let mut powers = [0.0; TERMS];
+                for term in 0..TERMS {
+                    powers[term] = all[term][lane];
+                }
+                let lag = [self.wn[lane], self.damping[lane]];
+                let [x, rate] = second_order_after(from, self.target_rad[lane], lag, &powers);
+                let is_on = piece < self.pieces[lane];
+                self.position_rad[lane] = if is_on { x } else { from[0] };
+                self.rate_rad_s[lane] = if is_on { rate } else { from[1] };
+            }
+        }
     }
 }
