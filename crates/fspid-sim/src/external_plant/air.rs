@@ -72,7 +72,7 @@ impl MovingAir {
             if let Some(turbulence) = &mut state.turbulence {
                 let tick = self.grid.tick(state.step);
                 while turbulence.tick() < tick {
-                    turbulence.advance(from.height_m, from.airspeed_m_s);
+                    turbulence.advance(from.height_m, || from.airspeed_m_s);
                 }
             }
             let since_s = f64::from(number) * self.step_s;

@@ -3,8 +3,8 @@
 
 mod agreement;
 mod at_rest;
-mod control_law;
 mod configurations;
+mod control_law;
 mod design_gusts;
 mod gallery;
 mod ground;

@@ -271,6 +271,7 @@ impl AircraftAbreast {
             state: self.here.state(lane),
             distance_m: self.here.distance_m[lane],
             power: self.here.power[lane],
+            burnt_kg: before.burnt_kg,
             time_s: before.time_s + step_s,
             actuator: self.way.actuators[lane],
         };

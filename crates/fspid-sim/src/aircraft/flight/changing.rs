@@ -2,7 +2,9 @@
 
 use fspid_aircraft::aerodynamics::varied::VariedModel;
 use fspid_aircraft::integrate::rk4;
-use fspid_aircraft::{Controls, Flow, ForceModel, Instant, MassProperties, RIGID_STATES, RigidState};
+use fspid_aircraft::{
+    Controls, Flow, ForceModel, Instant, MassProperties, RIGID_STATES, RigidState,
+};
 
 use super::{AircraftFlight, Holding, MOST_TRIES, Moving, STATES, Way, joined, parted, place};
 use crate::aircraft::changing::{Changing, Fuel, Shown};
