@@ -66,7 +66,8 @@ fn an_aircraft_with_less_fuel_is_that_of_its_loading() {
         let total_kg = empty_kg + fuel_kg;
         let cg_mac = (empty_kg * empty_mac + fuel_kg * tank_mac) / total_kg;
         let arm = |mac: f64| (mac - cg_mac) * chord_m;
-        let apart = empty_kg * arm(empty_mac).powi(2) + fuel_kg * arm(tank_mac).powi(2);
+        let square = |value: f64| value * value;
+        let apart = empty_kg * square(arm(empty_mac)) + fuel_kg * square(arm(tank_mac));
         (total_kg, cg_mac, apart)
     };
     let ((_, _, full), (left_mass_kg, cg_mac, left)) = (of(full_kg), of(left_kg));
@@ -130,9 +131,10 @@ fn mach_number_and_the_ground_come_with_the_flow() {
     let without = plain.loads(&flow, &CONTROLS).force_n;
     let scale_n = flow.dynamic_pressure_pa() * data.geometry.area_m2;
     let thrust_n = plain.thrust_n(&flow, &CONTROLS);
-    let (sin, cos) = flow.alpha_rad.sin_cos();
+    let (sin, cos) = libm::sincos(flow.alpha_rad);
     let lift = ((without.x - thrust_n) * sin - without.z * cos) / scale_n;
-    let square = (16.0 * 6.0 / data.geometry.span_m).powi(2);
+    let spans = 16.0 * 6.0 / data.geometry.span_m;
+    let square = spans * spans;
     let phi = square / (1.0 + square) + 1.0 / 257.0;
     let drag = 0.02 * (flow.mach() - 0.1) / 0.2 - (1.0 - phi) * 0.05 * lift * lift;
     let expected = without - (drag * scale_n) * Vector3::new(cos, 0.0, sin);
