@@ -85,6 +85,15 @@ pub(crate) struct Frame<'a> {
 /// The frames of a packet. A packet holds whole frames: what stands behind bytes that are none is not looked at.
 pub(crate) struct Frames<'a>(pub(crate) &'a [u8]);
 
+impl Frames<'_> {
+    /// Bytes of the whole frame in front of others.
+    pub(crate) fn first_length(bytes: &[u8]) -> Option<usize> {
+        let mut frames = Frames(bytes);
+        frames.next()?.ok()?;
+        Some(bytes.len() - frames.0.len())
+    }
+}
+
 impl<'a> Iterator for Frames<'a> {
     type Item = Result<Frame<'a>, Damage>;
 

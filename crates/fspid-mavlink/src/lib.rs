@@ -2,10 +2,11 @@
 //!
 //! ```text
 //! packet ─frames▶ checked by length and checksum ─listener▶ one sender's, joined ─▶ lines of named numbers
+//! bytes of a connection ─stream▶ controls of a simulator's flight stack
+//! what is to be told ─encoder▶ frames, which somebody else sends
 //! ```
 //!
-//! No features. Not here: sockets, JSON (`fspid-serve`), signatures of frames (they are skipped, not checked), and anything
-//! that would be sent.
+//! No features. Not here: sockets, JSON (`fspid-serve`), signatures of frames (they are skipped, not checked).
 
 #![cfg_attr(
     test,
@@ -13,8 +14,12 @@
 )]
 
 mod frame;
+mod incoming;
 mod listener;
+mod outgoing;
 mod values;
 
 pub use frame::{Damage, is_frame};
+pub use incoming::{ActuatorControls, Stream};
 pub use listener::{Counts, Line, Listener, Sender};
+pub use outgoing::{Encoder, HilAttitude, HilPlace, HilSensor, Outgoing};

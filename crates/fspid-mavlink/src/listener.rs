@@ -45,6 +45,7 @@ pub struct Listener {
     /// Attitudes of others since the last of the one that is followed.
     missed: u32,
     time_ms: u32,
+    yaw_rad: Option<f64>,
     held: Vec<Held>,
     /// Whether the set-point is one that was told for the attitude.
     is_target: bool,
@@ -69,6 +70,12 @@ impl Listener {
     #[must_use]
     pub fn counts(&self) -> Counts {
         self.counts
+    }
+
+    /// Heading of the latest attitude, rad, which no line has; nothing if it is no finite number.
+    #[must_use]
+    pub fn yaw_rad(&self) -> Option<f64> {
+        self.yaw_rad
     }
 
     fn take(&mut self, frame: &Frame<'_>) -> Result<Option<Line>, Damage> {
@@ -106,7 +113,10 @@ impl Listener {
     /// Remembers what is told, and makes a line of an attitude.
     fn joined(&mut self, told: Told) -> Option<Line> {
         match told {
-            Told::Attitude { time_ms, values } => return Some(self.line(time_ms, values)),
+            Told::Attitude { time_ms, yaw_rad, values } => {
+                self.yaw_rad = Some(yaw_rad).filter(|yaw_rad| yaw_rad.is_finite());
+                return Some(self.line(time_ms, values));
+            }
             Told::Held(values) => values.into_iter().for_each(|it| self.hold(it)),
             Told::Target(setpoint_deg) => {
                 self.is_target = true;
@@ -149,7 +159,7 @@ mod tests {
     use super::*;
 
     fn setpoint_at(listener: &mut Listener, time_ms: u32) -> Option<f64> {
-        let line = listener.joined(Told::Attitude { time_ms, values: Vec::new() });
+        let line = listener.joined(Told::Attitude { time_ms, yaw_rad: 0.0, values: Vec::new() });
         line.expect("a line").into_iter().find(|(name, _)| *name == SETPOINT).map(|(_, it)| it)
     }
 

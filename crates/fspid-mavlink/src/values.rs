@@ -21,7 +21,7 @@ const NO_PULSE: [u16; 2] = [0, u16::MAX];
 #[derive(Debug)]
 pub(crate) enum Told {
     /// An attitude at a time, in milliseconds since the autopilot's start.
-    Attitude { time_ms: u32, values: Values },
+    Attitude { time_ms: u32, yaw_rad: f64, values: Values },
     /// Something that stands for a while.
     Held(Values),
     /// A set-point for the attitude.
@@ -68,7 +68,8 @@ fn attitude(data: &ATTITUDE_DATA) -> Result<Told, Damage> {
             ("roll_deg", degrees(data.roll)),
         ],
     )?;
-    Ok(Told::Attitude { time_ms: data.time_boot_ms, values })
+    let yaw_rad = f64::from(data.yaw);
+    Ok(Told::Attitude { time_ms: data.time_boot_ms, yaw_rad, values })
 }
 
 fn target(data: &ATTITUDE_TARGET_DATA) -> Result<Told, Damage> {

@@ -1,5 +1,7 @@
 //! Packets that pymavlink made, and packets that nobody made.
 
+mod sent;
+
 use fspid_mavlink::{Counts, Damage, Line, Listener, is_frame};
 use proptest::prelude::*;
 use serde_json::Value;
