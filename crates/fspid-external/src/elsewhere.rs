@@ -2,10 +2,13 @@
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Arc;
 
 use fspid_sim::external::{Answers, Host};
 use fspid_sim::external_plant::{Beginning, JsbsimLinear, PlantHost, Simulates};
 use fspid_sim::{External, ExternalPlant, SimError};
+
+use crate::flight_stack;
 
 /// What would start external controllers.
 #[derive(Clone, Debug)]
@@ -24,6 +27,12 @@ impl ProcessHost {
         self
     }
 
+    /// Keeps no time here.
+    #[must_use]
+    pub fn in_real_time(self, _: fn(&str)) -> Self {
+        self
+    }
+
     /// Prints nothing here.
     #[must_use]
     pub fn printing_at_most(self, _: u64) -> Self {
@@ -33,8 +42,11 @@ impl ProcessHost {
 
 impl Host for ProcessHost {
     fn start(&self, external: &External) -> Result<Box<dyn Answers>, SimError> {
+        if let Some(stack) = external.source.flight_stack() {
+            return flight_stack::start(external, stack, None, Arc::new(|_| {}));
+        }
         Err(SimError::NotStarted {
-            file: external.source.path().display().to_string(),
+            file: external.source.name(),
             reason: "external controllers talk over a socket of Unix, which this system has not"
                 .to_owned(),
             allowed: "a scenario without them, or fspid on Linux or macOS".to_owned(),

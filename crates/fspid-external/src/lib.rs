@@ -9,6 +9,8 @@
 mod archive;
 #[cfg(unix)]
 mod description;
+pub mod drive;
+mod flight_stack;
 #[cfg(unix)]
 mod fmi;
 #[cfg(unix)]
@@ -18,7 +20,6 @@ mod fmu_flight;
 mod frame;
 #[cfg(unix)]
 mod library;
-#[cfg(unix)]
 mod pace;
 #[cfg(unix)]
 mod process;

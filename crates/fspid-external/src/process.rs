@@ -21,6 +21,7 @@ use rustix::process::{Pid, Signal, WaitId, WaitIdOptions, kill_process_group, wa
 use tempfile::TempDir;
 
 use crate::archive::{archive, unpack};
+use crate::flight_stack;
 use crate::frame::{Start, read_answer, write_sample};
 use crate::library::OVERRAN;
 use crate::timed::Timed;
@@ -57,12 +58,17 @@ impl From<io::Error> for Unspawned {
     }
 }
 
+/// Where the file of a controller lies that is one: flight stacks never come here.
+fn path_of(external: &External) -> &Path {
+    external.source.path().unwrap_or(Path::new(""))
+}
+
 /// Unpacks what was read of an FMU, or else what lies there.
 fn unpack_into(folder: &Path, external: &External) -> Result<(), Unspawned> {
     let unpacked = || {
         let bytes: Arc<[u8]> = match &external.contents {
             Some(Contents(bytes)) => Arc::clone(bytes),
-            None => archive(external.source.path())?.into(),
+            None => archive(path_of(external))?.into(),
         };
         unpack(&bytes, folder)
     };
@@ -83,6 +89,8 @@ pub struct ProcessHost {
     notes: Arc<Notes>,
     /// What is still passed on of what controllers print, bytes; nothing where all is.
     prints: Option<Arc<AtomicU64>>,
+    /// Who is told how late flight stacks were, where a flight takes as long as it is.
+    real_time: Option<fn(&str)>,
 }
 
 impl ProcessHost {
@@ -91,13 +99,19 @@ impl ProcessHost {
     #[must_use]
     pub fn new(program: PathBuf, arguments: &[&str]) -> Self {
         let arguments = arguments.iter().map(OsString::from).collect();
-        Self { program, arguments, notes: Arc::default(), prints: None }
+        Self { program, arguments, notes: Arc::default(), prints: None, real_time: None }
     }
 
     /// Says who is told what a controller does that is part of no verdict: how it ends behind its last sample.
     #[must_use]
     pub fn telling(self, tell: fn(&str)) -> Self {
         Self { notes: Arc::new(Notes { tell: Some(tell), ..Notes::default() }), ..self }
+    }
+
+    /// The same that lets a flight with a flight stack take as long as it is, and tells which samples were late.
+    #[must_use]
+    pub fn in_real_time(self, tell: fn(&str)) -> Self {
+        Self { real_time: Some(tell), ..self }
     }
 
     /// The same that passes on so many bytes of what all controllers print, and drops the rest: whoever does not read our
@@ -126,12 +140,12 @@ impl ProcessHost {
         let folder = || tempfile::Builder::new().prefix(FOLDER).tempdir();
         let (stream, theirs) = UnixStream::pair()?;
         let (kind, folder) = match &external.source {
-            ExternalSource::Library(_) => (LIBRARY, None),
+            ExternalSource::Library(_) | ExternalSource::FlightStack(_) => (LIBRARY, None),
             ExternalSource::Fmu(_) => (FMU, Some(folder()?)),
             ExternalSource::FmuPlant(_) => (FMU_PLANT, Some(folder()?)),
             ExternalSource::Law(_) => return Err(io::Error::other("a control law is no program")),
         };
-        let path = folder.as_ref().map_or(external.source.path(), TempDir::path);
+        let path = folder.as_ref().map_or(path_of(external), TempDir::path);
         let (printer, [output, errors]) = self.prints()?;
         let child = Command::new(&self.program)
             .args(&self.arguments)
@@ -150,7 +164,7 @@ impl ProcessHost {
             sample: 0,
             limit: Duration::from_secs_f64(external.answer_limit_s),
             is_lost: false,
-            file: external.source.path().to_owned(),
+            file: path_of(external).to_owned(),
             notes: Arc::clone(&self.notes),
             printer,
             folder,
@@ -180,7 +194,12 @@ fn pass_on(mut reader: PipeReader, left: &AtomicU64) {
 
 impl Host for ProcessHost {
     fn start(&self, external: &External) -> Result<Box<dyn Answers>, SimError> {
-        let file = external.source.path().display().to_string();
+        if let Some(stack) = external.source.flight_stack() {
+            let notes = Arc::clone(&self.notes);
+            let tell = Arc::new(move |words| notes.tell(words));
+            return flight_stack::start(external, stack, self.real_time, tell);
+        }
+        let file = external.source.name();
         let begun = || -> Result<_, Unspawned> {
             let mut process = self.spawn(external)?;
             let start = process.begin(external)?;

@@ -9,6 +9,7 @@ use fspid_lti::{InWords, LtiError};
 
 use crate::autopilot::AutopilotError;
 use crate::external_plant::JSBSIM;
+use crate::flight_stack::Unfit;
 
 /// Why a part of a scenario could not be built.
 #[derive(Clone, Debug, PartialEq)]
@@ -100,6 +101,13 @@ pub enum SimError {
         file: String,
         /// What is wrong with the machine, or with the file since it was read.
         reason: String,
+    },
+    /// A flight stack that cannot fly this plant, or not so.
+    FlightStack {
+        /// The flight stack.
+        name: &'static str,
+        /// Why.
+        reason: Unfit,
     },
     /// A question about equations, of an aircraft that another simulator flies.
     OtherSimulator {
@@ -193,6 +201,7 @@ impl fmt::Display for SimError {
                 f,
                 "external controller {file} could not be asked, which says nothing of it: {reason}"
             ),
+            Self::FlightStack { name, reason } => write!(f, "{name} in the loop: {reason}"),
             Self::OtherSimulator { name } => {
                 write!(
                     f,

@@ -11,6 +11,7 @@ use fspid_core::{Sample, Step};
 
 use crate::control_law::SharedLaw;
 use crate::error::SimError;
+use crate::flight_stack::FlightStack;
 use crate::{AircraftSample, Seen};
 
 /// A controller that is asked and not computed.
@@ -109,8 +110,8 @@ impl fmt::Debug for Contents {
     }
 }
 
-/// The file of an external controller.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// What an external controller is.
+#[derive(Clone, Debug, PartialEq)]
 pub enum ExternalSource {
     /// A shared library with the functions of `fspid_external.h`.
     Library(PathBuf),
@@ -120,15 +121,39 @@ pub enum ExternalSource {
     FmuPlant(PathBuf),
     /// A control law in a file, which is computed here and needs no host.
     Law(SharedLaw),
+    /// ArduPilot or PX4, which is no file and comes by itself.
+    FlightStack(Box<FlightStack>),
 }
 
 impl ExternalSource {
-    /// Its path.
+    /// Its path, if it is a file.
     #[must_use]
-    pub fn path(&self) -> &std::path::Path {
+    pub fn path(&self) -> Option<&std::path::Path> {
         match self {
-            Self::Library(path) | Self::Fmu(path) | Self::FmuPlant(path) => path,
-            Self::Law(law) => &law.path,
+            Self::Library(path) | Self::Fmu(path) | Self::FmuPlant(path) => Some(path),
+            Self::Law(law) => Some(&law.path),
+            Self::FlightStack(_) => None,
+        }
+    }
+
+    /// What it is called in messages.
+    #[must_use]
+    pub fn name(&self) -> String {
+        match self {
+            Self::Library(path) | Self::Fmu(path) | Self::FmuPlant(path) => {
+                path.display().to_string()
+            }
+            Self::Law(law) => law.path.display().to_string(),
+            Self::FlightStack(stack) => format!("{} at {}", stack.protocol.name(), stack.address),
+        }
+    }
+
+    /// The flight stack, if it is one.
+    #[must_use]
+    pub fn flight_stack(&self) -> Option<&FlightStack> {
+        match self {
+            Self::FlightStack(stack) => Some(stack),
+            Self::Library(_) | Self::Fmu(_) | Self::FmuPlant(_) | Self::Law(_) => None,
         }
     }
 }
@@ -175,6 +200,66 @@ pub enum ControllerLoss {
     Gone,
     /// It could not be started, though it could before.
     NotStarted,
+    /// A flight stack did not come in time.
+    NotConnected {
+        /// The longest time until it comes, s.
+        limit_s: f64,
+    },
+    /// A flight stack closed its connection.
+    Closed,
+    /// A flight stack sent what is not of its protocol.
+    Foreign(Foreign),
+}
+
+/// What came that is not of a flight stack's protocol.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Foreign {
+    /// A packet that begins with another number.
+    Magic {
+        /// The number.
+        found: u16,
+    },
+    /// A packet of another length.
+    Length {
+        /// Its bytes.
+        found: usize,
+        /// The bytes that it should have.
+        expected: usize,
+    },
+    /// A frame that is damaged, or none.
+    Frame,
+    /// A packet of a count far behind that of the one before: it began anew.
+    Restarted,
+    /// Controls that say that nobody waits for anybody.
+    NoLockstep,
+    /// A channel that it does not have.
+    NoChannel {
+        /// Its number, from 1.
+        number: usize,
+        /// How many it has.
+        channels: usize,
+    },
+}
+
+impl fmt::Display for Foreign {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Magic { found } => {
+                write!(f, "sent a packet that begins with {found}; allowed are 18458 and 29569")
+            }
+            Self::Length { found, expected } => {
+                write!(f, "sent a packet of {found} bytes; allowed are {expected}")
+            }
+            Self::Frame => f.write_str("sent what is no whole frame of MAVLink"),
+            Self::Restarted => f.write_str("began anew in flight"),
+            Self::NoLockstep => f.write_str(
+                "does not fly in lockstep, so that its controls belong to no sample; allowed is a build with it",
+            ),
+            Self::NoChannel { number, channels } => {
+                write!(f, "sent {channels} channels, and the elevator's or the throttle's is number {number}")
+            }
+        }
+    }
 }
 
 impl ControllerLoss {
@@ -191,6 +276,9 @@ impl ControllerLoss {
             Self::NoAnswer => "no answer",
             Self::Gone => "gone",
             Self::NotStarted => "not started",
+            Self::NotConnected { .. } => "not connected",
+            Self::Closed => "closed",
+            Self::Foreign(_) => "foreign",
         }
     }
 }
@@ -224,6 +312,9 @@ impl fmt::Display for ControllerLoss {
             Self::NoAnswer => f.write_str("wrote something else than an answer"),
             Self::Gone => f.write_str("ended, and the system does not tell how"),
             Self::NotStarted => f.write_str("could not be started for this flight"),
+            Self::NotConnected { limit_s } => write!(f, "did not come within {limit_s:?} s"),
+            Self::Closed => f.write_str("closed its connection"),
+            Self::Foreign(what) => what.fmt(f),
         }
     }
 }

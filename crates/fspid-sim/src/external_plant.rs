@@ -258,9 +258,11 @@ impl From<ControllerLoss> for PlantLoss {
             ControllerLoss::Silent { limit_s } => Self::Silent { limit_s },
             ControllerLoss::Refused { .. } => Self::Refused,
             ControllerLoss::NotFinite => Self::NotFinite,
-            ControllerLoss::Overran | ControllerLoss::NoAnswer => Self::NoAnswer,
-            ControllerLoss::Gone => Self::Gone,
-            ControllerLoss::NotStarted => Self::NotStarted,
+            ControllerLoss::Overran | ControllerLoss::NoAnswer | ControllerLoss::Foreign(_) => {
+                Self::NoAnswer
+            }
+            ControllerLoss::Gone | ControllerLoss::Closed => Self::Gone,
+            ControllerLoss::NotStarted | ControllerLoss::NotConnected { .. } => Self::NotStarted,
         }
     }
 }

@@ -26,6 +26,7 @@ pub mod describing;
 mod error;
 pub mod external;
 pub mod external_plant;
+pub mod flight_stack;
 pub mod flown;
 mod generator;
 mod gust_entry;

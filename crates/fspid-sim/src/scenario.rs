@@ -8,6 +8,7 @@ use crate::controller::Controller;
 use crate::error::SimError;
 use crate::external::{External, NamedExternal};
 use crate::external_plant::{Around, ExternalFlight, ExternalPlant};
+use crate::flight_stack::Unfit;
 use crate::gust_response;
 use crate::plant::{LinearPlant, Plant, PlantChange};
 use crate::propagation::Propagation;
@@ -138,15 +139,21 @@ impl Scenario {
         self.controllers.iter().map(Flyer::Own).chain(externals)
     }
 
-    /// Starts another simulator and every external controller once and lets it go.
+    /// Starts another simulator and every external controller once and lets it go, as who flies many flights does first.
     ///
     /// # Errors
-    /// [`SimError`] names the first that cannot fly.
+    /// [`SimError`] names the first that cannot fly, or not more than once.
     pub fn start_externals(&self) -> Result<(), SimError> {
         if let Plant::External(plant) = &self.plant {
             self.external_flight(plant)?.start()?;
         }
-        self.externals.iter().try_for_each(|named| named.external.start().map(drop))
+        self.externals.iter().try_for_each(|named| match named.external.source.flight_stack() {
+            Some(stack) => {
+                let (name, reason) = (stack.protocol.name(), Unfit::ManyFlights);
+                Err(SimError::FlightStack { name, reason })
+            }
+            None => named.external.start().map(drop),
+        })
     }
 
     /// When disturbances begin to push the loop, s, ascending. Noise pushes nowhere.
@@ -175,6 +182,12 @@ impl Scenario {
             }
             sum
         };
+        for stack in self.externals.iter().filter_map(|it| it.external.source.flight_stack()) {
+            let name = stack.protocol.name();
+            stack
+                .check(&self.plant, self.autopilot.is_some())
+                .map_err(|reason| SimError::FlightStack { name, reason })?;
+        }
         let (stages, gusts) = (self.stages()?, self.gusts()?);
         let gust_responses = match (&self.surroundings.weather, &gusts) {
             (Some(weather), Some(gusts)) => {

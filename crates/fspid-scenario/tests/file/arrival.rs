@@ -8,10 +8,13 @@ use fspid_core::{
 use fspid_fuzzy::{Defuzzifier, OutOfRange, Supervisor};
 use fspid_lti::{DampedIntegrator, IntegralWeights, integral_regulator};
 use fspid_scenario::file::{self, rule_table};
+use fspid_sim::flight_stack::{
+    ElevatorChannel, FlightStack, LevelFlight, Place, Protocol, SetpointChannel,
+};
 use fspid_sim::signal::{Disturbance, Entry, Interpolation, Profile, Shape};
 use fspid_sim::{
-    Actuator, Controller, ElevatorSign, LinearPlant, NamedController, PlantChange, Scenario,
-    SimError, Surroundings, Timing,
+    Actuator, Controller, ElevatorSign, External, ExternalSource, LinearPlant, NamedController,
+    NamedExternal, PlantChange, Scenario, SimError, Surroundings, Timing,
 };
 
 use crate::file::text;
@@ -137,6 +140,84 @@ fn controllers() -> Vec<NamedController> {
     ]
 }
 
+fn externals() -> Vec<NamedExternal> {
+    let external = |name: &str, stack: FlightStack, answer_limit_s| {
+        let source = ExternalSource::FlightStack(Box::new(stack));
+        let external =
+            External { source, contents: None, answer_limit_s, dt_s: 0.01, renamed: Vec::new() };
+        NamedExternal { name: name.to_owned(), external }
+    };
+    let channel = |number, ends_deg: [f64; 2]| SetpointChannel {
+        number,
+        setpoint_rad: ends_deg.map(|end_deg| end_deg * DEG),
+    };
+    let ardupilot = FlightStack {
+        protocol: Protocol::ArduPilot { pulses_us: [1100.0, 1900.0] },
+        address: "127.0.0.1:9012".parse().expect("an address"),
+        connect_limit_s: 10.0,
+        lead_in_s: 20.0,
+        elevator: ElevatorChannel {
+            number: 1,
+            command_rad: [-25.0 * DEG, 15.0 * DEG],
+            is_reversed: true,
+        },
+        throttle: None,
+        setpoint: Some(channel(1, [-20.0, 20.0])),
+        place: Place { latitude_rad: 0.0, longitude_rad: 0.0, declination_rad: 0.0 },
+        level: Some(LevelFlight { airspeed_m_s: 50.0, altitude_m: 300.0 }),
+    };
+    let px4 = FlightStack {
+        protocol: Protocol::Px4,
+        address: "127.0.0.1:4560".parse().expect("an address"),
+        connect_limit_s: 60.0,
+        lead_in_s: 5.0,
+        elevator: ElevatorChannel {
+            number: 2,
+            command_rad: [-20.0 * DEG, 20.0 * DEG],
+            is_reversed: false,
+        },
+        throttle: None,
+        setpoint: Some(channel(2, [-45.0, 45.0])),
+        place: Place {
+            latitude_rad: 47.4 * DEG,
+            longitude_rad: 8.5 * DEG,
+            declination_rad: 3.0 * DEG,
+        },
+        level: Some(LevelFlight { airspeed_m_s: 25.0, altitude_m: 500.0 }),
+    };
+    vec![external("ardupilot", ardupilot, 2.0), external("px4", px4, 1.0)]
+}
+
+/// Numbers of channels count from 1 in the file, and throttles need an aircraft.
+#[test]
+fn a_throttle_of_an_aircraft_has_a_channel() {
+    let scenario = read(&text("crates/fspid-scenario/tests/scenarios/every-key-aircraft.toml"));
+    let stacks = scenario.externals.iter().filter_map(|it| it.external.source.flight_stack());
+    let throttles: Vec<_> = stacks.map(|stack| (stack.protocol.name(), stack.throttle)).collect();
+    assert_eq!(throttles, [("ArduPilot", Some(2)), ("PX4", Some(4))]);
+}
+
+#[test]
+fn a_flight_stack_that_does_not_fit_its_plant_is_refused_with_what_does() {
+    let refused = |from: &str, to: &str| {
+        let found = file::parse(&whole().replacen(from, to, 1), "pitch.toml", None, &[]);
+        found.err().map(|problems| problems.to_string()).unwrap_or_default()
+    };
+    let level = "airspeed_m_s = 50.0\naltitude_m = 300.0\n";
+    let said = refused(level, "");
+    assert!(said.contains("the plant shows nothing but pitch"), "{said}");
+    let said = refused(level, "airspeed_m_s = 50.0\n");
+    assert!(said.contains("altitude_m is missing"), "{said}");
+    let said = refused("setpoint_deg = [-20.0, 20.0]\n", "");
+    assert!(said.contains("setpoint_deg is missing"), "{said}");
+    let said = refused("listen = \"127.0.0.1:9012\"", "listen = \"localhost\"");
+    assert!(said.contains("such as 127.0.0.1:9002"), "{said}");
+    let said = refused("elevator_channel = 3", "elevator_channel = 17");
+    assert!(said.contains("elevator_channel"), "{said}");
+    let said = refused("pulses_us = [1100.0, 1900.0]", "throttle_channel = 3");
+    assert!(said.contains("no throttle that moves"), "{said}");
+}
+
 fn disturbances() -> Result<Vec<Disturbance>, SimError> {
     let (at_s, width_s, amplitude) = (1.0, 0.5, 0.1 * DEG);
     Ok(vec![
@@ -167,7 +248,7 @@ fn expected() -> Result<Scenario, SimError> {
         setpoint: Profile::new(1.0 * DEG, Shape::Step { at_s: 0.5 })?,
         disturbances: disturbances()?,
         controllers: controllers(),
-        externals: Vec::new(),
+        externals: externals(),
         surroundings: Surroundings::default(),
         autopilot: None,
     })

@@ -23,6 +23,8 @@ pub struct AircraftSample {
     pub aileron_rad: f64,
     /// Load factor along the body's upward axis: 1 in level flight.
     pub load_factor: f64,
+    /// Forces but for gravity along forward, right, down of the body, in weights: the load factor is the last, turned.
+    pub load_factors: [f64; 3],
     /// Velocity of the air along forward, right, down of the body, m/s: wind, gusts, turbulence.
     pub air_m_s: [f64; 3],
     /// Way over ground, m north and m east of the origin of the air.
@@ -43,6 +45,8 @@ pub struct AircraftSample {
     pub climb_m_s: f64,
     /// Speed over the ground, along it, m/s.
     pub ground_speed_m_s: f64,
+    /// The same to the north and to the east, m/s.
+    pub over_ground_m_s: [f64; 2],
     /// Rate of the speed along the path over the ground, m/s².
     pub path_acceleration_m_s2: f64,
     /// Rates of the air about forward, right, down of the body, rad/s: those of gusts and turbulence.

@@ -121,6 +121,7 @@ impl ExternalMotion {
             bank_rad: now.bank_rad,
             aileron_rad: now.aileron_rad,
             load_factor: -now.felt[2],
+            load_factors: now.felt,
             air_m_s: now.air_m_s,
             position_m: now.position_m,
             heading_rad: within_half_a_turn(now.heading_rad),
@@ -131,6 +132,7 @@ impl ExternalMotion {
             flight_path_rad: libm::atan2(now.climb_m_s, ground_speed_m_s),
             climb_m_s: now.climb_m_s,
             ground_speed_m_s,
+            over_ground_m_s: now.over_ground_m_s,
             path_acceleration_m_s2: now.path_acceleration_m_s2,
             // Simulators tell how the air moves, and not how it turns.
             air_rad_s: [0.0; 3],

@@ -26,8 +26,8 @@ pub(super) fn controller(
     (dt_s, pressure): (f64, Pressure),
 ) -> Option<Controller> {
     match section.variant()? {
-        // Built elsewhere: it has none.
-        ControllerKind::External => None,
+        // Built elsewhere: they have none.
+        ControllerKind::External | ControllerKind::ArduPilot | ControllerKind::Px4 => None,
         ControllerKind::Lqi => lqi::controller(report, section, dt_s),
         ControllerKind::P => {
             let factor = schedule::factor(report, section, pressure);

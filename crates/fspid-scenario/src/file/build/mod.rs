@@ -13,6 +13,7 @@ mod derived;
 mod ends;
 mod external;
 mod flight;
+mod flight_stack;
 mod flown;
 mod linear_aircraft;
 mod loading;
@@ -29,11 +30,13 @@ mod wind_table;
 
 pub use airframe::Airframe;
 pub use derived::{DerivedGains, GainSource};
+use flight_stack::Which;
 use flown::Flown;
 use fspid_sim::actuator::Actuator;
 use fspid_sim::signal::Disturbance;
 use fspid_sim::{
-    ElevatorSign, LinearPlant, NamedController, NamedExternal, Scenario, Surroundings, Timing,
+    Autopilot, ElevatorSign, LinearPlant, NamedController, NamedExternal, Plant, Scenario,
+    Surroundings, Timing,
 };
 pub use range_rule::RangeRule;
 use schedule::Pressure;
@@ -98,7 +101,8 @@ pub(crate) fn scenario(
         autopilot::autopilot(report, files, section, (flown.as_ref(), period_s(timing)));
     let pressure = Pressure::of(section, flown.as_ref());
     let (controllers, derived_gains) = controllers(report, files, section, (timing, pressure));
-    let externals = externals(report, files, section, (flown.as_ref(), timing));
+    let around = (flown.as_ref(), timing, autopilot.as_ref());
+    let externals = externals(report, files, section, around);
     timing::check_memory(report, section, timing);
     let names = names(section);
     let requirements = requirements(report, files, section.sections(keys::REQUIREMENT), &names);
@@ -259,14 +263,24 @@ fn externals(
     report: &mut Report,
     files: &mut Files<'_>,
     section: &Section,
-    (flown, timing): (Option<&Flown>, Option<Timing>),
+    (flown, timing, autopilot): (Option<&Flown>, Option<Timing>, Option<&Option<Autopilot>>),
 ) -> Vec<NamedExternal> {
-    let is_external = |part: &&Section| part.variant() == Some(ControllerKind::External);
+    let has_autopilot = autopilot.is_some_and(Option::is_some);
+    let plant = flown.map(|flown| &flown.plant);
+    let around = (period_s(timing), plant, has_autopilot);
+    let build = |part: &Section| match part.variant()? {
+        ControllerKind::External => external::external(report, files, part, (flown, timing)),
+        ControllerKind::ArduPilot => {
+            flight_stack::flight_stack(report, files, (part, Which::ArduPilot), around)
+        }
+        ControllerKind::Px4 => flight_stack::flight_stack(report, files, (part, Which::Px4), around),
+        // Built elsewhere: they have equations.
+        ControllerKind::P | ControllerKind::Pid | ControllerKind::Fspid | ControllerKind::Lqi => {
+            None
+        }
+    };
     let parts = section.sections(keys::CONTROLLER).iter().filter(|part| part.sound);
-    parts
-        .filter(is_external)
-        .filter_map(|part| external::external(report, files, part, (flown, timing)))
-        .collect()
+    parts.filter_map(build).collect()
 }
 
 /// True for a plant of another order.

@@ -14,6 +14,7 @@ use fspid_core::{Change, ErrorSign, IntegralForm};
 use fspid_fuzzy::Defuzzifier;
 use fspid_fuzzy::OutOfRange;
 
+use super::flight_stack::{ARDUPILOT_TABLE, PX4_TABLE};
 use super::lqi::LQI;
 use super::schedule::SCHEDULE;
 
@@ -30,6 +31,8 @@ words! {
         Fspid = "fspid",
         Lqi = "lqi",
         External = "external",
+        ArduPilot = "ardupilot",
+        Px4 = "px4",
     }
 }
 
@@ -145,6 +148,8 @@ pub(super) static CONTROLLER_TABLE: Table = of_kinds(
                 }],
             ),
         ),
+        variant(ControllerKind::ArduPilot.name(), ARDUPILOT_TABLE),
+        variant(ControllerKind::Px4.name(), PX4_TABLE),
     ],
 );
 

@@ -12,6 +12,7 @@ pub(crate) mod controller;
 pub(crate) mod data;
 pub(crate) mod dispersion;
 pub(crate) mod flight;
+pub(crate) mod flight_stack;
 mod keys;
 pub(crate) mod lqi;
 pub(crate) mod scenario;
