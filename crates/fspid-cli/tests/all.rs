@@ -14,6 +14,7 @@ mod external;
 mod external_fly;
 #[cfg(unix)]
 mod external_losses;
+mod flight_stacks;
 mod fly;
 mod foreign_fmu;
 mod fuzzy_system;

@@ -92,7 +92,7 @@ const ANSWERS: [(&str, &[i32], &str); 50] = [
 ];
 
 /// The others, whose answers the tests of their own commands look at.
-const ELSEWHERE: [&str; 4] = ["fly", "serve", "aircraft envelope", "aircraft import"];
+const ELSEWHERE: [&str; 5] = ["fly", "drive", "serve", "aircraft envelope", "aircraft import"];
 
 #[test]
 fn every_command_answers_with_one_json_object() {

@@ -158,6 +158,7 @@ pub(crate) fn host(beside_a_stream: bool, in_real_time: bool) {
         true => simulators.in_real_time(|words| note(words)),
         false => simulators,
     });
+    let host = if in_real_time { host.in_real_time(|words| note(words)) } else { host };
     set_host(match beside_a_stream {
         true => host.printing_at_most(MOST_PRINTED),
         false => host,

@@ -12,6 +12,7 @@ pub(crate) mod completions;
 pub(crate) mod contest;
 pub(crate) mod convert;
 mod drawings;
+pub(crate) mod drive;
 pub(crate) mod explain;
 pub(crate) mod export;
 pub(crate) mod external_controller;

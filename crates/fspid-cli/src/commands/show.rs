@@ -64,7 +64,7 @@ pub(crate) struct Arguments {
 }
 
 /// A number between two, in thousandths.
-fn between<const LEAST: i32, const MOST: i32>(text: &str) -> Result<f64, String> {
+pub(super) fn between<const LEAST: i32, const MOST: i32>(text: &str) -> Result<f64, String> {
     let [least, most] = [LEAST, MOST].map(|end| f64::from(end) / 1000.0);
     let number = text.parse().ok().filter(|number: &f64| *number >= least && *number <= most);
     number.ok_or_else(|| format!("allowed is a number from {least} to {most}"))
@@ -79,7 +79,7 @@ fn place(text: &str) -> Result<[f64; 2], String> {
     numbers.filter(is_there).ok_or_else(|| allowed.to_owned())
 }
 
-fn address(text: &str) -> Result<SocketAddr, String> {
+pub(super) fn address(text: &str) -> Result<SocketAddr, String> {
     let said =
         |reason: std::io::Error| format!("{reason}; allowed is HOST:PORT, such as 127.0.0.1:5505");
     let mut found = text.to_socket_addrs().map_err(said)?;

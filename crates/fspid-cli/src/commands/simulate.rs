@@ -8,6 +8,7 @@ use super::{Format, json_text};
 use crate::argument::{InFile, OutFile, written};
 use crate::exit::{Failure, note, print};
 use fspid_scenario::file;
+use fspid_sim::{NamedExternal, Scenario};
 use fspid_study::simulation::Simulation;
 use fspid_study::{output, report};
 
@@ -21,7 +22,7 @@ pub(crate) struct Arguments {
     overrides: Vec<String>,
     #[command(flatten)]
     beside: Beside,
-    /// Let each sample take as long as it is, for a scenario with `[simulator]`; each late one is told.
+    /// Let each sample take as long as it is, for a scenario with `[simulator]`, ArduPilot or PX4; each late one is told.
     #[arg(long)]
     real_time: bool,
     /// How the answer is written.
@@ -42,15 +43,21 @@ impl Arguments {
     }
 }
 
+/// True where somebody else flies with us, who may have a clock or a person beside it.
+fn has_another_clock(scenario: &Scenario) -> bool {
+    let is_stack = |named: &NamedExternal| named.external.source.flight_stack().is_some();
+    scenario.plant.external().is_some() || scenario.externals.iter().any(is_stack)
+}
+
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let overrides = arguments.beside.overrides(&arguments.overrides)?;
     let study = file::load(&arguments.file, &overrides).map_err(Failure::load)?;
     for warning in &study.warnings {
         note(format_args!("warning: {warning}"));
     }
-    if arguments.real_time && study.scenario.plant.external().is_none() {
+    if arguments.real_time && !has_another_clock(&study.scenario) {
         return Err(Failure::input(
-            "--real-time goes with a scenario that has [simulator]; `fspid show` shows the trace of any flight at its pace",
+            "--real-time goes with a scenario that has [simulator], ArduPilot or PX4; `fspid show` shows the trace of any flight at its pace",
         ));
     }
     let simulation = at_work("flying", || Simulation::of(&study)).map_err(Failure::input)?;

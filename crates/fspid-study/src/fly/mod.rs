@@ -35,12 +35,14 @@
 //! client. Nor a clock: the client says when a sample is.
 
 mod flyer;
+mod hand;
 mod line;
 mod log;
 mod pilot;
 mod rate;
 mod stream;
 
+pub use hand::Hand;
 pub use line::Angles;
 pub use log::Summary;
 pub use pilot::{Answer, ChoiceError, Pilot};

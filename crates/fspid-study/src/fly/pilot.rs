@@ -87,10 +87,7 @@ impl Pilot {
         name: Option<&str>,
         angles: Angles,
     ) -> Result<Self, ChoiceError> {
-        let flyer = match chosen(scenario, name)? {
-            Named::Own(named) => Flyer::own(named.controller),
-            Named::External(named) => Flyer::external(named.external.clone())?,
-        };
+        let flyer = flyer(scenario, name)?;
         let rate = RateFilter::new(flyer.period_s());
         Ok(Self { flyer, angles, sample: 0, rate, log: Log::default() })
     }
@@ -219,6 +216,14 @@ impl Pilot {
         }
         estimate_rad_s
     }
+}
+
+/// The scenario's controller of that name, or its only one, before its first sample.
+pub(super) fn flyer(scenario: &Scenario, name: Option<&str>) -> Result<Flyer, ChoiceError> {
+    Ok(match chosen(scenario, name)? {
+        Named::Own(named) => Flyer::own(named.controller),
+        Named::External(named) => Flyer::external(named.external.clone())?,
+    })
 }
 
 fn chosen<'a>(scenario: &'a Scenario, name: Option<&str>) -> Result<Named<'a>, ChoiceError> {
