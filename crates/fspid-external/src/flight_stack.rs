@@ -10,7 +10,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use fspid_sim::core::{Faults, Gains, Sample, Step};
-use fspid_sim::external::{Answers, Foreign, Lost};
+use fspid_sim::external::{Answers, Asked, Foreign, Lost};
 use fspid_sim::flight_stack::{Aboard, FlightStack, LevelFlight, Protocol};
 use fspid_sim::{AircraftSample, ControllerLoss, External, Seen, SimError};
 
@@ -255,8 +255,8 @@ impl Answers for Flight {
         }
     }
 
-    fn throttle(&self) -> Option<f64> {
-        self.throttle
+    fn asked(&self) -> Asked {
+        Asked { throttle: self.throttle, ..Asked::default() }
     }
 }
 

@@ -35,8 +35,8 @@ use flown::Flown;
 use fspid_sim::actuator::Actuator;
 use fspid_sim::signal::Disturbance;
 use fspid_sim::{
-    Autopilot, ElevatorSign, LinearPlant, NamedController, NamedExternal, Plant, Scenario,
-    Surroundings, Timing,
+    Autopilot, ElevatorSign, LinearPlant, NamedController, NamedExternal, Scenario, Surroundings,
+    Timing,
 };
 pub use range_rule::RangeRule;
 use schedule::Pressure;
@@ -273,7 +273,9 @@ fn externals(
         ControllerKind::ArduPilot => {
             flight_stack::flight_stack(report, files, (part, Which::ArduPilot), around)
         }
-        ControllerKind::Px4 => flight_stack::flight_stack(report, files, (part, Which::Px4), around),
+        ControllerKind::Px4 => {
+            flight_stack::flight_stack(report, files, (part, Which::Px4), around)
+        }
         // Built elsewhere: they have equations.
         ControllerKind::P | ControllerKind::Pid | ControllerKind::Fspid | ControllerKind::Lqi => {
             None
