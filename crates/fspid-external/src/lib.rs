@@ -26,6 +26,8 @@ mod process;
 #[cfg(unix)]
 mod serve;
 #[cfg(unix)]
+mod shown;
+#[cfg(unix)]
 mod simulator;
 #[cfg(unix)]
 mod timed;

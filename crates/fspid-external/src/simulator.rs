@@ -23,6 +23,7 @@ use crate::fmu_flight::FmuFlight;
 use crate::frame::{numbers, read, text};
 use crate::pace::Pace;
 use crate::process::{ProcessHost, ended, ending};
+use crate::shown::{FOOT_M, SAMPLE, number_of, sample_of};
 use crate::timed::Timed;
 
 /// The program that flies JSBSim.
@@ -43,11 +44,6 @@ const LINEAR: usize = 46;
 /// Of a linear model, which flies nowhere.
 const NO_FLIGHT: Beginning =
     Beginning { step_s: 0.01, steps: 1, wind_m_s: None, moves_throttle: false };
-const FOOT_M: f64 = 0.3048;
-/// Numbers that JSBSim shows at a sample, in its units.
-const SHOWN: usize = 34;
-/// Bytes of a sample: its number, and the numbers.
-const SAMPLE: usize = 8 + 8 * SHOWN;
 
 /// Starts a process of Python for each flight of another simulator.
 #[derive(Clone, Debug)]
@@ -381,58 +377,6 @@ fn first(from: &mut impl io::Read) -> io::Result<(Begin, Option<[u8; SAMPLE]>)> 
         }
         _ => return Err(io::ErrorKind::InvalidData.into()),
     })
-}
-
-fn number_of(frame: &[u8; SAMPLE]) -> u64 {
-    let [number, ..] = numbers::<1>(frame);
-    number.to_bits()
-}
-
-/// The sample of what JSBSim shows, in the order of the bridge, in feet and pounds.
-fn sample_of(frame: &[u8; SAMPLE]) -> Option<PlantSample> {
-    let [theta, q, bank, airspeed, altitude, height, alpha, elevator, aileron, rest @ ..] =
-        numbers::<SHOWN>(frame.get(8..)?);
-    let [u, v, w, u_aero, v_aero, w_aero, x_lb, y_lb, z_lb, weight_lb, touches, rest @ ..] = rest;
-    let [heading, sideslip, p, r, throttle, climb, north, east, north_m, east_m, rest @ ..] = rest;
-    let [u_dot, v_dot, w_dot, throttle_command] = rest;
-    // How the air moves is how the body moves less how it moves through the air.
-    let air = [u - u_aero, v - v_aero, w - w_aero].map(|ft_s| ft_s * FOOT_M);
-    let felt = [x_lb, y_lb, z_lb].map(|force_lb| force_lb / weight_lb);
-    // Turning with the body changes no length.
-    let speed = (u * u + v * v + w * w).sqrt();
-    let gained = (u * u_dot + v * v_dot + w * w_dot) / speed;
-    let [air_x, air_y, air_z] = air;
-    let [felt_x, felt_y, felt_z] = felt;
-    PlantSample::of(&[
-        theta,
-        q,
-        bank,
-        airspeed * FOOT_M,
-        altitude * FOOT_M,
-        height * FOOT_M,
-        alpha,
-        elevator,
-        aileron,
-        air_x,
-        air_y,
-        air_z,
-        felt_x,
-        felt_y,
-        felt_z,
-        touches,
-        heading,
-        sideslip,
-        p,
-        r,
-        throttle,
-        climb * FOOT_M,
-        north * FOOT_M,
-        east * FOOT_M,
-        north_m,
-        east_m,
-        if speed > 0.0 { gained * FOOT_M } else { 0.0 },
-        throttle_command,
-    ])
 }
 
 impl Simulates for Process {

@@ -266,3 +266,18 @@ fn calm_air_aloft_does_not_move_and_bad_numbers_are_refused() {
     }
     assert!(Dryden::new(&turbulence(), 0.0).is_err());
 }
+
+/// So that velocities of the air can be told to a simulator whose aircraft's span nobody here knows.
+#[test]
+fn the_span_moves_rates_of_the_air_alone() {
+    let flown = |wing_span_m: f64| {
+        let dryden =
+            Dryden::new(&Turbulence { wing_span_m, ..turbulence() }, 0.01).expect("allowed");
+        let mut state = dryden.start();
+        (1..=500).for_each(|k| dryden.advance(&mut state, k));
+        dryden.motion(&state)
+    };
+    let (short, long) = (flown(10.0), flown(60.0));
+    assert_eq!(short.body_m_s, long.body_m_s);
+    assert_ne!(short.body_rad_s, long.body_rad_s);
+}
