@@ -306,17 +306,17 @@ mod tests {
     #[test]
     fn channels_turn_into_commands_by_a_straight_line_with_ends() {
         let elevator =
-            |is_reversed| ElevatorChannel { number: 1, command_rad: [-0.2, 0.4], is_reversed };
+            |is_reversed| ElevatorChannel { number: 1, command_rad: [-0.25, 0.5], is_reversed };
         let ardupilot = Protocol::ArduPilot { pulses_us: [1000.0, 2000.0] };
         let command = |pulse_us, is_reversed| {
             elevator(is_reversed).command_rad(ardupilot.fraction(pulse_us).expect("a pulse"))
         };
-        assert_eq!(command(1500.0, false), (0.1, false));
-        assert_eq!(command(1500.0, true), (0.1, false));
-        assert_eq!(command(1000.0, false), (-0.2, true));
-        assert_eq!(command(1000.0, true), (0.4, true));
+        assert_eq!(command(1500.0, false), (0.125, false));
+        assert_eq!(command(1500.0, true), (0.125, false));
+        assert_eq!(command(1000.0, false), (-0.25, true));
+        assert_eq!(command(1000.0, true), (0.5, true));
         assert!(command(2100.0, false).1);
-        assert!((command(2100.0, false).0 - 0.4).abs() < 1e-15);
+        assert_eq!(command(2100.0, false).0.to_bits(), 0.5_f64.to_bits());
         assert_eq!(ardupilot.fraction(0.0), None);
         assert_eq!(Protocol::Px4.fraction(-1.0), Some(0.0));
         assert_eq!(Protocol::Px4.fraction(1.0), Some(1.0));
