@@ -14,7 +14,7 @@ use crate::error::AircraftError;
 ///
 /// # Source
 /// B. W. McCormick, Aerodynamics, Aeronautics, and Flight Mechanics, on the drag due to lift in ground effect (recalled
-/// and found again in two public calculators; the book was not at hand). The second summand is ours.
+/// and found again on the pages of a public calculator; the book was not at hand). The second summand is ours.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GroundEffect {
     span_m: f64,
