@@ -15,6 +15,7 @@
     clippy::approx_constant,
     reason = "coefficients as their source prints them"
 )]
+#![allow(clippy::float_cmp, reason = "quarters of a turn are counted in whole numbers")]
 
 /// The high word of a number's bits.
 const HIGH: u64 = 0xFFFF_FFFF_0000_0000;
@@ -243,8 +244,8 @@ fn log2_in_two(x: f64) -> [f64; 2] {
     let bits = x.to_bits();
     let mantissa = bits & 0x000F_FFFF_FFFF_FFFF;
     // Around 1, around 1.5, around 2.
-    let middle = (mantissa > 0x3988E_FFFF_FFFF) & (mantissa < 0xBB67A << 32);
-    let upper = mantissa >= 0xBB67A << 32;
+    let middle = (mantissa > 0x0003_988E_FFFF_FFFF) & (mantissa < 0x000B_B67A << 32);
+    let upper = mantissa >= 0x000B_B67A << 32;
     let (centre, dp_h, dp_l) = if middle { (1.5, DP_HIGH, DP_LOW) } else { (1.0, 0.0, 0.0) };
     let exponent = f64::from_bits(TWO_52.to_bits() | (bits >> 52)) - TWO_52 - 1023.0;
     let n = exponent + if upper { 1.0 } else { 0.0 };
