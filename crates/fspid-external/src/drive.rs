@@ -238,10 +238,14 @@ impl Link {
         followed.unwrap_or(Sender { system: 1, component: 1 })
     }
 
+    /// To whom it may be sent, once that is known.
+    fn target(&self) -> Option<SocketAddr> {
+        self.to.or(self.from.filter(|from| from.ip().is_loopback()))
+    }
+
     /// Sends to whom it may be sent. Nobody there is no error: attitudes say who is.
     fn send(&mut self, message: &Outgoing) {
-        let heard = self.from.filter(|from| from.ip().is_loopback());
-        if let Some(to) = self.to.or(heard) {
+        if let Some(to) = self.target() {
             let frame = self.encoder.frame(message);
             let _ = self.socket.send_to(&frame, to);
         }
@@ -249,7 +253,8 @@ impl Link {
 
     /// Says that we are there, and wishes for attitudes at our rate, once a second.
     fn beat(&mut self) {
-        if self.beaten.is_none_or(|at| at.elapsed() >= HEARTBEAT) {
+        let is_due = self.beaten.is_none_or(|at| at.elapsed() >= HEARTBEAT);
+        if is_due && self.target().is_some() {
             self.beaten = Some(Instant::now());
             self.send(&Outgoing::Heartbeat);
             if self.attitude.is_some() {
