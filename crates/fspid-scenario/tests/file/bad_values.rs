@@ -282,8 +282,12 @@ fn every_number_refuses_what_is_no_finite_number_at_its_own_line() {
     for text in texts().into_iter().chain([external, fmu]) {
         let document = as_json(&text);
         for number in numbers(&text) {
+            // A key that another text has had all of it is asked once more.
+            let path = normalised(&refuse(&text, &number, "nan"), &document);
+            if !covered.insert(path) {
+                continue;
+            }
             for value in [
-                "nan",
                 "-nan",
                 "inf",
                 "-inf",
@@ -295,8 +299,7 @@ fn every_number_refuses_what_is_no_finite_number_at_its_own_line() {
                 "{}",
                 "2026-11-20",
             ] {
-                let path = refuse(&text, &number, value);
-                covered.insert(normalised(&path, &document));
+                refuse(&text, &number, value);
             }
         }
     }
