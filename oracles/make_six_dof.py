@@ -11,12 +11,15 @@ from math import atan2, cos, degrees, exp, hypot, log, radians, sin, sqrt, tan
 from fixture import write
 
 FOOT, POUND = 0.3048, 4.4482216152605
-G = 32.2 * FOOT
-MASS = 2750.0 * POUND / G
+# The mass is that of the source's gravity; what pulls in the standard atmosphere is the standard's.
+MASS = 2750.0 * POUND / (32.2 * FOOT)
+G = 9.80665
 SLUG_FT2 = POUND * FOOT
 IX, IY, IZ = (number * SLUG_FT2 for number in (1048.0, 3000.0, 3530.0))
 S, B, C = 184.0 * FOOT**2, 33.4 * FOOT, 5.7 * FOOT
 U0 = 176.0 * FOOT
+# The lift of the reference carries the weight there: 0.4058, which the book rounds to 0.41.
+CL1 = 2750.0 / (0.5 * 0.002378 * 176.0**2 * 184.0)
 
 SAMPLE, SUBSTEPS, SECONDS = 0.01, 20, 40
 ENGINE_LAG, SERVO_LAG, BANK_TIME = 1.0, 0.1, 3.0
@@ -57,7 +60,7 @@ def rates(state, command, aileron, trim_elevator, throttle):
     pressure = 0.5 * density(-down) * speed * speed
     elevator = trim_elevator - deflection
     half_chord, half_span = 0.5 * C / speed, 0.5 * B / speed
-    lift = 0.41 + 4.44 * alpha + 3.8 * half_chord * q + 0.355 * elevator
+    lift = CL1 + 4.44 * alpha + 3.8 * half_chord * q + 0.355 * elevator
     drag = 0.05 + 0.33 * alpha
     side = -0.564 * beta
     roll = -0.074 * beta + half_span * (-0.41 * p + 0.107 * r) - 0.134 * aileron
@@ -113,7 +116,7 @@ def trim():
         drag = 0.05 + 0.33 * alpha
         # Along the path: T cos(alpha) = D; across it: L + T sin(alpha) = W.
         lift = MASS * G / (pressure * S) - drag * tan(alpha)
-        alpha = (lift - 0.41 - 0.355 * elevator) / 4.44
+        alpha = (lift - CL1 - 0.355 * elevator) / 4.44
     elevator = -0.683 * alpha / 0.923
     throttle = (0.05 + 0.33 * alpha) / cos(alpha) / 0.05
     return alpha, elevator, throttle
@@ -142,7 +145,8 @@ def main():
             rows.append((k // 100, north, east, -down, speed, *angles, power))
         # The leveller has heard of the bank that was asked for a sample before.
         aileron = -gain * (phi - bank)
-        bank = min(max(1.2 * (radians(60.0) - psi), -limit), limit)
+        # At its first sample a loop takes over what is commanded.
+        bank = min(max(1.2 * (radians(60.0) - psi), -limit), limit) if k else 0.0
         command = 1.5 * ((radians(2.0) if k >= 200 else 0.0) - (theta - alpha))
         throttle = min(max(throttle_trim + 0.1 * (U0 - speed), 0.0), 2.0)
         for _ in range(SUBSTEPS):

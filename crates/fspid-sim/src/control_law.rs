@@ -82,3 +82,35 @@ impl Answers for LawInFlight {
         self.asked
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[derive(Debug)]
+    struct Answering(LawAnswer);
+
+    impl ControlLaw for Answering {
+        fn answer(&self, _: &Seen, _: &AircraftSample) -> LawAnswer {
+            self.0
+        }
+    }
+
+    fn asked(command_rad: f64, asked: Asked) -> Result<Step<f64>, ControllerLoss> {
+        let law = Arc::new(Answering(LawAnswer { command_rad, asked }));
+        let shared = SharedLaw { path: PathBuf::from("a.dml"), law };
+        let seen =
+            Seen { k: 0, setpoint_rad: 0.0, theta_rad: 0.0, q_rad_s: 0.0, measured: [0.0; 2] };
+        shared.start().answer_aboard(&seen, Some(&AircraftSample::default()))
+    }
+
+    #[test]
+    fn a_law_that_answers_no_number_anywhere_is_lost_and_not_followed() {
+        assert_eq!(asked(0.1, Asked::default()).map(|step| step.command_rad), Ok(0.1));
+        let throttle = Asked { throttle: Some(f64::NAN), ..Asked::default() };
+        let rudder = Asked { lateral_rad: Some([0.0, f64::INFINITY]), ..Asked::default() };
+        for (command_rad, more) in [(f64::NAN, Asked::default()), (0.0, throttle), (0.0, rudder)] {
+            assert_eq!(asked(command_rad, more).err(), Some(ControllerLoss::NotFinite));
+        }
+    }
+}

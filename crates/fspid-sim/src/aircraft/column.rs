@@ -5,7 +5,7 @@ use fspid_aircraft::Departure;
 use super::changing::Shown;
 
 /// What is observable of an aircraft at a sample, beyond what every plant shows.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AircraftSample {
     /// True airspeed, m/s.
     pub airspeed_m_s: f64,

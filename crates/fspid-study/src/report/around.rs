@@ -1,8 +1,9 @@
 //! What an autopilot around the loop holds and when, to be drawn beside what the aircraft did.
 
 use fspid_plot::{Series, SeriesStyle};
+use fspid_sim::aircraft::DEPLOYMENT_COLUMNS;
 use fspid_sim::autopilot::{Autopilot, Mode, Moves, Quantity};
-use fspid_sim::{Timing, Trace};
+use fspid_sim::{AircraftPlant, Timing, Trace};
 
 use fspid_page::number::significant;
 use fspid_scenario::units::degrees;
@@ -31,7 +32,7 @@ pub(super) enum Shown {
 }
 
 /// The panels of an aircraft's motion, from above.
-pub(super) const PANELS: [Panel; 9] = {
+pub(super) const PANELS: [Panel; 11] = {
     use Quantity::{Airspeed, Altitude, FlightPath, GlideSlope, Heading, VerticalSpeed};
     use Shown::{Always, WhereHeld, WhereItMoves};
     [
@@ -66,6 +67,12 @@ pub(super) const PANELS: [Panel; 9] = {
         },
         plain("air, downward [m/s]", "air_down_m_s", Always),
         plain("throttle", "throttle", WhereItMoves),
+        plain(
+            "share of the drag due to lift that the ground leaves",
+            "ground_effect",
+            WhereItMoves,
+        ),
+        plain("fuel [kg]", "fuel_kg", Always),
     ]
 };
 
@@ -130,6 +137,26 @@ impl Panel {
     pub(super) fn is_in_degrees(&self) -> bool {
         self.column.ends_with("_rad")
     }
+}
+
+/// How far each configuration is out that moves in the flight.
+pub(super) fn deployments(plant: &AircraftPlant, trace: &Trace) -> Vec<Series> {
+    let model = plant.aircraft().model().varied();
+    let names = model.iter().flat_map(|model| model.deployed());
+    let names = names.map(|deployed| deployed.configuration.name.clone());
+    let columns = DEPLOYMENT_COLUMNS.into_iter().map(|column| trace.column(column));
+    let moving = names.zip(columns).filter_map(|(name, column)| {
+        let column = column.filter(|values| values.iter().any(|it| it != &values[0]))?;
+        Some((name, column.to_vec()))
+    });
+    let series = |(index, (name, y)): (usize, (String, Vec<f64>))| Series {
+        name,
+        style: SeriesStyle::Numbered(index),
+        x: trace.time_s.clone(),
+        y,
+        stairs: false,
+    };
+    moving.enumerate().map(series).collect()
 }
 
 /// The mode of a number of a trace, which counts from 1.
@@ -203,7 +230,10 @@ mod tests {
             assert!(drawn(column).is_none(), "{column}");
         }
         let words = in_words(" of PID", &began);
-        assert!(words.contains("modes of PID: level at 0 s, climb at 5 s, capture at "), "{words}");
+        assert!(
+            words.contains("modes of PID: level at 0 s, climb at 5.00 s, capture at "),
+            "{words}"
+        );
         assert_eq!(in_words("", &began[..1]), "");
     }
 }

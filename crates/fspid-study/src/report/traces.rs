@@ -114,7 +114,22 @@ impl Drawing<'_> {
         if !self.detailed {
             return Vec::new();
         }
-        around::PANELS.iter().filter_map(|panel| self.column(panel)).collect()
+        let columns = around::PANELS.iter().filter_map(|panel| self.column(panel));
+        columns.chain(self.deployments()).collect()
+    }
+
+    /// Configurations that move: the same in every flight, so that those of the first are drawn.
+    fn deployments(&self) -> Option<LinePanel> {
+        let (plant, flights) = self.aircraft()?;
+        let series = around::deployments(plant, flights.first()?.2);
+        (!series.is_empty()).then(|| LinePanel {
+            y_label: "share out".to_owned(),
+            x_label: "time [s]".to_owned(),
+            series,
+            x_range: self.window(),
+            y_range: Some((-0.05, 1.05)),
+            ..LinePanel::default()
+        })
     }
 
     /// The flights of a nonlinear aircraft, as they are drawn, and the aircraft.
@@ -286,7 +301,8 @@ impl Drawing<'_> {
                     let bare = panel.label.split(" [").next().unwrap_or(panel.label);
                     bare.replace(", downward", " moving downwards")
                 };
-                flown.map(word).collect()
+                let moved = self.deployments().map(|_| "how far configurations are out".to_owned());
+                flown.map(word).chain(moved).collect()
             }
             Part::Side => vec![
                 "altitude over the way over ground, with the air that the first flight met as arrows where it moves; \

@@ -82,6 +82,11 @@ fn what_a_law_cannot_fly_is_refused_with_what_it_can() {
     assert!(unset.contains("a flight has no `altitudeMslCommand`"), "{unset}");
     let unknown = refused("trimmedPilotControl_long", "trim");
     assert!(unknown.contains("there is no input `trim`; the file has altitudeMsl"), "{unknown}");
+    let mode = refused(
+        "[[controller]]",
+        "[[mode]]\nname = \"turn\"\nengage = []\nbank_deg = 20.0\n\n[[controller]]",
+    );
+    assert!(mode.contains("outer loops or modes would too"), "{mode}");
     let power = refused("trims = \"elevator\"", "trims = \"throttle\"");
     assert!(power.contains("powerLeverAngle"), "{power}");
 }

@@ -15,15 +15,15 @@ fn a_turn_in_a_wind_is_the_flight_of_other_equations() {
     let trace = fspid_sim::simulate(&study.scenario).expect("it flies").traces.remove(0);
     let deg = f64::to_degrees;
     let columns: [(&str, fn(f64) -> f64, f64); 9] = [
-        ("north_m", |it| it, 1e-4),
-        ("east_m", |it| it, 1e-4),
-        ("altitude_m", |it| it, 1e-4),
-        ("airspeed_m_s", |it| it, 1e-5),
-        ("bank_rad", deg, 1e-5),
-        ("attitude_rad", deg, 1e-5),
-        ("heading_rad", deg, 1e-5),
-        ("q_rad_s", deg, 1e-5),
-        ("throttle", |it| it, 1e-7),
+        ("north_m", |it| it, 1e-6),
+        ("east_m", |it| it, 1e-6),
+        ("altitude_m", |it| it, 1e-6),
+        ("airspeed_m_s", |it| it, 1e-7),
+        ("bank_rad", deg, 1e-6),
+        ("attitude_rad", deg, 1e-6),
+        ("heading_rad", deg, 1e-6),
+        ("q_rad_s", deg, 1e-6),
+        ("throttle", |it| it, 1e-9),
     ];
     let mut seconds = 0;
     for (second, line) in THEIRS.lines().skip(1).enumerate() {

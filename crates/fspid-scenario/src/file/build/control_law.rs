@@ -22,8 +22,15 @@ pub(super) fn law(
     report: &mut Report,
     files: &mut Files<'_>,
     section: &Section,
-    (flown, timing): (&Flown, Timing),
+    (flown, timing, has_autopilot): (&Flown, Timing, bool),
 ) -> Option<ExternalSource> {
+    if has_autopilot {
+        let message =
+            "a control law moves all controls by itself, and outer loops or modes would too";
+        let allowed = "one of both: `control_law`, or `outer_loop`, `total_energy` and `mode`";
+        section.wrong(report, keys::CONTROL_LAW, message, allowed);
+        return None;
+    }
     let Some(plant) = flown.plant.aircraft() else {
         let message = "a control law hears all that an aircraft shows, and this plant shows pitch";
         let allowed = "a nonlinear aircraft of fspid, as `[aircraft]`";

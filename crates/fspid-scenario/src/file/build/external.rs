@@ -18,12 +18,12 @@ pub(super) fn external(
     report: &mut Report,
     files: &mut Files<'_>,
     section: &Section,
-    (flown, timing): (Option<&Flown>, Option<Timing>),
+    (flown, timing, has_autopilot): (Option<&Flown>, Option<Timing>, bool),
 ) -> Option<NamedExternal> {
     let name = section.get(keys::NAME)?.to_owned();
     let dt_s = period_s(timing);
     if section.given(keys::CONTROL_LAW) {
-        let source = control_law::law(report, files, section, (flown?, timing?))?;
+        let source = control_law::law(report, files, section, (flown?, timing?, has_autopilot))?;
         let (contents, renamed) = (None, Vec::new());
         let answer_limit_s = section.get(keys::ANSWER_LIMIT_S)?;
         let external = External { source, contents, answer_limit_s, dt_s, renamed };

@@ -269,7 +269,9 @@ fn externals(
     let plant = flown.map(|flown| &flown.plant);
     let around = (period_s(timing), plant, has_autopilot);
     let build = |part: &Section| match part.variant()? {
-        ControllerKind::External => external::external(report, files, part, (flown, timing)),
+        ControllerKind::External => {
+            external::external(report, files, part, (flown, timing, has_autopilot))
+        }
         ControllerKind::ArduPilot => {
             flight_stack::flight_stack(report, files, (part, Which::ArduPilot), around)
         }
