@@ -146,7 +146,7 @@ pub(super) fn deployments(plant: &AircraftPlant, trace: &Trace) -> Vec<Series> {
     let names = names.map(|deployed| deployed.configuration.name.clone());
     let columns = DEPLOYMENT_COLUMNS.into_iter().map(|column| trace.column(column));
     let moving = names.zip(columns).filter_map(|(name, column)| {
-        let column = column.filter(|values| values.iter().any(|it| it != &values[0]))?;
+        let column = column.filter(|values| moves(values))?;
         Some((name, column.to_vec()))
     });
     let series = |(index, (name, y)): (usize, (String, Vec<f64>))| Series {
@@ -157,6 +157,11 @@ pub(super) fn deployments(plant: &AircraftPlant, trace: &Trace) -> Vec<Series> {
         stairs: false,
     };
     moving.enumerate().map(series).collect()
+}
+
+/// True for values that are not all the same one.
+pub(super) fn moves(values: &[f64]) -> bool {
+    values.windows(2).any(|pair| matches!(pair, [one, next] if one.to_bits() != next.to_bits()))
 }
 
 /// The mode of a number of a trace, which counts from 1.

@@ -246,7 +246,7 @@ impl Drawing<'_> {
         };
         let drawn = |values: &Vec<f64>| match panel.shown {
             Shown::Always => true,
-            Shown::WhereItMoves => moves(values),
+            Shown::WhereItMoves => around::moves(values),
             Shown::WhereHeld => around.is_some_and(|(autopilot, _)| panel.is_held(autopilot)),
         };
         self.flown().filter_map(|(_, result)| values(&result.trace)).find(drawn)?;
@@ -430,11 +430,6 @@ fn shown<'a, T>(trace: &Trace, column: &'a [T]) -> &'a [T] {
     };
     let end = if steps_at_end { column.len().saturating_sub(1) } else { column.len() };
     column.get(..end).unwrap_or(column)
-}
-
-/// True for values that are not all the same one.
-fn moves(values: &[f64]) -> bool {
-    values.windows(2).any(|pair| matches!(pair, [one, next] if one.to_bits() != next.to_bits()))
 }
 
 /// True for a flight that fails and may go anywhere: what comes down to the ground stays as readable as it was.

@@ -6,6 +6,9 @@ use fspid_scenario::file;
 
 const THEIRS: &str = include_str!("../data/six_dof/flight.csv");
 
+/// A column, its unit, and how close it has to be.
+type Column = (&'static str, fn(f64) -> f64, f64);
+
 /// A pitch step in a turn in a steady wind that rises, with a lagging engine and servo: quaternion and 10 ms here, Euler
 /// angles and 0.5 ms there. Both are of order four, and differ by what 10 ms leave over.
 #[test]
@@ -14,7 +17,7 @@ fn a_turn_in_a_wind_is_the_flight_of_other_equations() {
     let study = file::load(&folder.join("flight.toml"), &[]).expect("a scenario");
     let trace = fspid_sim::simulate(&study.scenario).expect("it flies").traces.remove(0);
     let deg = f64::to_degrees;
-    let columns: [(&str, fn(f64) -> f64, f64); 9] = [
+    let columns: [Column; 9] = [
         ("north_m", |it| it, 1e-6),
         ("east_m", |it| it, 1e-6),
         ("altitude_m", |it| it, 1e-6),
