@@ -50,7 +50,7 @@ impl fmt::Display for Expression {
 }
 
 /// Reads a formula.
-fn parse(text: &str) -> Result<Expression, FormulaError> {
+pub(crate) fn parse(text: &str) -> Result<Expression, FormulaError> {
     let mut parser = Parser { text, at: 0 };
     let formula = parser.expression(0)?;
     if parser.rest().is_empty() { Ok(formula) } else { Err(parser.unexpected("the end")) }
@@ -58,7 +58,7 @@ fn parse(text: &str) -> Result<Expression, FormulaError> {
 
 /// What is wrong with a formula.
 #[derive(Clone, Debug, PartialEq, Eq)]
-enum FormulaError {
+pub(crate) enum FormulaError {
     Unexpected { found: String, expected: &'static str },
     Number { found: String },
     Function { found: String },

@@ -39,7 +39,7 @@ use crate::finding::{Findings, Origin};
 use crate::xml::Reading;
 use fspid_diagnostics::Problems;
 
-pub(crate) use formula::{is_name, text_of_formula};
+pub(crate) use formula::{is_name, parse, text_of_formula};
 
 /// Version of the keys.
 const SCHEMA: u32 = 1;

@@ -26,6 +26,8 @@ use quantity::{Quantities, Quantity};
 #[derive(Clone, Debug)]
 pub struct TableForces {
     aerodynamics: Wired<6>,
+    /// True where the loads of the air depend on the rate of the angle of attack.
+    by_alpha_rate: bool,
     axes: ForceAxes,
     engine: Option<Wired<6>>,
     reference: Geometry,
@@ -114,7 +116,11 @@ impl TableForces {
         for model in core::iter::once(&aerodynamics).chain(&engine) {
             narrow(&mut validity, model)?;
         }
+        let by_alpha_rate = aerodynamics
+            .inputs()
+            .any(|port| Quantity::named(&port.name) == Some(Quantity::AlphaRate));
         Ok(Self {
+            by_alpha_rate,
             aerodynamics: Wired::new(aerodynamics, axes.coefficients())?,
             axes,
             engine: engine.map(|engine| Wired::new(engine, &THRUST)).transpose()?,
@@ -151,6 +157,13 @@ impl TableForces {
         }
     }
 
+    /// Loads about the centre of mass, of those about the moment reference centre.
+    fn about_centre_of_mass(&self, loads: Loads) -> Loads {
+        let Loads { force_n, moment_n_m } = loads;
+        let moment_n_m = moment_n_m - self.setting.centre_of_mass_m.cross(force_n);
+        Loads { force_n, moment_n_m }
+    }
+
     fn thrust(&self, quantities: &Quantities) -> Loads {
         let answer = self.engine.as_ref().map(|engine| engine.answer(quantities));
         let [x, y, z, roll, pitch, yaw] = answer.unwrap_or_default();
@@ -181,9 +194,18 @@ impl ForceModel for TableForces {
     fn loads(&self, flow: &Flow, controls: &Controls) -> Loads {
         let quantities = self.quantities(flow, controls);
         let air = self.air(&quantities, flow);
-        let Loads { force_n, moment_n_m } = air.plus(self.thrust(&quantities));
-        let moment_n_m = moment_n_m - self.setting.centre_of_mass_m.cross(force_n);
-        Loads { force_n, moment_n_m }
+        self.about_centre_of_mass(air.plus(self.thrust(&quantities)))
+    }
+
+    /// Loads at 1 rad/s less those at rest, with the surfaces at 0: of models that are linear in `angleOfAttackRate`, none
+    /// of whose surfaces is a factor of it.
+    fn loads_per_alpha_rate(&self, flow: &Flow) -> Loads {
+        if !self.by_alpha_rate {
+            return Loads::default();
+        }
+        let at_rest = self.quantities(flow, &Controls::default());
+        let moving = self.air(&at_rest.with_alpha_rate(1.0), flow);
+        self.about_centre_of_mass(moving.plus(self.air(&at_rest, flow).scaled(-1.0)))
     }
 
     fn thrust_n(&self, flow: &Flow, controls: &Controls) -> f64 {

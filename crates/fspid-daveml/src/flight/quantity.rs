@@ -58,12 +58,13 @@ pub(super) enum Quantity {
     Mach,
     Altitude,
     Power,
+    AlphaRate,
 }
 
 /// Every quantity with its name in the standard and its units, in the order of [`Quantities`].
 ///
 /// The lever angle of an engine is a part of its travel, written in percent.
-const QUANTITIES: [(&str, Quantity, Units); 12] = [
+const QUANTITIES: [(&str, Quantity, Units); 13] = [
     ("trueAirspeed", Quantity::Airspeed, SPEED),
     ("angleOfAttack", Quantity::Alpha, ANGLE),
     ("angleOfSideslip", Quantity::Beta, ANGLE),
@@ -76,6 +77,7 @@ const QUANTITIES: [(&str, Quantity, Units); 12] = [
     ("mach", Quantity::Mach, PART),
     ("altitudeMSL", Quantity::Altitude, LENGTH),
     ("powerLeverAngle", Quantity::Power, PART),
+    ("angleOfAttackRate", Quantity::AlphaRate, RATE),
 ];
 
 impl Quantity {
@@ -144,7 +146,16 @@ impl Quantities {
             flow.mach(),
             flow.altitude_m,
             power,
+            0.0,
         ])
+    }
+
+    /// The same with the angle of attack changing at a rate; it rests otherwise.
+    pub(super) fn with_alpha_rate(mut self, alpha_rate_rad_s: f64) -> Self {
+        if let Some(rate) = self.0.get_mut(Quantity::AlphaRate as usize) {
+            *rate = alpha_rate_rad_s;
+        }
+        self
     }
 
     #[inline]

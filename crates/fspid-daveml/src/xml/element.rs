@@ -8,26 +8,26 @@ use crate::xml::arithmetic::arithmetic;
 
 /// An element of the file.
 #[derive(Clone, Copy)]
-pub(super) struct Element<'a, 'i> {
+pub(crate) struct Element<'a, 'i> {
     node: Node<'a, 'i>,
 }
 
 impl<'a, 'i> Element<'a, 'i> {
-    pub(super) fn root(tree: &'a Tree<'i>) -> Self {
+    pub(crate) fn root(tree: &'a Tree<'i>) -> Self {
         Self { node: tree.root_element() }
     }
 
     /// Name without the prefix of its namespace.
-    pub(super) fn name(self) -> &'a str {
+    pub(crate) fn name(self) -> &'a str {
         self.node.tag_name().name()
     }
 
-    pub(super) fn origin(self) -> Origin {
+    pub(crate) fn origin(self) -> Origin {
         Origin(Some(self.node.range().start))
     }
 
     /// The first element that has more than `limit` elements around it and itself.
-    pub(super) fn deeper_than(self, limit: usize) -> Option<Self> {
+    pub(crate) fn deeper_than(self, limit: usize) -> Option<Self> {
         let (mut node, mut depth) = (self.node, 1);
         loop {
             if let Some(child) = node.first_element_child() {
@@ -45,7 +45,7 @@ impl<'a, 'i> Element<'a, 'i> {
     }
 
     /// The elements inside; text between them is a problem.
-    pub(super) fn children(self, findings: &mut Findings) -> Vec<Self> {
+    pub(crate) fn children(self, findings: &mut Findings) -> Vec<Self> {
         for text in self.node.children().filter(Node::is_text) {
             let word = text.text().unwrap_or_default().trim();
             if !word.is_empty() {
@@ -58,43 +58,48 @@ impl<'a, 'i> Element<'a, 'i> {
     }
 
     /// The elements inside.
-    pub(super) fn elements(self) -> impl Iterator<Item = Self> {
+    pub(crate) fn elements(self) -> impl Iterator<Item = Self> {
         self.node.children().filter(Node::is_element).map(|node| Self { node })
     }
 
+    /// This element and every element inside of it, at any depth, in the order of the file.
+    pub(crate) fn descendants(self) -> impl Iterator<Item = Self> {
+        self.node.descendants().filter(Node::is_element).map(|node| Self { node })
+    }
+
     /// The first element inside with that name.
-    pub(super) fn child(self, name: &str) -> Option<Self> {
+    pub(crate) fn child(self, name: &str) -> Option<Self> {
         self.elements().find(|child| child.name() == name)
     }
 
     /// All text inside, without comments and elements; pieces that a comment parts stay apart.
-    pub(super) fn text(self) -> String {
+    pub(crate) fn text(self) -> String {
         let texts = self.node.children().filter(Node::is_text).filter_map(|node| node.text());
         texts.collect::<Vec<_>>().join(" ")
     }
 
     /// Text as prose: white space made single.
-    pub(super) fn prose(self) -> String {
+    pub(crate) fn prose(self) -> String {
         self.text().split_whitespace().collect::<Vec<_>>().join(" ")
     }
 
     /// Prose of the element with that name inside; empty if there is none.
-    pub(super) fn prose_of(self, name: &str) -> String {
+    pub(crate) fn prose_of(self, name: &str) -> String {
         self.child(name).map(Self::prose).unwrap_or_default()
     }
 
     /// An attribute without its prefix; empty if it is not there.
-    pub(super) fn optional(self, name: &str) -> String {
+    pub(crate) fn optional(self, name: &str) -> String {
         self.attribute(name).unwrap_or_default().trim().to_owned()
     }
 
-    pub(super) fn attribute(self, name: &str) -> Option<&'a str> {
+    pub(crate) fn attribute(self, name: &str) -> Option<&'a str> {
         let found = self.node.attributes().find(|attribute| attribute.name() == name);
         found.map(|attribute| attribute.value())
     }
 
     /// An attribute that has to be there.
-    pub(super) fn required(self, name: &str, findings: &mut Findings) -> String {
+    pub(crate) fn required(self, name: &str, findings: &mut Findings) -> String {
         let value = self.optional(name);
         if value.is_empty() {
             let message = format!("the attribute {name} is missing");
@@ -104,7 +109,7 @@ impl<'a, 'i> Element<'a, 'i> {
     }
 
     /// Notes or refuses attributes that are not among the known.
-    pub(super) fn only(self, known: &[&str], findings: &mut Findings) {
+    pub(crate) fn only(self, known: &[&str], findings: &mut Findings) {
         for attribute in self.node.attributes() {
             if !known.contains(&attribute.name()) {
                 let message = format!("unknown attribute of <{}>", self.name());
@@ -115,18 +120,18 @@ impl<'a, 'i> Element<'a, 'i> {
     }
 
     /// A number in an attribute, if it is there.
-    pub(super) fn number(self, name: &str, findings: &mut Findings) -> Option<f64> {
+    pub(crate) fn number(self, name: &str, findings: &mut Findings) -> Option<f64> {
         let text = self.attribute(name)?;
         number(text, self.origin(), findings)
     }
 
     /// The only number in the text.
-    pub(super) fn single(self, findings: &mut Findings) -> f64 {
+    pub(crate) fn single(self, findings: &mut Findings) -> f64 {
         number(&self.text(), self.origin(), findings).unwrap_or(0.0)
     }
 
     /// Numbers between white space and commas.
-    pub(super) fn numbers(self, findings: &mut Findings) -> Vec<f64> {
+    pub(crate) fn numbers(self, findings: &mut Findings) -> Vec<f64> {
         let mut values = Vec::new();
         for piece in self.node.children().filter(Node::is_text) {
             let (text, start) = (piece.text().unwrap_or_default(), piece.range().start);
@@ -140,13 +145,13 @@ impl<'a, 'i> Element<'a, 'i> {
     }
 
     /// Refuses this element, with what can stand inside of `parent`.
-    pub(super) fn refuse(self, parent: &str, expected: &str, findings: &mut Findings) {
+    pub(crate) fn refuse(self, parent: &str, expected: &str, findings: &mut Findings) {
         let message = format!("<{}> inside of <{parent}> is not supported", self.name());
         findings.problem(self.origin(), self.name(), message, expected);
     }
 
     /// Notes that this element is left out.
-    pub(super) fn leave_out(self, why: &str, findings: &mut Findings) {
+    pub(crate) fn leave_out(self, why: &str, findings: &mut Findings) {
         findings.note(self.origin(), format!("<{}> is left out: {why}", self.name()));
     }
 }
@@ -161,7 +166,7 @@ fn words(text: &str) -> impl Iterator<Item = (usize, &str)> {
 }
 
 /// A finite number, or a problem.
-pub(super) fn number(text: &str, at: Origin, findings: &mut Findings) -> Option<f64> {
+pub(crate) fn number(text: &str, at: Origin, findings: &mut Findings) -> Option<f64> {
     let text = text.trim();
     let value = text.parse::<f64>().ok().or_else(|| {
         let value = arithmetic(text)?;

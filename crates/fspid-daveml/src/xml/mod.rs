@@ -2,7 +2,7 @@
 
 mod arithmetic;
 mod doctype;
-mod element;
+pub(crate) mod element;
 mod function;
 mod header;
 mod math;
@@ -49,7 +49,7 @@ pub fn read(text: &str) -> Result<Reading, Problems> {
     Ok(Reading { document, model, notes })
 }
 
-fn parse(text: &str) -> Result<Tree<'_>, Problem> {
+pub(crate) fn parse(text: &str) -> Result<Tree<'_>, Problem> {
     if text.len() > MAX_INPUT_BYTES {
         return Err(too_long(text.len()));
     }

@@ -9,6 +9,7 @@ mod derive;
 mod envelope;
 mod facts;
 mod import;
+mod import_jsbsim;
 mod import_simulator;
 mod limits;
 mod linearise;
@@ -34,6 +35,7 @@ pub use condition::{AirChoice, DragChoice, Flight, Question, ThrustChoice, fligh
 pub use derive::{Derivation, derive};
 pub use envelope::{Envelope, EnvelopeQuestion, envelope};
 pub use import::{ImportFailure, Imported, import};
+pub use import_jsbsim::{JsbsimImport, import_jsbsim, is_jsbsim};
 pub use import_simulator::{NoModel, SimulatorModel, import_simulator};
 pub use linearise::{Linear, linearise};
 pub use list::{List, list};
