@@ -96,3 +96,95 @@ fn what_tables_cannot_answer_is_refused_with_the_reason() {
         assert!(text(&output.stderr).contains(reason), "{}", text(&output.stderr));
     }
 }
+
+const INVENTED: &str = include_str!("../../fspid-daveml/tests/data/jsbsim/invented.xml");
+
+const FLIGHT: &str = r#"
+schema = 1
+name = "an aircraft of JSBSim"
+[aircraft]
+file = "small.toml"
+airspeed_m_s = 55.0
+altitude_m = 1000.0
+[loop]
+sample_period_s = 0.01
+duration_s = 8.0
+[setpoint]
+kind = "step"
+amplitude_deg = 1.0
+at_s = 1.0
+[[controller]]
+name = "PID"
+kind = "pid"
+kp = 1.0
+ki = 0.5
+kd = 0.3
+"#;
+
+/// A folder with the invented aircraft in JSBSim's format, and what importing it with these arguments answers.
+fn small(arguments: &[&str]) -> (tempfile::TempDir, Output) {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("small.xml"), INVENTED).expect("written");
+    let output = aircraft(folder.path(), &[&["import", "small.xml"], arguments].concat());
+    (folder, output)
+}
+
+#[test]
+fn an_aircraft_of_jsbsim_becomes_an_aircraft_of_tables_that_flies_a_scenario() {
+    let (folder, output) = small(&["--thrust-lbf", "600", "--out", "small.toml"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    assert!(
+        text(&output.stderr).contains("small.xml:41:17: aero/h_b-mac-ft is held at 100"),
+        "{}",
+        text(&output.stderr)
+    );
+    assert!(text(&output.stdout).contains("angleOfAttackRate"), "{}", text(&output.stdout));
+    let written = std::fs::read_to_string(folder.path().join("small.toml")).expect("read");
+    assert!(written.contains(". one engine of at most 600 lbf"), "{written}");
+    for verb in ["trim", "linearise", "modes", "qualities"] {
+        let asked = [verb, "small.toml", "--speed", "55", "--altitude", "1000"];
+        let output = aircraft(folder.path(), &asked);
+        assert_eq!(output.status.code(), Some(0), "{verb}: {}", text(&output.stderr));
+    }
+    std::fs::write(folder.path().join("flight.toml"), FLIGHT).expect("written");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_fspid"));
+    let command = command.args(["simulate", "flight.toml", "--format", "json"]);
+    let output = command.current_dir(folder.path()).output().expect("it starts");
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let answer: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(answer["controllers"][0]["name"], "PID", "{answer}");
+}
+
+#[test]
+fn without_a_thrust_an_aircraft_of_jsbsim_glides_and_says_so() {
+    let (folder, output) = small(&["--out", "small.toml", "--format", "json"]);
+    let answer: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(answer["has_engine"], false);
+    assert!(text(&output.stderr).contains("it glides, and cannot be trimmed in level flight"));
+    let asked =
+        ["trim", "small.toml", "--speed", "55", "--altitude", "1000", "--climb-angle", "0deg"];
+    assert!(!folder.path().join("small-propulsion.toml").exists());
+    assert_eq!(aircraft(folder.path(), &asked).status.code(), Some(2));
+}
+
+#[test]
+fn an_import_of_jsbsim_that_cannot_be_says_all_that_is_in_the_way_and_writes_nothing() {
+    let cases: [(&[&str], &str); 5] = [
+        (&["--out", "-"], "becomes several files"),
+        (&["--set", "fcs/flap-pos-deg", "--out", "small.toml"], "expected PROPERTY=NUMBER"),
+        (&["--set", "fcs/flap-pos-deg=nan", "--out", "small.toml"], "expected PROPERTY=NUMBER"),
+        (&["--set", "fcs/flap-pos-deg=10", "--out", "small.toml"], "asks for this property"),
+        (&["--thrust-lbf=-3", "--out", "small.toml"], "thrust of -3 lbf"),
+    ];
+    for (arguments, reason) in cases {
+        let (folder, output) = small(arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert!(text(&output.stderr).contains(reason), "{}", text(&output.stderr));
+        assert!(!folder.path().join("small.toml").exists());
+    }
+    let folder = hangar();
+    let dml = format!("{DATA}/glider_aero.dml");
+    let output = aircraft(folder.path(), &["import", &dml, "--thrust-lbf", "5"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("goes with an aircraft file of JSBSim"));
+}

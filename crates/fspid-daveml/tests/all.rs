@@ -3,6 +3,7 @@
 mod abuse;
 mod data_file;
 mod flight;
+mod jsbsim;
 mod law;
 mod refused;
 mod toy;

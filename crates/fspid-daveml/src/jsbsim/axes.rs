@@ -10,14 +10,19 @@ use crate::finding::{Findings, Origin};
 use crate::jsbsim::class::Share;
 use crate::jsbsim::expression::is_part;
 use crate::jsbsim::metrics::{AREA, CHORD, Metrics, SPAN};
-use crate::jsbsim::property::{ALPHA, BETA, Builder, LIFT_AT_REST, LIFT_SQUARED, named};
-use crate::jsbsim::{required, surface};
+use crate::jsbsim::property::{
+    ALPHA, ALTITUDE, BETA, Builder, LIFT_AT_REST, LIFT_SQUARED, MACH, named,
+};
+use crate::jsbsim::{ends, required, surface};
 use crate::xml::element::Element;
 
 /// Axes along the flow, those of the body, and those of moments.
 const WIND: [&str; 3] = ["DRAG", "SIDE", "LIFT"];
 const BODY: [&str; 3] = ["X", "Y", "Z"];
 const MOMENTS: [&str; 3] = ["ROLL", "PITCH", "YAW"];
+
+/// Inputs that the tables bound.
+const BOXED: [&str; 4] = [ALPHA, BETA, MACH, ALTITUDE];
 
 /// A function of the file.
 struct Piece<'a, 'i> {
@@ -45,7 +50,9 @@ pub(super) fn read(
         builder.findings.problem(part.origin(), "", message, format!("at most {MAX_VARIABLES}"));
     }
     builder.unused();
-    builder.document
+    let mut document = builder.document;
+    ends::widen(&mut document, &BOXED, findings);
+    document
 }
 
 /// Every function, with those that it names.

@@ -146,7 +146,7 @@ impl Builder<'_> {
     fn scaled(&mut self, element: Element<'_, '_>, owner: &str, factor: f64) -> Option<Term> {
         let mut terms = self.operands(element, owner)?;
         terms.push(Term { formula: Expression::Number(factor), class: Class::default() });
-        self.applied(element, Function::Two(Two::Multiply), terms, Class::product)
+        self.applied(element, Function::Fold(Two::Multiply), terms, Class::product)
     }
 
     /// True where a function is nothing but proportional to the rate of the angle of attack.

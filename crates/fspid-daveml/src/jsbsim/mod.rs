@@ -11,6 +11,7 @@
 mod axes;
 mod body;
 mod class;
+mod ends;
 mod engine;
 mod expression;
 mod metrics;
@@ -18,6 +19,9 @@ mod property;
 mod surface;
 mod table;
 mod unit;
+
+#[cfg(test)]
+mod tests;
 
 use crate::compile::compile;
 use crate::document::{Document, Header, Source};

@@ -39,6 +39,10 @@ pub(super) const LIFT_AT_REST: &str = "axis/LIFT-at-rest";
 pub(super) const ALPHA: &str = "aero/alpha-rad";
 /// The angle of sideslip.
 pub(super) const BETA: &str = "aero/beta-rad";
+/// The Mach number.
+pub(super) const MACH: &str = "velocities/mach";
+/// The altitude.
+pub(super) const ALTITUDE: &str = "position/h-sl-ft";
 /// The square of the coefficient of lift.
 pub(super) const LIFT_SQUARED: &str = "aero/cl-squared";
 
@@ -52,8 +56,8 @@ const PROPERTIES: &[(&str, &str, Kind)] = &[
     ("velocities/p-aero-rad_sec", "rad_s", Flight("bodyAngularRate_Roll")),
     ("velocities/q-aero-rad_sec", "rad_s", Flight("bodyAngularRate_Pitch")),
     ("velocities/r-aero-rad_sec", "rad_s", Flight("bodyAngularRate_Yaw")),
-    ("velocities/mach", "nd", Flight("mach")),
-    ("position/h-sl-ft", "ft", Flight("altitudeMSL")),
+    (MACH, "nd", Flight("mach")),
+    (ALTITUDE, "ft", Flight("altitudeMSL")),
     ("fcs/elevator-pos-rad", "rad", Surface("elevatorDeflection")),
     ("fcs/left-aileron-pos-rad", "rad", Surface("aileronDeflection")),
     ("fcs/rudder-pos-rad", "rad", Surface("rudderDeflection")),

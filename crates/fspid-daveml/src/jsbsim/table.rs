@@ -3,7 +3,7 @@
 use crate::document::{Breakpoints, Extrapolate, FunctionInput, GridTable, Mention, TableFunction};
 use crate::expression::Expression;
 use crate::jsbsim::class::Class;
-use crate::jsbsim::property::{Builder, Term, named};
+use crate::jsbsim::property::{ALPHA, BETA, Builder, Term, named};
 use crate::xml::element::{Element, number};
 
 /// Names of the axes in the order of a grid: a row of values follows along the last.
@@ -36,7 +36,11 @@ impl Builder<'_> {
             }
         }?;
         let axes = entered.into_iter().zip(points);
-        let axes = axes.map(|((name, variable, _), points)| Axis { name, variable, points });
+        let axes = axes.map(|((name, variable, _), points)| {
+            let (variable, scale) = in_radians(variable);
+            let points = points.into_iter().map(|point| scale * point).collect();
+            Axis { name, variable, points }
+        });
         self.keep(element, &id, axes.collect(), values);
         self.add(named(&id, &id, "nd"), class);
         Some(Term { formula: Expression::Variable { id, origin: element.origin() }, class })
@@ -187,6 +191,16 @@ impl Builder<'_> {
         }
         self.document.tables.push(table);
         self.document.functions.push(function);
+    }
+}
+
+/// The angle of a flight for one in degrees, so that the ends of its tables bound the flight, and what one degree is.
+fn in_radians(variable: String) -> (String, f64) {
+    const RADIANS: f64 = core::f64::consts::PI / 180.0;
+    match variable.as_str() {
+        "aero/alpha-deg" => (ALPHA.to_owned(), RADIANS),
+        "aero/beta-deg" => (BETA.to_owned(), RADIANS),
+        _ => (variable, 1.0),
     }
 }
 
