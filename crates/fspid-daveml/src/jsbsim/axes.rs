@@ -51,7 +51,10 @@ pub(super) fn read(
     }
     builder.unused();
     let mut document = builder.document;
-    ends::widen(&mut document, &BOXED, findings);
+    // What is too large is told when the model is compiled.
+    if document.tables.len() <= MAX_VARIABLES {
+        ends::widen(&mut document, &BOXED, findings);
+    }
     document
 }
 

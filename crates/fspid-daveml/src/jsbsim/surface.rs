@@ -35,7 +35,9 @@ pub(super) fn stops(root: Element<'_, '_>, findings: &mut Findings) -> Stops {
         let found = scale.iter().find_map(|&(name, unit)| {
             parts(root).find_map(|part| makes(part, name).then(|| range(part, "range", unit))?)
         });
-        found.unwrap_or_else(|| {
+        // To a millionth of a degree: gains such as 0.01745 have no more.
+        let rounded = |value: f64| (value * 1e6).round() / 1e6;
+        found.map(|(min, max)| (rounded(min), rounded(max))).unwrap_or_else(|| {
             let (min, max) = ASSUMED_DEG;
             let message = format!("no range of {rad} is found: {min} to {max} deg are assumed");
             findings.note(Origin(None), message);
@@ -63,10 +65,8 @@ fn range(part: Element<'_, '_>, name: &str, unit: f64) -> Option<(f64, f64)> {
         |name: &str| ends.child(name)?.prose().parse::<f64>().ok().filter(|it| it.is_finite());
     let gain = part.child("gain").map_or(Some(1.0), |gain| gain.prose().parse::<f64>().ok())?;
     let [one, other] = ["min", "max"].map(end);
-    // To a millionth of a degree: gains such as 0.01745 have no more.
     let (one, other) = (one? * gain * unit, other? * gain * unit);
-    let rounded = |value: f64| (value * 1e6).round() / 1e6;
-    let (min, max) = (rounded(one.min(other)), rounded(one.max(other)));
+    let (min, max) = (one.min(other), one.max(other));
     (min < max && min >= -90.0 && max <= 90.0).then_some((min, max))
 }
 
@@ -88,6 +88,9 @@ pub(super) fn scaled(root: Element<'_, '_>) -> BTreeMap<String, Expression> {
         }
         let domain = range(part, "domain", 1.0).unwrap_or((-1.0, 1.0));
         let Some(range) = range(part, "range", 1.0) else { continue };
+        if !(domain.0 < 0.0 && domain.1 > 0.0) {
+            continue;
+        }
         let (down, up) = (range.0 / domain.0, range.1 / domain.1);
         let text =
             format!("plus(times({up:?}, max({input}, 0.0)), times({down:?}, min({input}, 0.0)))");
