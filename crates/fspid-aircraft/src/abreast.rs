@@ -2,7 +2,7 @@
 //! becomes vectors.
 //!
 //! The equations are those of a single aircraft: each loop asks the functions of [`Aircraft`], [`Flow`] and the rest for one
-//! lane. Elementary functions alone are the [straight](fspid_numeric::straight) ones, and those of `libm` in lanes where they
+//! lane. Elementary functions alone are the [`fspid_numeric::straight`] ones, and those of `libm` in lanes where they
 //! are not. So every lane has the bits of the aircraft that flies alone; the tests compare them.
 //!
 //! Which vectors a machine has is the caller's business: all of this is inlined into what it compiles for them.

@@ -164,7 +164,7 @@ impl Changing {
     }
 }
 
-/// What a sample shows of it: a number for each of the names of [`Shown::names`].
+/// What a sample shows of it: a number for each column that traces have of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shown {
     values: [f64; MOST_SHOWN],
