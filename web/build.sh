@@ -47,3 +47,5 @@ npm run --silent build
 gzip --best --keep --force --stdout dist/site/app.js dist/site/app.css dist/site/worker.js dist/site/fspid.wasm | wc --bytes |
     xargs -I{} echo "web/dist/site: {} bytes of script, style and mathematics, gzipped"
 echo "web/dist/page.html: $(stat --format=%s dist/page.html) bytes"
+# A program that was built while there was no page does not know where to look for one: it is asked to look again.
+touch ../crates/fspid-serve/build.rs

@@ -294,12 +294,7 @@ impl Abreast {
     ) {
         for lane in 0..LANES {
             let (state, motion) = (state_at(states, lane), airs.at(lane));
-            let controls = Controls::from_array([
-                controls[0][lane],
-                controls[1][lane],
-                controls[2][lane],
-                controls[3][lane],
-            ]);
+            let controls = Controls::from_array(controls.map(|lanes| lanes[lane]));
             let instant = self.at(lane).instant_in(flows.at(lane), &state, &controls, &motion);
             let changes = state.rate(&instant.accelerations);
             for (lanes, value) in rates.iter_mut().zip(changes) {
@@ -320,12 +315,7 @@ impl Abreast {
     ) {
         for lane in 0..LANES {
             let (state, motion) = (state_at(states, lane), airs.at(lane));
-            let controls = Controls::from_array([
-                controls[0][lane],
-                controls[1][lane],
-                controls[2][lane],
-                controls[3][lane],
-            ]);
+            let controls = Controls::from_array(controls.map(|lanes| lanes[lane]));
             let instant = self.at(lane).instant_in(flows.at(lane), &state, &controls, &motion);
             let force_n = instant.loads.force_n.to_array();
             let rates = instant.accelerations.velocity_rate_body_m_s2.to_array();

@@ -127,6 +127,9 @@ pub struct Departure {
 impl fmt::Display for Departure {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { quantity, value, allowed: Range { min, max } } = self;
+        if *quantity == Quantity::Fuel {
+            return formatter.write_str("the tank is empty, allowed is fuel for the whole flight");
+        }
         let (name, unit) = (quantity.name(), quantity.unit());
         let space = if unit.is_empty() { "" } else { " " };
         write!(formatter, "{name} {value}{space}{unit}, allowed {min} to {max}{space}{unit}")

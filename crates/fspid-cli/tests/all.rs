@@ -16,6 +16,7 @@ mod external_fly;
 mod external_losses;
 mod flight_stacks;
 mod fly;
+mod fmu_aircraft;
 mod foreign_fmu;
 mod fuzzy_system;
 mod guide;

@@ -13,6 +13,8 @@ use fspid_aircraft::{EulerAngles, Quaternion};
 use fspid_mavlink::{Encoder, Line, Listener, Outgoing, Sender};
 use fspid_sim::core::Sample;
 
+use crate::pace::LATE;
+
 /// We are a computer beside a ground station: component 191, MAV_COMP_ID_ONBOARD_COMPUTER, of system 255, from which ArduPilot
 /// takes overrides unless its SYSID_MYGCS says otherwise.
 const OWN: Sender = Sender { system: 255, component: 191 };
@@ -22,8 +24,6 @@ const HEARTBEAT: Duration = Duration::from_secs(1);
 const GIVEN_BACK: usize = 3;
 /// How long it is waited for a packet at most before it is looked whether to stop.
 const LOOK: Duration = Duration::from_millis(50);
-/// A sample that comes later than this is late: a thousandth of a second, which sleeping alone may take.
-const LATE: Duration = Duration::from_millis(1);
 /// The middle of a channel and half its way, µs.
 const MIDDLE_US: f64 = 1500.0;
 const HALF_US: f64 = 500.0;

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 /// A sample that comes later than this is late: a thousandth of a second, which sleeping alone may take.
-const LATE: Duration = Duration::from_millis(1);
+pub(crate) const LATE: Duration = Duration::from_millis(1);
 /// Late samples that are told one by one.
 const MOST_TOLD: usize = 20;
 

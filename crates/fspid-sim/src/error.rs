@@ -191,6 +191,18 @@ impl fmt::Display for SimError {
                 f,
                 "{key} is {found:e}; with it the sampled loop leaves the range of 64-bit numbers, allowed is a smaller one"
             ),
+            Self::Linear(error) => error.fmt(f),
+            Self::Controller(error) => error.fmt(f),
+            Self::Supervisor(error) => error.fmt(f),
+            about_others => about_others.fmt_about_others(f),
+        }
+    }
+}
+
+impl SimError {
+    /// What is wrong with controllers and aircraft that others compute; nothing for every other error.
+    fn fmt_about_others(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
             Self::NoHost => f.write_str(
                 "this program starts no external controllers; allowed are controllers with equations, or a program that calls `fspid_sim::external::set_host`, as `fspid` does",
             ),
@@ -226,9 +238,7 @@ impl fmt::Display for SimError {
             Self::PlantHost { name, reason } => {
                 write!(f, "{name} could not be asked, which says nothing of the flight: {reason}")
             }
-            Self::Linear(error) => error.fmt(f),
-            Self::Controller(error) => error.fmt(f),
-            Self::Supervisor(error) => error.fmt(f),
+            _ => Ok(()),
         }
     }
 }

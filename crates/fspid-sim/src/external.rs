@@ -11,7 +11,7 @@ use fspid_core::{Sample, Step};
 
 use crate::control_law::SharedLaw;
 use crate::error::SimError;
-use crate::flight_stack::FlightStack;
+use crate::flight_stack::{FlightStack, Unfit};
 use crate::{AircraftSample, Seen};
 
 /// A controller that is asked and not computed.
@@ -146,6 +146,17 @@ impl ExternalSource {
             Self::Law(law) => law.path.display().to_string(),
             Self::FlightStack(stack) => format!("{} at {}", stack.protocol.name(), stack.address),
         }
+    }
+
+    /// `Ok` for what flies as often as it is asked.
+    ///
+    /// # Errors
+    /// [`SimError::FlightStack`] for a flight stack, which flies once for each start of its own.
+    pub fn require_many_flights(&self) -> Result<(), SimError> {
+        self.flight_stack().map_or(Ok(()), |stack| {
+            let (name, reason) = (stack.protocol.name(), Unfit::ManyFlights);
+            Err(SimError::FlightStack { name, reason })
+        })
     }
 
     /// The flight stack, if it is one.

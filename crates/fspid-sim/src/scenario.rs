@@ -8,7 +8,6 @@ use crate::controller::Controller;
 use crate::error::SimError;
 use crate::external::{External, NamedExternal};
 use crate::external_plant::{Around, ExternalFlight, ExternalPlant};
-use crate::flight_stack::Unfit;
 use crate::gust_response;
 use crate::plant::{LinearPlant, Plant, PlantChange};
 use crate::propagation::Propagation;
@@ -147,12 +146,9 @@ impl Scenario {
         if let Plant::External(plant) = &self.plant {
             self.external_flight(plant)?.start()?;
         }
-        self.externals.iter().try_for_each(|named| match named.external.source.flight_stack() {
-            Some(stack) => {
-                let (name, reason) = (stack.protocol.name(), Unfit::ManyFlights);
-                Err(SimError::FlightStack { name, reason })
-            }
-            None => named.external.start().map(drop),
+        self.externals.iter().try_for_each(|named| {
+            named.external.source.require_many_flights()?;
+            named.external.start().map(drop)
         })
     }
 

@@ -135,12 +135,15 @@ pub fn empirical_margins(
 /// lag at those frequencies only that the options say.
 ///
 /// # Errors
-/// As [`empirical_margins`]; where an external controller cannot be started.
+/// As [`empirical_margins`]; where an external controller cannot be started, or flies once for each start of its own.
 pub fn flown_margins(
     scenario: &Scenario,
     respondent: Respondent<'_>,
     options: &EmpiricalOptions,
 ) -> Result<EmpiricalAnswer, SimError> {
+    if let Respondent::External(external) = respondent {
+        external.source.require_many_flights()?;
+    }
     let tolerance = positive("tolerance", options.tolerance)?;
     let patience = options.patience;
     if !(patience >= 1.0 && patience.is_finite()) {

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use fspid_aircraft::atmosphere::STANDARD_GRAVITY_M_S2;
 use fspid_aircraft::{ForceModel, MassProperties, Validity};
 use fspid_daveml::data::write;
 use fspid_daveml::jsbsim::{self, Assumptions, JsbsimAircraft, Stops};
@@ -13,9 +14,6 @@ use super::load::text;
 use super::table::table;
 use fspid_scenario::aircraft::number::significant;
 use fspid_scenario::units::degrees;
-
-/// Standard gravity, in which JSBSim's weights are weighed.
-const GRAVITY_M_S2: f64 = 9.806_65;
 
 /// An aircraft of JSBSim that was read.
 #[derive(Clone, Debug)]
@@ -100,7 +98,7 @@ impl JsbsimImport {
              title = {}\n\
              source = {}\n\
              \n[tables]\n{tables}\
-             \n[body]\ngravity_m_s2 = {GRAVITY_M_S2:?}\n{engine}\
+             \n[body]\ngravity_m_s2 = {STANDARD_GRAVITY_M_S2:?}\n{engine}\
              \n[travel]\n\
              elevator_deg = {}\n\
              aileron_deg = {}\n\

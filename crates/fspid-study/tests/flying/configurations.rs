@@ -6,7 +6,7 @@ use fspid_scenario::file;
 use fspid_sim::{AircraftPlant, Plant, Trace};
 use fspid_study::analysis::{Analysis, Question};
 
-use crate::flying::{NAVION, apart, column, flown, study};
+use crate::flying::{NAVION, apart, column, flown, refusal, study, trimmed};
 
 /// Nobody answers, and nothing is asked: what is seen is the aircraft alone.
 const ALONE: [&str; 4] = [
@@ -22,18 +22,6 @@ const REFERENCE: [&str; 3] =
 
 fn all<'a>(parts: &[&[&'a str]]) -> Vec<&'a str> {
     parts.concat()
-}
-
-fn trimmed(set: &[&str]) -> AircraftPlant {
-    match study(NAVION, set).scenario.plant {
-        Plant::Aircraft(plant) => *plant,
-        Plant::Linear(_) | Plant::External(_) => panic!("it flies nonlinear"),
-    }
-}
-
-fn refusal(set: &[&str]) -> String {
-    let set: Vec<String> = set.iter().map(|&change| change.to_owned()).collect();
-    file::parse(NAVION, "test.toml", None, &set).expect_err("it is wrong").to_string()
 }
 
 fn navion() -> DerivativeData {

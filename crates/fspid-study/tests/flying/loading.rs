@@ -3,25 +3,13 @@
 use fspid_scenario::file;
 use fspid_sim::{AircraftPlant, Plant};
 
-use crate::flying::{NAVION, apart, column, flown, study};
+use crate::flying::{NAVION, apart, column, flown, refusal, study, trimmed};
 
 /// At sea level, over ground that is lower: a flight begins above it.
 const AT_THE_REFERENCE: [&str; 3] =
     ["aircraft.airspeed_ft_s=176", "aircraft.altitude_ft=0", "aircraft.ground_m=-1000"];
 /// 2000 lbf by the 32.2 ft/s² of the Navion's source.
 const LIGHT: &str = "aircraft.mass_kg=906.4536";
-
-fn trimmed(set: &[&str]) -> AircraftPlant {
-    match study(NAVION, set).scenario.plant {
-        Plant::Aircraft(plant) => *plant,
-        Plant::Linear(_) | Plant::External(_) => panic!("it flies nonlinear"),
-    }
-}
-
-fn refusal(set: &[&str]) -> String {
-    let set: Vec<String> = set.iter().map(|&change| change.to_owned()).collect();
-    file::parse(NAVION, "test.toml", None, &set).expect_err("it is wrong").to_string()
-}
 
 /// -1.504 deg and 280.1 lbf, computed apart. It used to be another wing: -0.001 deg and 338.6 lbf.
 #[test]

@@ -20,7 +20,7 @@ mod six_dof;
 mod wind_table;
 
 use fspid_scenario::file::{self, Study};
-use fspid_sim::Trace;
+use fspid_sim::{AircraftPlant, Plant, Trace};
 use fspid_study::simulation::Simulation;
 
 /// A quiet flight of the Navion at its reference speed.
@@ -53,6 +53,20 @@ derivative_filter_s = 0.05
 fn study(text: &str, set: &[&str]) -> Study {
     let set: Vec<String> = set.iter().map(|&change| change.to_owned()).collect();
     file::parse(text, "test.toml", None, &set).unwrap_or_else(|problems| panic!("{problems}"))
+}
+
+/// The Navion with these changes, trimmed.
+fn trimmed(set: &[&str]) -> AircraftPlant {
+    match study(NAVION, set).scenario.plant {
+        Plant::Aircraft(plant) => *plant,
+        Plant::Linear(_) | Plant::External(_) => panic!("it flies nonlinear"),
+    }
+}
+
+/// What is said of the Navion with changes that are wrong.
+fn refusal(set: &[&str]) -> String {
+    let set: Vec<String> = set.iter().map(|&change| change.to_owned()).collect();
+    file::parse(NAVION, "test.toml", None, &set).expect_err("it is wrong").to_string()
 }
 
 /// The trace of the only controller.

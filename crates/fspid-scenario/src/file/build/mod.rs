@@ -101,8 +101,7 @@ pub(crate) fn scenario(
         autopilot::autopilot(report, files, section, (flown.as_ref(), period_s(timing)));
     let pressure = Pressure::of(section, flown.as_ref());
     let (controllers, derived_gains) = controllers(report, files, section, (timing, pressure));
-    let around = (flown.as_ref(), timing, autopilot.as_ref());
-    let externals = externals(report, files, section, around);
+    let externals = externals(report, files, section, (flown.as_ref(), timing, autopilot.as_ref()));
     timing::check_memory(report, section, timing);
     let names = names(section);
     let requirements = requirements(report, files, section.sections(keys::REQUIREMENT), &names);
