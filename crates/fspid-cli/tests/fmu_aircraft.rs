@@ -35,7 +35,7 @@ const FMU_DESCRIPTION: &str = "<fmiModelDescription fmiVersion='2.0' guid='g'><C
     </ModelVariables></fmiModelDescription>";
 
 /// A folder with a scenario that flies an FMU, which aborts at a step.
-fn folder_of_fmu(aborts_at: i32) -> tempfile::TempDir {
+pub(crate) fn folder_of_fmu(aborts_at: i32) -> tempfile::TempDir {
     let folder = folder("flies");
     let path = folder.path();
     std::fs::write(path.join("plane.c"), FMU).expect("a source");

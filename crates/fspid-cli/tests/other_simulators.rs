@@ -455,7 +455,7 @@ fn a_mode_that_never_begins_in_a_simulator_fails_the_flight() {
 
 #[test]
 fn what_nothing_holds_and_what_an_fmu_does_not_hear_is_refused_by_name() {
-    let folder = folder_of_fmu(-1);
+    let folder = crate::fmu_aircraft::folder_of_fmu(-1);
     let path = folder.path();
     let with = [
         (
