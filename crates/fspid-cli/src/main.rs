@@ -8,6 +8,7 @@ mod commands;
 mod exit;
 mod line;
 mod stream;
+mod version;
 
 use std::process::ExitCode;
 
@@ -20,6 +21,7 @@ use exit::Failure;
 #[command(
     name = "fspid",
     version,
+    long_version = version::LONG,
     arg_required_else_help = true,
     after_help = "Exit codes: 0 done; 1 a requirement or claim check was not met; 2 the input is wrong; 4 the output could not be written; 130 interrupted.\nWith --format json standard output holds one JSON object: the answer, or {\"error\": {\"code\", \"message\", …}}.\n`-` is standard input or output wherever a file is named.\nStart with `fspid init pitch.toml`, then `fspid simulate pitch.toml --report pitch.html`;\nor with a fuzzy system: `fspid check tip.toml`, then `fspid infer tip.toml --input service=7 --input food=8`."
 )]

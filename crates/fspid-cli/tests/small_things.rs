@@ -357,3 +357,21 @@ fn a_contest_says_how_long_it_takes_and_its_page_has_reasons_in_a_table() {
     }
     assert!(!table.contains("<li>"), "{table}");
 }
+
+/// "fspid 0.1.0" was all that a report of a wrong verdict could say of the program.
+#[test]
+fn the_long_version_tells_commit_machine_compiler_and_the_schemas_that_are_written() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let told = text(&fspid(&["--version"], folder.path()).stdout);
+    let lines: Vec<&str> = told.lines().collect();
+    let [version, commit, machine, schemas] = lines[..] else { panic!("{told}") };
+    assert_eq!(version, concat!("fspid ", env!("CARGO_PKG_VERSION")));
+    assert!(commit.starts_with("commit ") || commit == "of no known commit", "{told}");
+    assert!(machine.contains(std::env::consts::ARCH) && machine.contains("rustc"), "{told}");
+    let certificates = format!("certificates of schema {}", fspid_study::certify::SCHEMA);
+    assert!(schemas.contains(&certificates), "{told}");
+    let refused = json(&fspid(&["check", "none.toml", "--format", "json"], folder.path()));
+    assert!(schemas.contains(&format!("answers of schema {}", refused["schema"])), "{told}");
+    let short = text(&fspid(&["-V"], folder.path()).stdout);
+    assert_eq!(short.trim_end(), version);
+}

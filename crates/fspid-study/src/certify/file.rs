@@ -17,8 +17,8 @@ use super::shape::{self, CERTIFICATE, Wrong};
 
 /// First words of every certificate.
 const KIND: &str = "fspid stability certificate";
-/// Version of the shape.
-const SCHEMA: u32 = 2;
+/// Version of the shape of a certificate's file.
+pub const SCHEMA: u32 = 2;
 /// Longest certificate that is read, bytes.
 pub(super) const MOST_BYTES: usize = 10 << 20;
 

@@ -35,7 +35,7 @@ pub use fspid_proof::Effort;
 pub use checked::{Answer, CheckedFile, check_text};
 pub use comparison::{Comparison, Difference};
 pub use coverage::{COVERAGE, KeyCoverage, Treatment, coverage_table};
-pub use file::{Origin, Seal, from_text, to_text};
+pub use file::{Origin, SCHEMA, Seal, from_text, to_text};
 pub use no_certificate::NoCertificate;
 pub use scope::in_short as scope_in_short;
 pub use shape::Wrong;
