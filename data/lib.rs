@@ -23,10 +23,51 @@ pub const PLANTS: [Named; 5] = texts![
 pub const RULE_TABLES: [Named; 2] = texts!["rule-tables", ".toml": "printed", "mirrored"];
 
 /// Aircraft.
-pub const AIRCRAFT: [Named; 7] = texts![
+pub const AIRCRAFT: [Named; 23] = texts![
     "aircraft", ".toml":
     "navion", "b747-approach", "b747-cruise-low", "b747-cruise-high", "cessna-172", "etkin-747",
-    "ctms-transport",
+    "ctms-transport", "cessna-310", "beech-99", "beaver", "twin-otter", "dc-8-approach",
+    "dc-8-cruise", "jetstar", "learjet-24", "citation-500", "convair-880", "aerosonde", "zagi",
+    "skywalker-x8", "ultra-stick-25e", "anaconda", "mini-mutt",
+];
+
+/// Classes of aircraft, and the files of each kind of aircraft in them: propeller aircraft of up to 12 500 lb, jets that carry
+/// people, unmanned aircraft of up to 25 kg.
+pub const AIRCRAFT_CLASSES: [(&str, &[&[&str]]); 3] = [
+    (
+        "light",
+        &[
+            &["navion"],
+            &["cessna-172"],
+            &["cessna-310"],
+            &["beech-99"],
+            &["beaver"],
+            &["twin-otter"],
+        ],
+    ),
+    (
+        "transport",
+        &[
+            &["b747-approach", "b747-cruise-low", "b747-cruise-high", "etkin-747"],
+            &["dc-8-approach", "dc-8-cruise"],
+            &["convair-880"],
+            &["jetstar"],
+            &["learjet-24"],
+            &["citation-500"],
+            &["ctms-transport"],
+        ],
+    ),
+    (
+        "uav",
+        &[
+            &["aerosonde"],
+            &["zagi"],
+            &["skywalker-x8"],
+            &["ultra-stick-25e"],
+            &["anaconda"],
+            &["mini-mutt"],
+        ],
+    ),
 ];
 
 /// Sets of requirements.

@@ -1,6 +1,7 @@
 //! All integration tests in one binary: linking one takes less than linking many.
 
 mod atmosphere;
+mod classes;
 mod derivation;
 mod envelope;
 mod flight;

@@ -14,10 +14,7 @@ use fspid_lti::TransferFunction;
 
 use crate::support;
 
-use support::{DEG_RAD, FOOT_M, aircraft, derivative_data, names};
-
-const WITH_DERIVATIVES: [&str; 5] =
-    ["navion", "b747-approach", "b747-cruise-low", "b747-cruise-high", "cessna-172"];
+use support::{DEG_RAD, FOOT_M, WITH_DERIVATIVES, aircraft, derivative_data, names};
 
 /// An aircraft in the air of its reference, and level flight at a part of its reference speed.
 fn at(name: &str, speed_part: f64) -> (Aircraft<DerivativeModel>, TrimTarget) {
@@ -149,7 +146,7 @@ fn aircraft_with_a_linear_model_only_say_so() {
         assert_eq!(refused.map(|_| ()), Err(expected.clone()));
         assert!(expected.to_string().contains("no forces to trim"));
     }
-    assert_eq!(names().count(), 7);
+    assert_eq!(names().count(), WITH_DERIVATIVES.len() + 2);
 }
 
 fn linear(name: &str) -> TransferFunction {
@@ -265,7 +262,7 @@ fn the_rate_of_the_angle_of_attack_is_the_one_that_comes_out() {
             let state = aircraft.step(&state, &trim.controls, &wind, dt_s);
             aircraft.flow(&state, &wind).alpha_rad
         };
-        let difference = (alpha_rad(1e-4) - alpha_rad(-1e-4)) / 2e-4;
+        let difference = (alpha_rad(1e-5) - alpha_rad(-1e-5)) / 2e-5;
         let closed = aircraft.instant(&state, &trim.controls, &wind).alpha_rate_rad_s;
         assert!((difference - closed).abs() < 1e-7, "{name}: {difference} {closed}");
     }
@@ -324,12 +321,20 @@ fn lateral(name: &str) -> Vec<AircraftMode> {
 
 #[test]
 fn every_aircraft_has_a_roll_a_dutch_roll_and_a_slow_spiral() {
-    for name in WITH_DERIVATIVES {
+    let sideways = |name: &&str| derivative_data(name).lateral.is_some();
+    for name in WITH_DERIVATIVES.into_iter().filter(sideways) {
         let modes = lateral(name);
-        let find = |name| modes.iter().find(|mode| mode.name == name).expect("a usual mode");
+        let of = |mode: ModeName| modes.iter().find(|known| known.name == mode);
+        let find = |mode| of(mode).unwrap_or_else(|| panic!("{name}: {modes:?}"));
         assert!(find(ModeName::DutchRoll).oscillates());
         assert!(find(ModeName::Roll).time_constant_s() > 0.0, "{name}");
-        assert!(find(ModeName::Spiral).time_constant_s().abs() > 20.0, "{name}: {modes:?}");
+        // In its landing configuration the Citation's spiral doubles in 9 s; what is small is fast.
+        let slow_s = match name {
+            "citation-500" => 10.0,
+            "aerosonde" | "skywalker-x8" | "ultra-stick-25e" => 3.0,
+            _ => 20.0,
+        };
+        assert!(find(ModeName::Spiral).time_constant_s().abs() > slow_s, "{name}: {modes:?}");
     }
 }
 

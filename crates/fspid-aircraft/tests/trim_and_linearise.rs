@@ -10,7 +10,7 @@ use fspid_aircraft::{
 
 use crate::support;
 
-use support::{DEG_RAD, FOOT_M, POUND_FORCE_N, SLUG_KG, derivative_data};
+use support::{DEG_RAD, FOOT_M, POUND_FORCE_N, SLUG_KG, WITH_DERIVATIVES, derivative_data};
 
 struct TrimRow {
     aircraft: &'static str,
@@ -128,7 +128,7 @@ fn modes_have_the_printed_frequencies_and_dampings() {
 
 #[test]
 fn at_the_reference_the_linear_model_is_that_of_the_books_equations() {
-    for name in ["navion", "b747-approach", "b747-cruise-low", "b747-cruise-high", "cessna-172"] {
+    for name in WITH_DERIVATIVES {
         let mut data = derivative_data(name);
         let (mass_kg, reference) = (data.mass_kg(), data.reference);
         // The source's rounded lift and pressure are not quite those of its weight and density.

@@ -19,7 +19,7 @@ pub(crate) const SLUG_KG: f64 = POUND_FORCE_N / FOOT_M;
 pub(crate) const DEG_RAD: f64 = core::f64::consts::PI / 180.0;
 
 /// Unit at the end of a key, and its size in SI.
-const UNITS: [(&str, f64); 10] = [
+const UNITS: [(&str, f64); 18] = [
     ("slug_ft2", SLUG_KG * FOOT_M * FOOT_M),
     ("slug_ft3", SLUG_KG / (FOOT_M * FOOT_M * FOOT_M)),
     ("ft_s2", FOOT_M),
@@ -30,16 +30,71 @@ const UNITS: [(&str, f64); 10] = [
     ("psf", POUND_FORCE_N / (FOOT_M * FOOT_M)),
     ("deg", DEG_RAD),
     ("rad", 1.0),
+    ("kg_m2", 1.0),
+    ("kg_m3", 1.0),
+    ("m_s2", 1.0),
+    ("m_s", 1.0),
+    ("m2", 1.0),
+    ("m", 1.0),
+    ("n", 1.0),
+    ("pa", 1.0),
 ];
 
-const FILES: [(&str, &str); 7] = [
-    ("navion", include_str!("../../../../data/aircraft/navion.toml")),
-    ("b747-approach", include_str!("../../../../data/aircraft/b747-approach.toml")),
-    ("b747-cruise-low", include_str!("../../../../data/aircraft/b747-cruise-low.toml")),
-    ("b747-cruise-high", include_str!("../../../../data/aircraft/b747-cruise-high.toml")),
-    ("cessna-172", include_str!("../../../../data/aircraft/cessna-172.toml")),
-    ("etkin-747", include_str!("../../../../data/aircraft/etkin-747.toml")),
-    ("ctms-transport", include_str!("../../../../data/aircraft/ctms-transport.toml")),
+macro_rules! files {
+    ($($name:literal),* $(,)?) => {
+        [$(($name, include_str!(concat!("../../../../data/aircraft/", $name, ".toml")))),*]
+    };
+}
+
+const FILES: [(&str, &str); 23] = files![
+    "navion",
+    "b747-approach",
+    "b747-cruise-low",
+    "b747-cruise-high",
+    "cessna-172",
+    "etkin-747",
+    "ctms-transport",
+    "cessna-310",
+    "beech-99",
+    "beaver",
+    "twin-otter",
+    "dc-8-approach",
+    "dc-8-cruise",
+    "jetstar",
+    "learjet-24",
+    "citation-500",
+    "convair-880",
+    "aerosonde",
+    "zagi",
+    "skywalker-x8",
+    "ultra-stick-25e",
+    "anaconda",
+    "mini-mutt",
+];
+
+/// Files with stability derivatives.
+pub(crate) const WITH_DERIVATIVES: [&str; 21] = [
+    "navion",
+    "b747-approach",
+    "b747-cruise-low",
+    "b747-cruise-high",
+    "cessna-172",
+    "cessna-310",
+    "beech-99",
+    "beaver",
+    "twin-otter",
+    "dc-8-approach",
+    "dc-8-cruise",
+    "jetstar",
+    "learjet-24",
+    "citation-500",
+    "convair-880",
+    "aerosonde",
+    "zagi",
+    "skywalker-x8",
+    "ultra-stick-25e",
+    "anaconda",
+    "mini-mutt",
 ];
 
 pub(crate) fn names() -> impl Iterator<Item = &'static str> {
@@ -70,7 +125,13 @@ fn derivatives(file: &Table) -> DerivativeData {
             airspeed_m_s: number(reference, "airspeed"),
             altitude_m: number(reference, "altitude"),
             density_kg_m3: number(reference, "density"),
-            dynamic_pressure_pa: number(reference, "dynamic_pressure"),
+            dynamic_pressure_pa: if reference.keys().any(|key| key.starts_with("dynamic_pressure"))
+            {
+                number(reference, "dynamic_pressure")
+            } else {
+                let airspeed = number(reference, "airspeed");
+                0.5 * number(reference, "density") * airspeed * airspeed
+            },
             mach: number(reference, "mach"),
             gravity_m_s2: number(reference, "gravity"),
             alpha_rad: number(reference, "alpha"),
@@ -90,7 +151,7 @@ fn derivatives(file: &Table) -> DerivativeData {
         },
         loading: Loading::default(),
         longitudinal: longitudinal(table(file, "longitudinal")),
-        lateral: Some(lateral(table(file, "lateral"))),
+        lateral: file.get("lateral").and_then(Value::as_table).map(lateral),
         validity: Validity {
             airspeed_m_s: range(validity, "airspeed"),
             mach: range(validity, "mach"),

@@ -277,7 +277,7 @@ mod tests {
     use super::*;
     use fspid_aircraft::data::Laws;
     use fspid_aircraft::{AircraftError, Environment};
-    use fspid_data::AIRCRAFT;
+    use fspid_data::{AIRCRAFT, AIRCRAFT_CLASSES};
 
     fn text(name: &str) -> &'static str {
         AIRCRAFT.iter().find(|(known, _)| *known == name).expect("carried").1
@@ -291,6 +291,23 @@ mod tests {
             assert!(!data.source.is_empty());
         }
         assert_eq!(aircraft("concorde"), None);
+    }
+
+    /// A class means something with six kinds in it that can be trimmed and flown.
+    #[test]
+    fn every_aircraft_is_in_one_class_and_every_class_has_six_kinds_with_derivatives() {
+        let of = |kinds: &[&[&'static str]]| kinds.concat();
+        let mut named: Vec<&str> =
+            AIRCRAFT_CLASSES.iter().flat_map(|(_, kinds)| of(kinds)).collect();
+        let mut known: Vec<&str> = AIRCRAFT.iter().map(|(name, _)| *name).collect();
+        named.sort_unstable();
+        known.sort_unstable();
+        assert_eq!(named, known);
+        for (class, kinds) in AIRCRAFT_CLASSES {
+            let flies = |name: &&str| aircraft(name).expect("carried").derivatives().is_ok();
+            let kinds = kinds.iter().filter(|files| files.iter().any(flies)).count();
+            assert!(kinds >= 6, "{class}: {kinds}");
+        }
     }
 
     #[test]
