@@ -65,16 +65,22 @@ fn row(found: &Value, printed: &[f64], half_digit: f64) {
 const BOOK: [&str; 4] = ["--air", "source", "--units", "english"];
 
 #[test]
-fn the_list_says_which_aircraft_can_be_trimmed() {
+fn the_list_says_of_which_class_an_aircraft_is_and_whether_it_can_be_trimmed() {
     let list = text(&["list"]);
     assert!(list.contains("navion") && list.contains("derivatives"));
     let list = json(&["list"]);
-    let kind = |name: &str| {
+    let said = |name: &str, key: &str| {
         let list = list["aircraft"].as_array().expect("a list");
         let found = list.iter().find(|aircraft| aircraft["name"] == name).expect("it is there");
-        found["known_by"].clone()
+        found[key].clone()
     };
-    assert_eq!((kind("cessna-172"), kind("etkin-747")), ("derivatives".into(), "linear".into()));
+    for (name, class, known_by) in [
+        ("cessna-172", "light", "derivatives"),
+        ("etkin-747", "transport", "linear"),
+        ("zagi", "uav", "derivatives"),
+    ] {
+        assert_eq!((said(name, "class"), said(name, "known_by")), (class.into(), known_by.into()));
+    }
 }
 
 #[test]

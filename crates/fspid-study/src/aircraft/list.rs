@@ -1,6 +1,7 @@
 //! The aircraft that the program carries.
 
 use fspid_aircraft::data::{AircraftData, ModelData};
+use fspid_data::AIRCRAFT_CLASSES;
 use serde_json::{Value, json};
 
 use super::table::table;
@@ -25,25 +26,32 @@ pub(super) const fn kind(model: &ModelData) -> &'static str {
     }
 }
 
+/// The class of an aircraft that the program carries.
+fn class(name: &str) -> Option<&'static str> {
+    let holds = |kinds: &[&[&str]]| kinds.iter().any(|files| files.contains(&name));
+    AIRCRAFT_CLASSES.iter().find(|(_, kinds)| holds(kinds)).map(|(class, _)| *class)
+}
+
 impl List {
     /// A line an aircraft.
     #[must_use]
     pub fn text(&self) -> String {
         let row = |data: &AircraftData| {
-            vec![format!("{:16} {:12} {}", data.name, kind(&data.model), data.title)]
+            let class = class(&data.name).unwrap_or("-");
+            vec![format!("{:16} {class:10} {:12} {}", data.name, kind(&data.model), data.title)]
         };
         let rows: Vec<Vec<String>> = self.0.iter().map(row).collect();
-        let heading = format!("{:16} {:12} {}", "name", "known by", "what it is");
+        let heading = format!("{:16} {:10} {:12} {}", "name", "class", "known by", "what it is");
         table(&[&heading], &rows)
     }
 
-    /// Name, kind, title and source of each.
+    /// Name, class, kind, title and source of each.
     #[must_use]
     pub fn json(&self) -> Value {
         let entry = |data: &AircraftData| {
             json!({
-                "name": data.name, "known_by": kind(&data.model), "title": data.title,
-                "source": data.source,
+                "name": data.name, "class": class(&data.name), "known_by": kind(&data.model),
+                "title": data.title, "source": data.source,
             })
         };
         json!({ "aircraft": self.0.iter().map(entry).collect::<Vec<_>>() })
