@@ -5,6 +5,7 @@ mod abuse;
 mod arrival;
 mod bad_values;
 mod cases;
+mod contests;
 mod dispersions;
 mod marks;
 mod messages;
