@@ -39,6 +39,13 @@ fn the_wing_leveller_keeps_every_aircraft_upright_in_severe_turbulence() {
         ("b747-approach", "221.0", "1500.0"),
         ("b747-cruise-low", "673.0", "20000.0"),
         ("b747-cruise-high", "871.0", "40000.0"),
+        ("cessna-310", "150.0", "1500.0"),
+        ("beaver", "148.0", "2000.0"),
+        ("learjet-24", "677.0", "40000.0"),
+        ("citation-500", "197.0", "9900.0"),
+        ("aerosonde", "82.0", "328.0"),
+        ("skywalker-x8", "59.0", "328.0"),
+        ("ultra-stick-25e", "56.0", "328.0"),
     ] {
         let set = [
             format!("aircraft.name={name}"),
