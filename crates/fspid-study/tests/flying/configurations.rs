@@ -3,7 +3,7 @@
 use fspid_aircraft::Quantity;
 use fspid_aircraft::data::DerivativeData;
 use fspid_scenario::file;
-use fspid_sim::{AircraftPlant, Plant, Trace};
+use fspid_sim::{Plant, Trace};
 use fspid_study::analysis::{Analysis, Question};
 
 use crate::flying::{NAVION, apart, column, flown, refusal, study, trimmed};

@@ -1,7 +1,5 @@
 //! Loadings and climbs of a scenario's aircraft.
 
-use fspid_scenario::file;
-use fspid_sim::{AircraftPlant, Plant};
 
 use crate::flying::{NAVION, apart, column, flown, refusal, study, trimmed};
 
