@@ -111,6 +111,16 @@ impl Actuated {
         values.zip(held.added).for_each(|(value, more)| *value += more);
     }
 
+    /// What the air adds to the plant's states over a sample.
+    pub(crate) fn by_air(&self, held: &Held<'_>) -> Vec<f64> {
+        let mut vector = StateVector::zeros(self.order + 2);
+        let [u, w, q] = held.gust;
+        self.follow.advance(&mut vector, &[0.0, 0.0, u, w, q]);
+        vector.values.truncate(self.order);
+        vector.values.iter_mut().zip(held.added).for_each(|(value, more)| *value += more);
+        vector.values
+    }
+
     /// How the plant answers to the air.
     pub(crate) fn air(&self) -> &PlantAir {
         &self.air

@@ -39,6 +39,7 @@
 //! | [`scenario`] | scenarios, fuzzy systems and requirements as text, and what is true of them |
 //! | [`study`] | measures, verdicts, margins, certificates, reports |
 //! | [`campaign`], [`tune`] | many flights; searches, classical rules, contests |
+//! | [`limit`] | how good any controller could be |
 //! | [`export`] | a controller in other languages, with the same bits |
 //! | [`external`] | controllers that are programs, flown in a process beside |
 //! | [`optimise`], [`plot`], [`page`] | optimisers, figures as SVG, pages of HTML: free of flights |
@@ -52,6 +53,7 @@ pub use fspid_core as core;
 pub use fspid_export as export;
 pub use fspid_external as external;
 pub use fspid_fuzzy as fuzzy;
+pub use fspid_limit as limit;
 pub use fspid_lti as lti;
 pub use fspid_numeric as numeric;
 pub use fspid_optimise as optimise;

@@ -6,7 +6,7 @@ use fspid_sim::loop_model::SampledPlant;
 use fspid_sim::{ElevatorSign, LinearPlant};
 
 use super::error::{NotProved, positive};
-use super::exponential::held;
+use super::exponential::{exponential, held};
 use super::matrix::IntervalMatrix;
 
 /// A matrix row by row.
@@ -85,6 +85,23 @@ impl PrintedPlant<'_> {
             rows[by_command] = Interval::ONE;
         }
         Ok(SampledPlant { states, rows, rate })
+    }
+
+    /// $e^{A t} B$ over the plant's own states, for every time t from 0 to one sample: what an impulse of the elevator, in
+    /// the sense of the command, leaves of itself.
+    ///
+    /// # Errors
+    /// As [`sampled`](Self::sampled).
+    pub fn impulse_within_sample(&self) -> Result<Vec<Interval>, NotProved> {
+        LinearPlant::new(self.numerator, self.denominator, self.elevator_sign)?;
+        let dt_s = printed(positive("sample period, s", self.dt_s)?);
+        let alpha = self.monic_denominator();
+        let sign = Interval::point(self.elevator_sign.per_nose_up());
+        let markov = self.markov_parameters(&alpha);
+        let column: Vec<[Interval; 1]> = markov.into_iter().map(|h| [sign * h]).collect();
+        let a = IntervalMatrix::from_rows(&companion(&alpha))?;
+        let motion = exponential(&a.scaled(Interval::ZERO.hull(dt_s)))?;
+        Ok(motion.product(&IntervalMatrix::from_rows(&column)?)?.entries().collect())
     }
 
     /// $a_{n-1} \dots a_0$ of the monic denominator.

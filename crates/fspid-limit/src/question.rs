@@ -1,0 +1,494 @@
+//! A flight as a question to a linear programme: the sampled plant, what enters it, and what commands may do.
+
+use fspid_numeric::scalar::{Interval, Scalar};
+use fspid_proof::check::{ActuatorLag, IntervalMatrix, PrintedPlant, printed};
+use fspid_sim::actuator::ActuatorParts;
+use fspid_sim::{Inflow, Plant, Scenario};
+
+use crate::error::{LimitError, Refusal};
+use crate::travel::Travel;
+
+/// More samples take minutes and gigabytes.
+const MOST_SAMPLES: usize = 30_000;
+
+/// What of a scenario stays out of the limit, or is in it only so.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum SaidBeside {
+    /// Sensors and what disturbs them concern nobody who knows the flight before.
+    SeesEverything,
+    /// The actuator has no limits: commands are taken to be within these, rad.
+    Within(f64),
+    /// Until something happens commands are taken to be near zero.
+    Still(Still),
+    /// The deadband is taken for none where the command's way counts: the limit may be lower than what is possible.
+    Deadband,
+    /// A command that is cut counts as cut, and its travel for as much as the disturbance at the servo moves: the limit
+    /// may be lower than what is possible.
+    ServoDisturbance,
+    /// The air is taken as the flight computes it, rounding included.
+    Air,
+}
+
+/// What is taken of commands beside what the actuator allows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Assumed {
+    /// Of an actuator without limits: they are within ± this, rad.
+    pub within_rad: f64,
+    /// Until something happens they are near zero; none where they may be anything.
+    pub still: Option<Still>,
+}
+
+impl Assumed {
+    /// Nothing but a range for an actuator without limits, rad.
+    #[must_use]
+    pub const fn within(within_rad: f64) -> Self {
+        Self { within_rad, still: None }
+    }
+}
+
+/// Nobody moves for what has not happened yet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Still {
+    /// First sample at which set-point, disturbances that are no noise, or air are there.
+    pub until: usize,
+    /// The same, s.
+    pub until_s: f64,
+    /// Commands before are within ± this, rad.
+    pub within_rad: f64,
+}
+
+impl Still {
+    /// Of a scenario: as still as these commands of flights, rad, are until something happens; none where something does
+    /// from the start on.
+    pub fn of<'a>(scenario: &Scenario, flown: impl Iterator<Item = &'a [f64]>) -> Option<Self> {
+        let timing = scenario.timing;
+        let (setpoint_rad, _) = scenario.setpoint.sampled(timing);
+        let commanded = setpoint_rad.iter().position(|it| *it != 0.0).unwrap_or(timing.rows());
+        let pushed =
+            scenario.pushes_s().first().map_or(timing.rows(), |s| timing.first_sample_at(*s));
+        let in_air = scenario.surroundings.weather.is_some();
+        let until = if in_air { 0 } else { commanded.min(pushed) };
+        let before = flown.flat_map(|commands| commands.iter().take(until));
+        let within_rad = before.fold(0.0_f64, |most, u| most.max(u.abs()));
+        (until > 0).then(|| Self { until, until_s: timing.time_s(until), within_rad })
+    }
+}
+
+/// The sampled plant with its actuator: $z_{k+1} = A z_k + B v_k + \Gamma d_k + w_k$.
+#[derive(Clone, Debug)]
+pub(crate) struct Sampled {
+    /// Number of states; pitch angle first, the deflection at `deflection`.
+    pub(crate) states: usize,
+    pub(crate) deflection: usize,
+    /// Every matrix that the printed coefficients can mean.
+    pub(crate) a: IntervalMatrix,
+    /// By the target of the lag.
+    pub(crate) by_target: Vec<Interval>,
+    /// By what disturbs the elevator, over the states of the plant.
+    pub(crate) by_elevator: Vec<Interval>,
+}
+
+/// Whose way counts, in terms of the programme.
+#[derive(Clone, Debug)]
+pub(crate) struct Counted {
+    /// The state whose way counts; `None` for the target.
+    pub(crate) state: Option<usize>,
+    /// What is added to it at each sample, rad.
+    pub(crate) offset_rad: Vec<f64>,
+    /// First sample that counts.
+    pub(crate) first: usize,
+    /// First sample that does not.
+    pub(crate) end: usize,
+    /// True where the jump from zero to the first counts.
+    pub(crate) from_rest: bool,
+    /// How much more travel the programme allows than was asked for, rad, upper bound.
+    pub(crate) more_rad: f64,
+}
+
+/// What a rate limit or stops leave open between samples.
+#[derive(Clone, Debug)]
+pub(crate) struct Between {
+    /// Upper bound of the integral of the difference of two ways that an elevator goes between the same ends, over its
+    /// change, s.
+    pub(crate) apart_s: f64,
+    /// $|e^{A t} B|$ over all times of a sample, entry by entry as intervals.
+    pub(crate) response: Vec<Interval>,
+}
+
+/// A flight, whoever commands it.
+#[derive(Clone, Debug)]
+pub struct Question {
+    pub(crate) dt_s: f64,
+    pub(crate) rows: usize,
+    pub(crate) plant: Sampled,
+    pub(crate) inflow: Inflow,
+    pub(crate) actuator: ActuatorParts,
+    /// Limits of the target of the lag, rad; of what it amounts to where rate or stops hold the elevator.
+    target_rad: (f64, f64),
+    still: Option<Still>,
+    /// What targets are within while commands are still, rad.
+    moved_rad: (f64, f64),
+    /// Largest change of the deflection over a sample, rad, rounded up.
+    pub(crate) most_change_rad: Option<f64>,
+    pub(crate) between: Option<Between>,
+    pub(crate) counted: Counted,
+    /// Targets before the first command arrives, rad.
+    pub(crate) before_rad: Vec<f64>,
+    /// What is said beside the answer.
+    pub(crate) beside: Vec<SaidBeside>,
+}
+
+impl Question {
+    /// Of a scenario, with what is taken of commands.
+    ///
+    /// # Errors
+    /// [`LimitError::Refused`] with everything that no limit can be told of; where the plant cannot be sampled.
+    pub fn of(scenario: &Scenario, travel: Travel, assumed: Assumed) -> Result<Self, LimitError> {
+        let refusals = refusals(scenario, travel);
+        if !refusals.is_empty() {
+            return Err(LimitError::Refused(refusals));
+        }
+        let found = scenario.timing.rows();
+        if found > MOST_SAMPLES {
+            return Err(LimitError::TooLong { found, most: MOST_SAMPLES });
+        }
+        let (inflow, plant) = scenario.inflow()?;
+        let (dt_s, rows) = (scenario.timing.dt_s(), scenario.timing.rows());
+        let actuator = scenario.actuator.parts();
+        let printed_plant = |lag| PrintedPlant {
+            numerator: plant.transfer_function().numerator().coefficients(),
+            denominator: plant.transfer_function().denominator().coefficients(),
+            elevator_sign: plant.elevator_sign(),
+            lag,
+            dt_s,
+        };
+        let sampled = Sampled::new(&printed_plant, actuator, plant.order())?;
+        let mut beside = Vec::new();
+        if scenario.surroundings.weather.is_some() {
+            beside.push(SaidBeside::Air);
+        }
+        let limits = Limits::new(actuator, assumed.within_rad, &inflow, dt_s);
+        if let Some(within_rad) = limits.assumed_rad {
+            beside.push(SaidBeside::Within(within_rad));
+        }
+        beside.extend(assumed.still.map(SaidBeside::Still));
+        let between = between(&printed_plant, actuator, dt_s)?;
+        let mut question = Self {
+            dt_s,
+            rows,
+            plant: sampled,
+            actuator,
+            target_rad: limits.target_rad,
+            still: assumed.still,
+            moved_rad: (0.0, 0.0),
+            most_change_rad: limits.most_change_rad,
+            between,
+            counted: Counted::none(),
+            before_rad: Vec::new(),
+            inflow,
+            beside,
+        };
+        question.before_rad = (0..actuator.delay_samples.min(rows))
+            .map(|k| question.target_of(question.at_servo(k)))
+            .collect();
+        question.moved_rad = question.moved();
+        question.inflow.at_elevator_rad.iter_mut().for_each(|it| *it += actuator.bias_rad);
+        question.counted = question.counted(travel);
+        question.say(scenario, travel);
+        Ok(question)
+    }
+
+    /// What is said beside the answer.
+    #[must_use]
+    pub fn beside(&self) -> &[SaidBeside] {
+        &self.beside
+    }
+
+    /// Commanded pitch at each sample, rad.
+    #[must_use]
+    pub fn setpoint_rad(&self) -> &[f64] {
+        &self.inflow.setpoint_rad
+    }
+
+    /// Sample period, s.
+    #[must_use]
+    pub fn dt_s(&self) -> f64 {
+        self.dt_s
+    }
+
+    /// Stops of the deflection that a programme has to know of, rad: without a lag they are limits of the target.
+    pub(crate) fn stops(&self) -> Option<(f64, f64)> {
+        self.actuator.travel_rad.filter(|_| self.actuator.lag.order() > 0)
+    }
+
+    /// Samples until a command arrives at the actuator.
+    pub(crate) fn delay(&self) -> usize {
+        self.before_rad.len()
+    }
+
+    pub(crate) fn at_servo(&self, k: usize) -> f64 {
+        self.inflow.at_servo_rad.get(k).copied().unwrap_or(0.0)
+    }
+
+    pub(crate) fn at_elevator(&self, k: usize) -> f64 {
+        self.inflow.at_elevator_rad.get(k).copied().unwrap_or(0.0)
+    }
+
+    /// What enters the states over a sample beside the target.
+    pub(crate) fn entering(&self, k: usize) -> Vec<Interval> {
+        let elevator = Interval::point(self.at_elevator(k));
+        let air = self.inflow.by_air.get(k);
+        let by_air = |place: usize| air.and_then(|air| air.get(place)).copied().unwrap_or(0.0);
+        let by_elevator = self.plant.by_elevator.iter().enumerate();
+        by_elevator.map(|(place, by)| *by * elevator + Interval::point(by_air(place))).collect()
+    }
+
+    /// Limits of the target at a sample, rad, outward.
+    pub(crate) fn target_at(&self, k: usize) -> (f64, f64) {
+        let (low, high) = self.target_rad;
+        if !self.is_still(k) {
+            return (low, high);
+        }
+        // Where rate or stops hold the elevator, what the target amounts to lies between it and where the elevator is,
+        // which is where targets before have brought it.
+        let (least, most) = match self.between.is_some() {
+            true => self.moved_rad,
+            false => self.still_target(k),
+        };
+        (low.max(least), high.min(most))
+    }
+
+    /// True for a target of a command of the time before anything happens.
+    fn is_still(&self, k: usize) -> bool {
+        self.still.is_some_and(|still| k < still.until.saturating_add(self.actuator.delay_samples))
+    }
+
+    /// What a target of that time may be, rad, zero among it.
+    fn still_target(&self, k: usize) -> (f64, f64) {
+        let own = Interval::point(self.still.map_or(0.0, |still| still.within_rad));
+        let at_servo = Interval::point(self.at_servo(k));
+        let least = self.target_of((at_servo - own).lower());
+        let most = self.target_of((at_servo + own).upper());
+        match self.actuator.deadband_rad > 0.0 {
+            // Subtracting the deadband rounds.
+            true => (least.next_down().min(0.0), most.next_up().max(0.0)),
+            false => (least.min(0.0), most.max(0.0)),
+        }
+    }
+
+    /// What all of them are within, rad.
+    fn moved(&self) -> (f64, f64) {
+        let still = (0..self.rows).filter(|k| self.is_still(*k)).map(|k| self.still_target(k));
+        still.fold((0.0, 0.0), |(low, high), (least, most)| (low.min(least), high.max(most)))
+    }
+
+    /// The target of the lag for what arrives at the actuator, rad.
+    pub(crate) fn target_of(&self, arriving_rad: f64) -> f64 {
+        let limits = self.actuator.command_limits_rad;
+        let cut = limits.map_or(arriving_rad, |(least, most)| arriving_rad.clamp(least, most));
+        let dead = self.actuator.deadband_rad;
+        cut - cut.clamp(-dead, dead)
+    }
+
+    /// What has to arrive for a target, rad.
+    pub(crate) fn command_of(&self, target_rad: f64) -> f64 {
+        let dead = self.actuator.deadband_rad;
+        if target_rad == 0.0 { 0.0 } else { target_rad + dead.copysign(target_rad) }
+    }
+
+    fn limited(&self) -> bool {
+        self.actuator.command_limits_rad.is_some()
+    }
+
+    /// First sample whose target does nothing and counts for nothing.
+    pub(crate) fn target_end(&self) -> usize {
+        let last = self.rows.saturating_sub(1);
+        if self.counted.state.is_none() { self.counted.end.max(last) } else { last }
+    }
+
+    fn counted(&self, travel: Travel) -> Counted {
+        let (rows, delay) = (self.rows, self.delay());
+        let at_once = self.actuator.lag.order() == 0 && self.between.is_none();
+        let last = rows.saturating_sub(1);
+        match travel {
+            Travel::Elevator => Counted {
+                state: (!at_once).then_some(self.plant.deflection),
+                offset_rad: self.inflow.at_elevator_rad.clone(),
+                first: 0,
+                end: rows,
+                from_rest: false,
+                more_rad: 0.0,
+            },
+            Travel::Command | Travel::CommandFromRest => {
+                let from_rest = travel == Travel::CommandFromRest;
+                let at_servo = &self.inflow.at_servo_rad;
+                let cut = self.limited() || self.actuator.deadband_rad > 0.0;
+                let way = way_up(at_servo.get(delay..).unwrap_or_default(), from_rest);
+                Counted {
+                    state: None,
+                    offset_rad: at_servo.iter().map(|it| if cut { 0.0 } else { -it }).collect(),
+                    first: delay,
+                    end: last,
+                    from_rest,
+                    more_rad: if cut { way } else { 0.0 },
+                }
+            }
+        }
+    }
+
+    fn say(&mut self, scenario: &Scenario, travel: Travel) {
+        let surroundings = &scenario.surroundings;
+        let sees = surroundings.pitch_sensor.is_some()
+            || surroundings.rate_sensor.is_some()
+            || scenario
+                .disturbances
+                .iter()
+                .any(|it| it.entry() == fspid_sim::signal::Entry::Measurement);
+        if sees {
+            self.beside.push(SaidBeside::SeesEverything);
+        }
+        if travel != Travel::Elevator && self.actuator.deadband_rad > 0.0 {
+            self.beside.push(SaidBeside::Deadband);
+        }
+        if self.counted.more_rad > 0.0 {
+            self.beside.push(SaidBeside::ServoDisturbance);
+        }
+    }
+}
+
+impl Counted {
+    fn none() -> Self {
+        let offset_rad = Vec::new();
+        Self { state: None, offset_rad, first: 0, end: 0, from_rest: false, more_rad: 0.0 }
+    }
+
+    pub(crate) fn offset(&self, k: usize) -> f64 {
+        self.offset_rad.get(k).copied().unwrap_or(0.0)
+    }
+}
+
+/// The way of a signal, rad, rounded up.
+fn way_up(values: &[f64], from_rest: bool) -> f64 {
+    let point = Interval::point;
+    let first = values.first().copied().filter(|_| from_rest).unwrap_or(0.0);
+    let pairs = values.windows(2).map(|pair| (point(pair[1]) - point(pair[0])).magnitude());
+    pairs.fold(point(first.abs()), |sum, step| sum + point(step)).upper()
+}
+
+fn refusals(scenario: &Scenario, travel: Travel) -> Vec<Refusal> {
+    let parts = scenario.actuator.parts();
+    let order = parts.lag.order();
+    let stopped = parts.travel_rad.is_some() && order > 0;
+    let held = parts.rate_limit_rad_s.is_some() || stopped;
+    [
+        (matches!(scenario.plant, Plant::Aircraft(_)), Refusal::Nonlinear),
+        (matches!(scenario.plant, Plant::External(_)), Refusal::OtherSimulator),
+        (!scenario.plant_changes.is_empty(), Refusal::Changes),
+        (scenario.autopilot.is_some(), Refusal::Autopilot),
+        (parts.play_rad > 0.0, Refusal::Play),
+        (held && order == 2, Refusal::SecondOrderLimits),
+        (held && order < 2 && travel != Travel::Elevator, Refusal::CommandThroughLimits),
+    ]
+    .into_iter()
+    .filter_map(|(refused, why)| refused.then_some(why))
+    .collect()
+}
+
+impl Sampled {
+    fn new<'a>(
+        plant: &impl Fn(ActuatorLag) -> PrintedPlant<'a>,
+        actuator: ActuatorParts,
+        order: usize,
+    ) -> Result<Self, LimitError> {
+        let whole = plant(actuator.lag.into()).sampled()?;
+        let bare = plant(ActuatorLag::None).sampled()?;
+        let states = whole.states;
+        let rows: Vec<&[Interval]> = whole.rows.chunks(states + 1).collect();
+        let by_state: Vec<&[Interval]> = rows.iter().map(|row| &row[..states]).collect();
+        let last = |row: &&[Interval]| row.last().copied().unwrap_or(Interval::ENTIRE);
+        let bare_rows: Vec<&[Interval]> = bare.rows.chunks(bare.states + 1).take(order).collect();
+        Ok(Self {
+            states,
+            deflection: order,
+            a: IntervalMatrix::from_rows(&by_state)?,
+            by_target: rows.iter().map(last).collect(),
+            by_elevator: bare_rows.iter().map(last).collect(),
+        })
+    }
+}
+
+/// What the target of the lag may be, and how far the deflection may go in a sample.
+struct Limits {
+    target_rad: (f64, f64),
+    most_change_rad: Option<f64>,
+    assumed_rad: Option<f64>,
+}
+
+impl Limits {
+    fn new(actuator: ActuatorParts, within_rad: f64, inflow: &Inflow, dt_s: f64) -> Self {
+        let dead = actuator.deadband_rad;
+        let point = Interval::point;
+        // What is left of a limit behind the deadband, outward.
+        let beyond = |limit: f64| {
+            let left = (point(limit.abs()) - point(dead)).upper().max(0.0);
+            left.copysign(limit)
+        };
+        let commanded = actuator.command_limits_rad.map(|(a, b)| (beyond(a), beyond(b)));
+        let disturbed = inflow.at_servo_rad.iter().fold(0.0_f64, |most, it| most.max(it.abs()));
+        let assumed = (point(within_rad) + point(disturbed)).upper();
+        let given = commanded.or(actuator.travel_rad);
+        let (low, high) = commanded.unwrap_or((-assumed, assumed));
+        let rate = actuator.rate_limit_rad_s.map(|rate| (printed(rate) * printed(dt_s)).upper());
+        let mut target_rad = (low, high);
+        let mut most_change_rad = rate;
+        if let Some((least, most)) = actuator.travel_rad {
+            let range = (point(most) - point(least)).upper();
+            most_change_rad = Some(rate.map_or(range, |rate| rate.min(range)));
+            let more = most_change_rad.map_or(0.0, |change| {
+                let covered = covered(actuator, dt_s);
+                (point(change) / covered).upper()
+            });
+            // A stop cuts what a far target would have done; without a lag it cuts the target itself.
+            let reach = if actuator.lag.order() == 0 { 0.0 } else { more };
+            let low_end = (point(least) - point(reach)).lower();
+            let high_end = (point(most) + point(reach)).upper();
+            target_rad = (low.min(least).max(low_end), high.max(most).min(high_end));
+            if actuator.lag.order() == 0 {
+                target_rad = (low.max(least), high.min(most));
+            }
+        }
+        Self { target_rad, most_change_rad, assumed_rad: given.is_none().then_some(within_rad) }
+    }
+}
+
+/// The share of its way to a held target that a lag of first order covers in a sample; 1 for no lag.
+pub(crate) fn covered(actuator: ActuatorParts, dt_s: f64) -> Interval {
+    match actuator.lag.time_constant_s() {
+        Some(tau) => Interval::ONE - (-(printed(dt_s) / printed(tau))).exp(),
+        None => Interval::ONE,
+    }
+}
+
+/// What a rate limit or stops leave open between samples; `None` where neither is there.
+fn between<'a>(
+    plant: &impl Fn(ActuatorLag) -> PrintedPlant<'a>,
+    actuator: ActuatorParts,
+    dt_s: f64,
+) -> Result<Option<Between>, LimitError> {
+    let stops = actuator.travel_rad.is_some() && actuator.lag.order() > 0;
+    if actuator.rate_limit_rad_s.is_none() && !stops {
+        return Ok(None);
+    }
+    let (time, half) = (printed(dt_s), Interval::point(0.5));
+    // Areas below the way of the elevator, of its change and the period: by the lag alone, and at a constant rate.
+    let by_lag = match actuator.lag.time_constant_s() {
+        Some(tau) => Interval::ONE / covered(actuator, dt_s) - printed(tau) / time,
+        None => Interval::ONE,
+    };
+    let below = by_lag - half;
+    let above = if stops { Interval::ONE - by_lag } else { Interval::ZERO };
+    let apart_s = (time * below).upper().max((time * above).upper());
+    let response = plant(ActuatorLag::None).impulse_within_sample()?;
+    Ok(Some(Between { apart_s, response }))
+}
