@@ -22,6 +22,7 @@ mod fuzzy_system;
 mod guide;
 mod hostile_answers;
 mod learn;
+mod limit;
 mod no_clock;
 mod one_verdict;
 #[cfg(unix)]

@@ -30,7 +30,7 @@ fn commands(folder: &Path) -> Vec<Vec<String>> {
 }
 
 /// A command that answers, the exit codes that are well, and a key of its answer. They run in this order in one folder.
-const ANSWERS: [(&str, &[i32], &str); 50] = [
+const ANSWERS: [(&str, &[i32], &str); 51] = [
     ("init pitch.toml", &[0], "file"),
     ("init --list", &[0], "templates"),
     ("init --template tuning tuning.toml", &[0], "next"),
@@ -45,6 +45,7 @@ const ANSWERS: [(&str, &[i32], &str); 50] = [
     ("simulate pitch.toml --trace flown.csv", &[0, 1], "controllers"),
     ("show flown.csv --controller FSPID --x-plane --speed 1000", &[0], "sent"),
     ("analyse pitch.toml", &[0, 1], "controllers"),
+    ("limit pitch.toml --travel-deg 20 --quiet --set loop.duration_s=2", &[0], "ladder"),
     ("certify pitch.toml --controller FSPID", &[0, 1], "controllers"),
     ("verify pitch.toml --set ctms", &[0, 1], "requirements"),
     ("campaign plan campaign.toml --runs 8 --out flown", &[0], "shards"),

@@ -21,6 +21,7 @@ pub(crate) mod infer;
 pub(crate) mod init;
 pub(crate) mod interrupt;
 pub(crate) mod learn;
+pub(crate) mod limit;
 pub(crate) mod manual;
 mod progress;
 pub(crate) mod reproduce;

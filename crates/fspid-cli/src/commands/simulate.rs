@@ -3,14 +3,15 @@
 use clap::Args;
 
 use super::external_controller::Beside;
-use super::progress::at_work;
-use super::{Format, json_text};
+use super::progress::{Telling, at_work};
+use super::{Format, interrupt, json_text, limit};
 use crate::argument::{InFile, OutFile, written};
 use crate::exit::{Failure, note, print};
-use fspid_scenario::file;
+use fspid_scenario::file::{self, Study};
 use fspid_sim::{NamedExternal, Scenario};
 use fspid_study::simulation::Simulation;
 use fspid_study::{output, report};
+use fspid_tune::limit::{Answer, Ladder, Measure, Options, Travel};
 
 /// Fly a scenario: metrics and verdict of each controller, traces and a report if asked for.
 #[derive(Debug, Args)]
@@ -25,6 +26,9 @@ pub(crate) struct Arguments {
     /// Let each sample take as long as it is, for a scenario with `[simulator]`, ArduPilot or PX4; each late one is told.
     #[arg(long)]
     real_time: bool,
+    /// Tell as well how much of what is possible at its elevator travel each controller reaches, as `fspid limit` does.
+    #[arg(long)]
+    limit: bool,
     /// How the answer is written.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
@@ -49,6 +53,19 @@ fn has_another_clock(scenario: &Scenario) -> bool {
     scenario.plant.external().is_some() || scenario.externals.iter().any(is_stack)
 }
 
+/// The limit at the travel of every controller.
+fn near_limit(study: &Study) -> Result<Answer, Failure> {
+    let options = Options {
+        measure: Measure::Iae,
+        travel: Travel::Elevator,
+        ladder: Ladder::None,
+        anticipate: false,
+        causal: false,
+    };
+    let work = |told: &dyn Fn(&str)| Answer::of(study, options, told, interrupt::asked);
+    limit::told(Telling::for_standard_error(), work).map_err(limit::failure)
+}
+
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let overrides = arguments.beside.overrides(&arguments.overrides)?;
     let study = file::load(&arguments.file, &overrides).map_err(Failure::load)?;
@@ -68,9 +85,19 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(path) = &arguments.report {
         output::write(path, report::of_simulation(&study, &simulation))?;
     }
+    let limit = arguments.limit.then(|| near_limit(&study)).transpose()?;
     match arguments.format {
-        Format::Text => print(&simulation.text())?,
-        Format::Json => print(&json_text(&simulation.json()))?,
+        Format::Text => {
+            let near = limit.as_ref().map_or(String::new(), Answer::controllers_text);
+            print(&(simulation.text() + &near))?;
+        }
+        Format::Json => {
+            let mut answer = simulation.json();
+            if let Some(limit) = &limit {
+                answer["limit"] = limit.json();
+            }
+            print(&json_text(&answer))?;
+        }
     }
     let unmet = simulation.judgements.iter().filter(|judgement| !judgement.met).count();
     match (unmet, simulation.failed_flights().len()) {

@@ -128,6 +128,7 @@ fn trade(series: usize, points: usize) -> TradeFigure {
         name: name(n),
         style: SeriesStyle::Numbered(n),
         points: (0..points).map(|k| at(n, k)).collect(),
+        is_joined: false,
     };
     TradeFigure {
         title: format!("Error against {}", name(3)),

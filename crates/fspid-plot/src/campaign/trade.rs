@@ -32,6 +32,8 @@ pub struct TradeSeries {
     pub style: SeriesStyle,
     /// The points.
     pub points: Vec<(f64, f64)>,
+    /// True for a line through them in place of a sign for each: what is possible, not what was reached.
+    pub is_joined: bool,
 }
 
 /// Width of the plot area (px), wider than high so that the legend has room.
@@ -49,7 +51,10 @@ impl TradeFigure {
         let width = left + WIDTH + 30.0;
         let entries = self.series.iter().map(|it| Entry {
             name: fitted(&it.name, LABEL_PX, WIDTH / 2.0),
-            swatch: Swatch::Sign(sign(it.style), it.style.role()),
+            swatch: match it.is_joined {
+                true => Swatch::Line { style: it.style, marked: false },
+                false => Swatch::Sign(sign(it.style), it.style.role()),
+            },
         });
         let legend = Legend::set(entries.collect(), WIDTH);
         let title_text = areas::title(&self.title, width);
@@ -72,6 +77,13 @@ impl TradeFigure {
                 places.iter().map(|at| format!("{} {}", num(at.0), num(at.1))).collect();
             let name = escape(&unmarked(&series.name));
             canvas.begin_marked(&format!("data-at=\"{}\" data-name=\"{name}\"", told.join(" ")));
+            if series.is_joined {
+                let style = series.style;
+                let paint = Paint::line(style.role(), style.width()).dashed(style.dash());
+                canvas.polyline(&places, false, &paint);
+                canvas.end();
+                continue;
+            }
             for at in places {
                 let role = series.style.role();
                 match sign(series.style) {

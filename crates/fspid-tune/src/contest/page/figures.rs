@@ -112,6 +112,7 @@ pub(super) fn trade_chapter(outcome: &Outcome) -> Chapter {
         name: cut(&judged.contestants[place].name, 60),
         style: style(outcome, place),
         points: points(judged, place, &kept),
+        is_joined: false,
     };
     let figure = TradeFigure {
         title: "Error against elevator activity".to_owned(),

@@ -1,0 +1,147 @@
+//! Numbers and sentences of the answer.
+
+use fspid_limit::{Limit, Measure, SaidBeside, Travel};
+use fspid_scenario::units::degrees;
+
+use super::{Answer, Rung};
+
+/// Digits of a bound.
+const DIGITS: i32 = 4;
+
+/// What a measure is called.
+pub(super) fn called(measure: Measure) -> &'static str {
+    match measure {
+        Measure::Iae => "IAE",
+        Measure::Ise => "ISE",
+        Measure::Peak => "largest error",
+    }
+}
+
+/// Its unit.
+pub(super) fn unit(measure: Measure) -> &'static str {
+    match measure {
+        Measure::Iae => "deg s",
+        Measure::Ise => "deg² s",
+        Measure::Peak => "deg",
+    }
+}
+
+/// A measure in that unit.
+pub(super) fn in_unit(measure: Measure, value: f64) -> f64 {
+    match measure {
+        Measure::Ise => degrees(degrees(value)),
+        Measure::Iae | Measure::Peak => degrees(value),
+    }
+}
+
+/// So many digits that never say more than the number: rounded down.
+pub(super) fn down(value: f64) -> String {
+    rounded(value, libm::floor)
+}
+
+/// Rounded up.
+pub(super) fn up(value: f64) -> String {
+    rounded(value, libm::ceil)
+}
+
+fn rounded(value: f64, to: fn(f64) -> f64) -> String {
+    if !(value > 0.0) {
+        return "0".to_owned();
+    }
+    #[allow(clippy::cast_possible_truncation, reason = "an exponent of a float is small")]
+    let exponent = libm::floor(libm::log10(value)) as i32;
+    let decimals = (DIGITS - 1 - exponent).max(0);
+    let scale = libm::pow(10.0, f64::from(decimals));
+    let decimals = usize::try_from(decimals).unwrap_or(0);
+    format!("{:.decimals$}", to(value * scale) / scale)
+}
+
+/// How much of what is possible a controller reaches: a per cent, or between which two where the limit is not known closer.
+pub(super) fn share(limit: &Limit, measure: f64) -> Option<String> {
+    if !(measure > 0.0) {
+        return None;
+    }
+    let of = |limit: f64| libm::floor(100.0 * limit / measure + 0.5);
+    let (least, most) = (of(limit.proved), of(limit.reached.measure.min(measure)));
+    Some(match most - least < 2.0 {
+        true => format!("{:.0} %", libm::floor(100.0 * limit.proved / measure)),
+        false => format!("{least:.0} to {most:.0} %"),
+    })
+}
+
+/// Why a rung has no limit.
+pub(super) fn none(rung: &Rung) -> Option<String> {
+    rung.limit.as_ref().err().map(ToString::to_string)
+}
+
+/// What the flight and the question are, in a sentence.
+pub(super) fn lead(answer: &Answer) -> String {
+    let (end_s, dt_s) = answer.times_s;
+    let options = &answer.options;
+    format!(
+        "The least {} that any commands reach within a given {}, over {} s at {} ms. Nobody gets below what is proved, whatever the controller: the solver's multipliers were added up in interval arithmetic. What is reached was flown, by commands that know the whole flight before it begins.",
+        called(options.measure),
+        options.travel.words(),
+        short(end_s),
+        short(1000.0 * dt_s),
+    )
+}
+
+fn short(value: f64) -> String {
+    fspid_page::number::short(value, 4)
+}
+
+/// What is said beside the answer, a sentence each.
+pub(super) fn beside(answer: &Answer) -> Vec<String> {
+    let mut told: Vec<String> = answer.beside.iter().map(|it| sentence(*it)).collect();
+    if answer.options.travel == Travel::Command {
+        told.push("The jump of the first command does not count as travel, as in reports: who knows the flight before begins wherever he likes for nothing. `--travel-of command-from-rest` counts it.".to_owned());
+    }
+    if answer.options.causal {
+        told.push(if causal_is_told(answer) {
+            "Without the future: plant, past and present known, planned anew at each change of set-point or disturbance as if nothing came after it, travel at one price for the whole flight. It is what such a planner reached, and no bound.".to_owned()
+        } else {
+            format!("Without the future nothing is told: something changes at more than {} samples, or no price of travel kept within it.", fspid_limit::MOST_EVENTS)
+        });
+    }
+    told
+}
+
+pub(super) fn causal_is_told(answer: &Answer) -> bool {
+    let own = answer.controllers.iter().filter_map(|it| it.rung.as_ref());
+    answer.rungs.iter().chain(own).any(|it| it.causal.is_some())
+}
+
+fn sentence(beside: SaidBeside) -> String {
+    match beside {
+        SaidBeside::SeesEverything => "Sensors and noise of measurements do not concern who knows everything; a controller that has to live with them reaches less.".to_owned(),
+        SaidBeside::Within(within_rad) => format!("The actuator has no limits: the limit is that of commands within ± {} deg, where those of all controllers here are.", short(degrees(within_rad))),
+        SaidBeside::Still(still) => format!(
+            "Until something happens, at {} s, commands are taken to be {}: nobody moves for what has not happened. `--anticipate` lets them.",
+            short(still.until_s),
+            match still.within_rad > 0.0 {
+                true => format!("within ± {} deg, as those of all controllers here are", short(1.0005 * degrees(still.within_rad))),
+                false => "zero, as those of all controllers here are".to_owned(),
+            }
+        ),
+        SaidBeside::Deadband => "The deadband is left out of the command's travel, so that the limit may be lower than what is possible.".to_owned(),
+        SaidBeside::ServoDisturbance => "What disturbs the servo may move a command that is cut for nothing, so that the limit may be lower than what is possible.".to_owned(),
+        SaidBeside::Air => "The air is taken as the flight computes it, rounding included.".to_owned(),
+        _ => String::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_proved_is_rounded_down_and_what_is_reached_up() {
+        assert_eq!((down(5.899_96), up(5.899_56)), ("5.899".to_owned(), "5.900".to_owned()));
+        assert_eq!(
+            (down(0.000_123_49), up(123_456.2)),
+            ("0.0001234".to_owned(), "123457".to_owned())
+        );
+        assert_eq!((down(0.0), down(f64::NAN)), ("0".to_owned(), "0".to_owned()));
+    }
+}
