@@ -5,13 +5,16 @@ use std::time::{Duration, Instant};
 use clap::Args;
 
 use super::cluster::{Cluster, with_crew};
+use super::limit::told;
 use super::progress::{Telling, answer_after, duration, tell};
 use super::{Format, interrupt, json_text};
 use crate::argument::{Folder, InFile, count};
 use crate::exit::{Failure, note, print};
 use fspid_diagnostics::digits::{counted, grouped};
 use fspid_scenario::count as counts;
-use fspid_tune::contest::{Contest, Options, Progress, Then};
+use fspid_study::output;
+use fspid_tune::contest::{Contest, NearLimit, Options, Progress, Then};
+use fspid_tune::front::{Asked, Front};
 use fspid_tune::{Crew, Source, TuneError};
 
 /// How often the state of a search is saved.
@@ -48,6 +51,15 @@ pub(crate) struct Arguments {
     threads: usize,
     #[command(flatten)]
     cluster: Cluster,
+    /// Tune everybody at a ladder of efforts, and compare along all of it: `travel` alone takes 0.5 to 2 times the mean
+    /// elevator travel that the tuning allows, `travel=8,10,15` these, deg. Each effort is a contest in a folder of its own;
+    /// front.html and front.json tell of all.
+    #[arg(long, value_name = "travel[=DEG,…]", value_parser = front, conflicts_with = "limit")]
+    front: Option<AskedFront>,
+    /// Tell as well how near each controller's best design comes to the limit of every linear case, at its own travel, and
+    /// write it as limit.json. Takes some seconds a case.
+    #[arg(long)]
+    limit: bool,
     /// Say nothing of the progress.
     #[arg(long)]
     quiet: bool,
@@ -56,10 +68,75 @@ pub(crate) struct Arguments {
     format: Format,
 }
 
+/// A ladder of efforts: mean travels, deg; none for one around the scenario's limit.
+#[derive(Clone, Debug)]
+struct AskedFront(Option<Vec<f64>>);
+
+fn front(text: &str) -> Result<AskedFront, String> {
+    let allowed = "a front is `travel`, or `travel=` with two or more numbers of degrees above 0 and at most 1e6, with commas between";
+    if text.trim() == "travel" {
+        return Ok(AskedFront(None));
+    }
+    let given = text.trim().strip_prefix("travel=").ok_or(allowed)?;
+    let travel = |part: &str| part.trim().parse().ok().filter(|deg| *deg > 0.0 && *deg <= 1e6);
+    let travels: Option<Vec<f64>> = given.split(',').map(travel).collect();
+    travels.filter(|it| it.len() > 1).map(|it| AskedFront(Some(it))).ok_or(allowed.to_owned())
+}
+
+/// Holds a contest at every effort.
+fn run_front(arguments: &Arguments, asked: &AskedFront) -> Result<(), Failure> {
+    let (source, options) = asked_for(arguments);
+    let front = Front::new(&source, &options, asked.0.as_deref()).map_err(failure)?;
+    front.warnings().iter().for_each(|it| note(format_args!("warning: {it}")));
+    let telling = if arguments.quiet { Telling::Nothing } else { Telling::for_standard_error() };
+    interrupt::watch();
+    let carrier = arguments.cluster.carrier(&source)?;
+    let rungs: Vec<f64> = front.contests().map(|(travel_deg, _)| travel_deg).collect();
+    let held = with_crew(carrier.as_ref(), arguments.threads, |crew| {
+        let mut watch = Watch::new(telling, Vec::new());
+        let mut then = |place: usize, progress: &Progress| {
+            let travel_deg = rungs.get(place).copied().unwrap_or_default();
+            watch.before_all = format!("{travel_deg} deg ({} of {}): ", place + 1, rungs.len());
+            watch.then(progress)
+        };
+        let told = |now: &str| {
+            if telling == Telling::Line {
+                tell(telling, now);
+            }
+        };
+        let held = front.hold(
+            &arguments.out,
+            crew,
+            &mut then,
+            Asked { told: &told, stop: interrupt::asked },
+        );
+        watch.end();
+        held
+    });
+    let outcome = held?.map_err(failure)?;
+    let answer = match arguments.format {
+        Format::Text => outcome.text(),
+        Format::Json => json_text(&outcome.json()),
+    };
+    print(&answer)?;
+    if !arguments.quiet {
+        let page = arguments.out.join("front.html");
+        note(format_args!("wrote {}; the contests of all efforts lie beside it", page.display()));
+    }
+    Ok(())
+}
+
+fn asked_for(arguments: &Arguments) -> (Source, Options) {
+    let path = arguments.scenario.to_path_buf();
+    let source = Source { path, overrides: arguments.overrides.clone() };
+    (source, Options { seeds: arguments.seeds, budget: arguments.budget })
+}
+
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let source =
-        Source { path: arguments.scenario.to_path_buf(), overrides: arguments.overrides.clone() };
-    let options = Options { seeds: arguments.seeds, budget: arguments.budget };
+    if let Some(asked) = &arguments.front {
+        return run_front(arguments, asked);
+    }
+    let (source, options) = asked_for(arguments);
     let contest = Contest::new(&source, &options).map_err(failure)?;
     contest.warnings().iter().for_each(|it| note(format_args!("warning: {it}")));
     let telling = if arguments.quiet { Telling::Nothing } else { Telling::for_standard_error() };
@@ -76,10 +153,23 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         held
     });
     let outcome = held?.map_err(failure)?;
+    let near = arguments
+        .limit
+        .then(|| told(telling, |told| contest.near_limit(&outcome, told, interrupt::asked)));
+    let near = near.transpose().map_err(failure)?;
     let answer = match arguments.format {
-        Format::Text => outcome.text(),
-        Format::Json => json_text(&outcome.json()),
+        Format::Text => outcome.text() + &near.as_ref().map_or(String::new(), NearLimit::text),
+        Format::Json => {
+            let mut answer = outcome.json();
+            if let Some(near) = &near {
+                answer["limit"] = near.json();
+            }
+            json_text(&answer)
+        }
     };
+    if let Some(near) = &near {
+        output::write(&arguments.out.join("limit.json"), json_text(&near.json()))?;
+    }
     print(&answer)?;
     if !arguments.quiet {
         let page = arguments.out.join("contest.html");
@@ -125,6 +215,8 @@ struct Watch {
     told: Instant,
     kept: Instant,
     last: Option<String>,
+    /// What stands before every line.
+    before_all: String,
     /// Seconds that a candidate of each controller was expected to take.
     expected: Vec<(String, f64)>,
     /// When flying began.
@@ -144,6 +236,7 @@ impl Watch {
             told: now,
             kept: now,
             last: None,
+            before_all: String::new(),
             expected,
             begun: None,
             flown_s: 0.0,
@@ -179,7 +272,7 @@ impl Watch {
 
     fn then(&mut self, progress: &Progress) -> Then {
         if self.telling != Telling::Nothing {
-            let mut text = line(progress);
+            let mut text = format!("{}{}", self.before_all, line(progress));
             if let Some(left) = self.left(progress) {
                 text.push_str(&format!(", {} left", duration(left)));
             }

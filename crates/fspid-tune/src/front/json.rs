@@ -1,0 +1,42 @@
+//! The outcome for programs.
+
+use serde_json::{Value, json};
+
+use super::FrontOutcome;
+use super::band::{CONFIDENCE, DRAWS};
+use super::text::{change_pct, headline, share};
+
+pub(super) fn json(outcome: &FrontOutcome) -> Value {
+    let bands = outcome.bands.iter().map(|band| {
+        let change = |values: &[f64]| values.iter().map(|it| change_pct(*it)).collect::<Vec<_>>();
+        json!({
+            "name": band.name,
+            "standing": band.dominance.words(),
+            "cases": band.cases.0,
+            "cases_of": band.cases.1,
+            "along_pct": (0..band.middle.len()).map(share).collect::<Vec<_>>(),
+            "change_pct": change(&band.middle),
+            "lower_pct": change(&band.ends[0]),
+            "upper_pct": change(&band.ends[1]),
+            "failed": band.failed[0],
+            "failed_of_against": band.failed[1],
+        })
+    });
+    let rungs = outcome.rungs.iter().map(|rung| {
+        json!({
+            "travel_deg": rung.travel_deg,
+            "contest": rung.outcome.json(),
+            "limit": rung.near.json(),
+        })
+    });
+    json!({
+        "schema": 1,
+        "headline": headline(outcome),
+        "against": outcome.against(),
+        "confidence": CONFIDENCE,
+        "draws": DRAWS,
+        "fronts": bands.collect::<Vec<_>>(),
+        "rungs": rungs.collect::<Vec<_>>(),
+        "command": outcome.command,
+    })
+}

@@ -1,0 +1,115 @@
+//! The outcome for people.
+
+use fspid_diagnostics::digits::counted;
+use fspid_page::columns::{Align, Columns};
+use fspid_page::number::{fixed, with_sign};
+
+use super::band::{CONFIDENCE, PLACES};
+use super::{Band, FrontOutcome};
+use crate::contest::Quantity;
+
+/// Every so many places along a front one is told.
+const TOLD: usize = (PLACES - 1) / 4;
+
+pub(super) fn text(outcome: &FrontOutcome) -> String {
+    let mut out = format!("{}\n\n", headline(outcome));
+    out.push_str(&format!(
+        "Difference of the error from {} at equal elevator travel, from the least to the most travel that both have; all bands hold together at {:.0} %:\n",
+        outcome.against(),
+        100.0 * CONFIDENCE
+    ));
+    let places = (0..PLACES).step_by(TOLD);
+    let heads: Vec<String> =
+        places.clone().map(|place| format!("at {:.0} %", share(place))).collect();
+    let mut columns = vec![("controller", Align::Left)];
+    columns.extend(heads.iter().map(|head| (head.as_str(), Align::Right)));
+    columns.extend([("cases", Align::Right), ("standing", Align::Left)]);
+    let mut rows = Columns::new(&columns);
+    for band in &outcome.bands {
+        let mut row = vec![band.name.clone()];
+        row.extend(places.clone().map(|place| difference(band, place)));
+        row.push(format!("{} of {}", band.cases.0, band.cases.1));
+        row.push(band.dominance.words().to_owned());
+        rows.row(row);
+    }
+    out.push_str(&rows.to_string());
+    out.push_str(&format!("\n{}", ladder(outcome)));
+    out
+}
+
+/// How far along a front a place is, %.
+pub(super) fn share(place: usize) -> f64 {
+    100.0 * place as f64 / (PLACES - 1) as f64
+}
+
+/// A difference of logarithms as a change, %.
+pub(super) fn change_pct(difference: f64) -> f64 {
+    100.0 * libm::expm1(difference)
+}
+
+fn difference(band: &Band, place: usize) -> String {
+    let Some(middle) = band.middle.get(place) else {
+        return "\u{2013}".to_owned();
+    };
+    let percent = |value: f64| with_sign(change_pct(value), 0);
+    match (band.ends[0].get(place), band.ends[1].get(place)) {
+        (Some(lower), Some(upper)) => {
+            format!("{} % ({} to {})", percent(*middle), percent(*lower), percent(*upper))
+        }
+        _ => format!("{} %", percent(*middle)),
+    }
+}
+
+/// Who is better on the whole front.
+pub(super) fn headline(outcome: &FrontOutcome) -> String {
+    use super::Dominance::Dominates;
+    let better = outcome.bands.iter().filter(|band| band.dominance == Dominates);
+    let names: Vec<&str> = better.map(|band| band.name.as_str()).collect();
+    let rungs = counted(outcome.rungs.len(), "effort");
+    match names.as_slice() {
+        [] => format!("Nobody is better than {} on the whole front of {rungs}.", outcome.against()),
+        names => format!(
+            "Better than {} on the whole front of {rungs}: {}.",
+            outcome.against(),
+            names.join(", ")
+        ),
+    }
+}
+
+/// Mean error and travel of the designs of every rung, and the limit.
+fn ladder(outcome: &FrontOutcome) -> String {
+    let mut rows = Columns::new(&[
+        ("allowed travel [deg]", Align::Right),
+        ("controller", Align::Left),
+        ("IAE [deg s]", Align::Right),
+        ("travel [deg]", Align::Right),
+        ("of what is possible [%]", Align::Right),
+        ("failed", Align::Right),
+    ]);
+    for rung in &outcome.rungs {
+        let judged = &rung.outcome.judged;
+        let kept = judged.kept(judged.contestants.iter(), &judged.all());
+        let (means, count) = rung.near.means();
+        for (place, it) in judged.contestants.iter().enumerate() {
+            let mean = |quantity| {
+                let designs = it.designs.iter().filter_map(|it| judged.mean(it, &kept, quantity));
+                let values: Vec<f64> = designs.collect();
+                values.iter().sum::<f64>() / values.len() as f64
+            };
+            let possible = means.get(place).copied().filter(|_| count > 0).unwrap_or(f64::NAN);
+            let flights = || it.designs.iter().flat_map(|it| &it.flights);
+            let failed = flights().filter(|flight| flight.failed).count();
+            rows.row(vec![
+                rung.travel_deg.to_string(),
+                it.name.clone(),
+                fixed(mean(Quantity::ERROR), 3),
+                fixed(mean(Quantity::ACTIVITY), 2),
+                fixed(100.0 * possible, 0),
+                format!("{failed} of {}", flights().count()),
+            ]);
+        }
+    }
+    format!(
+        "{rows}  Means over the cases that nobody lost a flight of on the rung; of what is possible: the proved limit over the error of the best design, over the cases that have a limit.\n"
+    )
+}
