@@ -1,6 +1,5 @@
 //! Loadings and climbs of a scenario's aircraft.
 
-
 use crate::flying::{NAVION, apart, column, flown, refusal, study, trimmed};
 
 /// At sea level, over ground that is lower: a flight begins above it.
