@@ -1,11 +1,11 @@
 //! From plant, queues and controller to one matrix.
 
 use fspid_core::equations::{Memory, PidEquations};
-use fspid_core::{AntiWindup, GainCoupling, Gains, PidConfig, Sample};
+use fspid_core::{AntiWindup, Gains, PidConfig, Sample};
 use fspid_numeric::Scalar;
 use fspid_numeric::scalar::{Base, Dual};
 
-use super::{BreakPoint, LoopModel, Sensing};
+use super::{BreakPoint, Followers, LoopModel, LoopSettings, Sensing};
 
 /// Where the parts of the state stand; a part that is not there has no place.
 #[derive(Clone, Debug)]
@@ -106,8 +106,7 @@ impl<T: Base> LoopModel<T> {
         let plant = self.plant.states;
         let queue = settings.delay_samples;
         let pitch = settings.pitch.remembered();
-        let uses_rate = settings.config.rate_gain_s != 0.0;
-        let rate = if uses_rate { settings.rate.remembered() } else { 0 };
+        let rate = if settings.uses_rate() { settings.rate.remembered() } else { 0 };
         let mut size = plant + queue + pitch + rate;
         let mut place = |there: bool| {
             there.then(|| {
@@ -128,7 +127,7 @@ impl<T: Base> LoopModel<T> {
         let zeros = || vec![T::zero(); size];
         let pitch = seen(&self.settings.pitch, &unit(0, size), layout.pitch_from());
         let mut rate = zeros();
-        if self.settings.config.rate_gain_s != 0.0 {
+        if self.settings.uses_rate() {
             let mut now = zeros();
             now[..layout.plant].copy_from_slice(&self.plant.rate);
             rate = seen(&self.settings.rate, &now, layout.rate_from());
@@ -203,7 +202,7 @@ impl<T: Base> LoopModel<T> {
         // A part of the memory that is left away is one that no gain lets out.
         let ki = if layout.integral.is_some() { gains.ki } else { T::zero() };
         let kd = if layout.previous.is_some() { gains.kd } else { T::zero() };
-        let slopes = Slopes::at_rest(&self.settings.config, Gains { ki, kd, ..gains });
+        let slopes = Slopes::at_rest(&self.settings, Gains { ki, kd, ..gains });
         let row = |slope: &Slope<T>| {
             let mut row = vec![T::zero(); layout.size];
             for (place, by) in places.into_iter().zip(&slope.derivative[REMEMBERED..]) {
@@ -252,9 +251,10 @@ struct Slopes<T> {
 }
 
 impl<T: Base> Slopes<T> {
-    fn at_rest(config: &PidConfig<f64>, gains: Gains<T>) -> Self {
-        let no_limit = PidConfig { anti_windup: AntiWindup::None, ..*config };
-        let equations = PidEquations::new(&no_limit, Gains::ZERO, GainCoupling::NONE).lifted();
+    fn at_rest(settings: &LoopSettings, gains: Gains<T>) -> Self {
+        let no_limit = PidConfig { anti_windup: AntiWindup::None, ..settings.config };
+        let Followers { coupling, nominal } = settings.followers;
+        let equations = PidEquations::new(&no_limit, nominal, coupling).lifted();
         let [measurement_rad, rate_rad_s, integral, derivative_rad_s, last_rad] =
             Slope::variables([T::zero(); INPUTS]);
         let sample = Sample { setpoint_rad: Slope::zero(), measurement_rad, rate_rad_s };

@@ -4,7 +4,7 @@ use fspid_core::{Gains, ModelState, Pid, PidConfig, Previous, Sample, State};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
-use super::{LoopModel, LoopSettings, Memory, SampledPlant, Sensing};
+use super::{Followers, LoopModel, LoopSettings, Memory, SampledPlant, Sensing};
 use fspid_options::any_controller;
 
 /// A state is moved by so much. Around rest the controller is linear, so that only rounding is left.
@@ -20,6 +20,7 @@ fn still() -> SampledPlant<f64> {
 fn model(config: &PidConfig<f64>, gains: Gains<f64>) -> LoopModel<f64> {
     let settings = LoopSettings {
         config: *config,
+        followers: Followers::NONE,
         memory: Memory::of_gains(gains, config),
         delay_samples: 0,
         pitch: Sensing::DIRECT,

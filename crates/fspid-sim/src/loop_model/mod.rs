@@ -9,8 +9,8 @@
 //! with the set-point at zero and no limit at work. The bumpless integral, the literal one, a filtered
 //! or plain derivative and whole-sample delays all leave M affine in the three gains, which is what
 //! proofs over corners of a set of gains rest on. A set-point weight that moves with the gains leaves it
-//! so, the set-point being zero; a gain of the rate loop that moves with `kd` is taken as it is at the
-//! gains in question ([`Controller::config_at`](crate::Controller::config_at)).
+//! so, the set-point being zero, and so does a gain of the rate loop that moves with `kd`: it either follows here
+//! ([`Followers`]), or is taken as it is at the gains in question ([`Controller::config_at`](crate::Controller::config_at)).
 //!
 //! The controller's rows are derivatives of the equations that fly, [`fspid_core::equations`]. They are
 //! generic over the number, so that an enclosure in intervals and the analysis in floats are of the same
@@ -27,7 +27,7 @@ mod sensing;
 #[cfg(test)]
 mod tests;
 
-use fspid_core::{Gains, PidConfig};
+use fspid_core::{Controller, GainCoupling, Gains, PidConfig};
 use fspid_lti::Matrix;
 use fspid_numeric::Scalar;
 use fspid_numeric::scalar::{Base, Interval};
@@ -53,11 +53,39 @@ pub struct SampledPlant<T> {
     pub rate: Vec<T>,
 }
 
+/// What follows the gains of a self-tuner, and the gains from which that is counted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Followers {
+    /// By how much.
+    pub coupling: GainCoupling<f64>,
+    /// The gains at which the configuration is what it says.
+    pub nominal: Gains<f64>,
+}
+
+impl Followers {
+    /// Nothing follows: the configuration is that of the gains in question.
+    pub const NONE: Self = Self { coupling: GainCoupling::NONE, nominal: Gains::ZERO };
+
+    /// Those of a controller.
+    #[must_use]
+    pub fn of(controller: &Controller<f64>) -> Self {
+        match controller {
+            Controller::Fixed(_) => Self::NONE,
+            Controller::SelfTuning(fspid) => Self {
+                coupling: fspid.tuner().settings().gain_coupling,
+                nominal: fspid.tuner().nominal(),
+            },
+        }
+    }
+}
+
 /// Everything of a loop around rest but its gains and its plant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoopSettings {
     /// Everything of the controller but its gains.
     pub config: PidConfig<f64>,
+    /// What of that moves with the gains.
+    pub followers: Followers,
     /// What of the controller's memory is part of the loop.
     pub memory: Memory,
     /// Whole samples by which a command arrives late.
@@ -69,11 +97,18 @@ pub struct LoopSettings {
 }
 
 impl LoopSettings {
-    /// Those of a scenario with a controller's configuration.
+    /// True if the seen rate enters the command at some gains.
+    #[must_use]
+    pub fn uses_rate(&self) -> bool {
+        self.config.rate_gain_s != 0.0 || self.followers.coupling.rate_gain != 0.0
+    }
+
+    /// Those of a scenario with a controller's configuration at its gains.
     pub(crate) fn of(scenario: &Scenario, config: &PidConfig<f64>, memory: Memory) -> Self {
         let surroundings = &scenario.surroundings;
         Self {
             config: *config,
+            followers: Followers::NONE,
             memory,
             delay_samples: scenario.actuator.delay_samples(),
             pitch: Sensing::through(surroundings.pitch_sensor.as_ref(), config.dt_s),
