@@ -14,7 +14,7 @@ use fspid_lti::Matrix;
 use fspid_numeric::scalar::Interval;
 use fspid_proof::check::{ActuatorLag, IntervalMatrix, PrintedPlant, decreases};
 use fspid_sim::ElevatorSign;
-use fspid_sim::loop_model::{LoopModel, LoopSettings, Memory, Sensing};
+use fspid_sim::loop_model::{Followers, LoopModel, LoopSettings, Memory, Sensing};
 
 const DT_S: f64 = 0.02;
 /// Gains in the middle, and how far the checked ones are away from them, as a part.
@@ -39,6 +39,7 @@ fn main() {
     let config = PidConfig::sampled_every(DT_S);
     let settings = LoopSettings {
         config,
+        followers: Followers::NONE,
         memory: Memory::of_gains(GAINS, &config),
         delay_samples: 2,
         pitch: Sensing::DIRECT,

@@ -1,7 +1,9 @@
 //! Tries to refute what is proved: draws scenarios, certifies them, and flies each proved one over its whole
 //! range of set-points and loads.
 //!
-//! `cargo run --release -p fspid-proof --example refute_proofs -- --count 3000 [--from 0]`
+//! `cargo run --release -p fspid-proof --example refute_proofs -- --count 3000 [--from 0] [--structures]`
+//!
+//! With `--structures` the self-tuners are of other structures than the paper's.
 //!
 //! Ends with 1 where a flight of a proved loop does not settle.
 
@@ -29,10 +31,12 @@ fn main() -> ExitCode {
         text.and_then(|text| text.parse().ok()).unwrap_or(otherwise)
     };
     let (count, from) = (after("--count", 100), after("--from", 0));
+    let structures = arguments.iter().any(|argument| argument == "--structures");
     let mut answers: BTreeMap<String, u64> = BTreeMap::new();
     let (mut flights, mut held_in_all, mut contradicted) = (0, 0, 0);
     for seed in from..from + count {
-        let answer = flown::answer(&drawn::scenario(&mut Dice::new(seed)));
+        let drawn = if structures { drawn::structured } else { drawn::scenario };
+        let answer = flown::answer(&drawn(&mut Dice::new(seed)));
         if arguments.iter().any(|argument| argument == "--each") {
             println!("scenario {seed}: {answer:?}");
         }

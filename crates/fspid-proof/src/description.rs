@@ -1,9 +1,9 @@
 //! What a certificate is about, complete in itself.
 
-use fspid_core::{AntiWindup, GainCoupling, PidConfig, SecondInput, SelfTuner, TunerSettings};
+use fspid_core::{AntiWindup, PidConfig, SecondInput, SelfTuner, TunerSettings};
 use fspid_numeric::scalar::Interval;
 use fspid_sim::actuator::{Actuator, ActuatorParts};
-use fspid_sim::loop_model::{LoopModel, LoopSettings, Memory, Sensing};
+use fspid_sim::loop_model::{Followers, LoopModel, LoopSettings, Memory, Sensing};
 use fspid_sim::sensor::Sensor;
 use fspid_sim::{Controller, ElevatorSign, LinearPlant, Scenario, SimError};
 
@@ -54,11 +54,11 @@ pub enum NotProvable {
         "the vertical gyro erects to the apparent vertical at a bounded rate, so that around rest the loop is not linear and may keep an oscillation; a proof needs erection_deg_min to be 0"
     )]
     Erection,
-    /// A self-tuner of another structure than the paper's.
+    /// A rate that is seen at rest, and gains that depend on it or multiply it.
     #[error(
-        "{what}; a proof speaks of supervisors whose rules conclude labels and that see the error and its change through even sets, and of controllers of which only the gains move"
+        "{what}, and the rate sensor has a bias: at rest a rate is seen that is not there, so that rest is not at the nominal gains and moves with them; a proof needs a rate sensor without bias"
     )]
-    Structure {
+    BiasedRate {
         /// What is in the way.
         what: &'static str,
     },
@@ -79,38 +79,30 @@ pub enum NotProvable {
     Plant(#[from] NotProved),
 }
 
-/// What keeps a self-tuner from being proved; nothing for one that is plain.
+/// What keeps a self-tuner from being proved, where its rate sensor shows a rate that is not there.
 fn beyond_proof(tuner: &SelfTuner<f64>) -> Option<&'static str> {
     let TunerSettings {
         // Covered: an error turned round is another cell of the same surface.
         error_sign: _,
+        // Covered: all inputs are in the claim, whatever shows them, but for a bias.
         second_input,
         // Covered by the rows of the supervisor's inputs.
         change: _,
         input_scale: _,
-        input_sets,
+        // Covered: cells are told by their inputs.
+        input_sets: _,
         // Covered by the set of gains.
         output_scale: _,
+        // Covered by the loop, which is affine in the gains with its followers, but for a bias.
         gain_coupling,
         law: _,
         gain_limits: _,
         dead_zone: _,
     } = tuner.settings();
-    if tuner.supervisor().numbers().is_some() {
-        return Some("the supervisor's rules conclude numbers (Takagi and Sugeno)");
+    if *second_input == SecondInput::Rate {
+        return Some("the supervisor sees the measured pitch rate");
     }
-    match second_input {
-        SecondInput::Change => {}
-        SecondInput::Rate => return Some("the supervisor sees the measured pitch rate"),
-        SecondInput::ModelError(_) => {
-            return Some("the supervisor sees the error of a reference model");
-        }
-    }
-    if !input_sets.are_even() {
-        return Some("the sets of the supervisor's inputs are not even");
-    }
-    let nothing = *gain_coupling == GainCoupling::NONE;
-    (!nothing).then_some("set-point weight or rate gain follow the gains")
+    (gain_coupling.rate_gain != 0.0).then_some("the gain of the pitch rate follows kd")
 }
 
 /// What keeps an actuator from being proved.
@@ -153,6 +145,13 @@ impl LoopDescription {
         if scenario.plant.aircraft().is_some() && surroundings.pitch_sensor.iter().any(erects) {
             return Err(NotProvable::Erection);
         }
+        let biased = surroundings.rate_sensor.as_ref().is_some_and(|sensor| sensor.bias() != 0.0);
+        if let Controller::SelfTuning(fspid) = controller
+            && biased
+            && let Some(what) = beyond_proof(fspid.tuner())
+        {
+            return Err(NotProvable::BiasedRate { what });
+        }
         let description = Self {
             numerator: transfer_function.numerator().coefficients().to_vec(),
             denominator: transfer_function.denominator().coefficients().to_vec(),
@@ -173,13 +172,7 @@ impl LoopDescription {
         if let Some(what) = not_linear_around_rest(&self.actuator) {
             return Err(NotProvable::NotLinearAroundRest { what });
         }
-        if let Controller::SelfTuning(fspid) = &self.controller
-            && let Some(what) = beyond_proof(fspid.tuner())
-        {
-            return Err(NotProvable::Structure { what });
-        }
-        let uses_rate = self.controller.config().rate_gain_s != 0.0;
-        if self.pitch.at_largest_age || (uses_rate && self.rate.at_largest_age) {
+        if self.pitch.at_largest_age || (self.controller.uses_rate() && self.rate.at_largest_age) {
             return Err(NotProvable::ChangingAge);
         }
         // Before anything is enclosed: the size of everything that follows.
@@ -205,6 +198,7 @@ impl LoopDescription {
         };
         LoopSettings {
             config,
+            followers: Followers::of(&self.controller),
             memory,
             delay_samples: self.actuator.delay_samples(),
             pitch: self.pitch,

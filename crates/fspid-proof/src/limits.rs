@@ -167,7 +167,7 @@ pub(crate) fn rows<T: Base + Magnitude>(
         let [pitch, rate] = model.seen_rows();
         let [blur_of_pitch, blur_of_rate] = description.blurs();
         rows.push((pitch, less(limit_rad, rest.seen_rad, blur_of_pitch)));
-        if config.rate_gain_s != 0.0 {
+        if model.settings().uses_rate() {
             rows.push((rate, less(limit_rad, 0.0, blur_of_rate)));
         }
     }
@@ -200,8 +200,7 @@ impl Magnitude for Interval {
 impl LoopDescription {
     /// How far the resolution of the sensors may take seen pitch and seen rate off, rad and rad/s.
     pub(crate) fn blurs(&self) -> [f64; 2] {
-        let uses_rate = self.controller.config().rate_gain_s != 0.0;
-        let rate = if uses_rate { 0.5 * self.rate.resolution } else { 0.0 };
+        let rate = if self.controller.uses_rate() { 0.5 * self.rate.resolution } else { 0.0 };
         [0.5 * self.pitch.resolution, rate]
     }
 
@@ -228,7 +227,7 @@ pub(crate) fn level(
     rest: &Rest,
 ) -> Option<f64> {
     let mut level = f64::INFINITY;
-    for HeldGains { gains, change_gain } in corners {
+    for HeldGains { gains, change_gain, .. } in corners {
         let model = model.with_change_gain(*change_gain);
         for (row, limit) in rows(description, &model, *gains, rest) {
             if !(limit > 0.0) {

@@ -1,8 +1,9 @@
 //! Where a loop comes to rest while set-point and load stand still, and what its command does there.
 
-use fspid_core::{Fspid, IntegralForm, Law};
+use fspid_core::{Fspid, IntegralForm, Law, SecondInput};
 use fspid_numeric::scalar::Interval;
 use fspid_sim::Controller;
+use fspid_sim::loop_model::Followers;
 
 use crate::check::printed;
 use crate::description::LoopDescription;
@@ -33,7 +34,7 @@ pub(crate) struct Rest {
 pub enum NoRest {
     /// An accumulating law moves a constant part of the command long after the error is gone.
     #[error(
-        "an accumulating law with a set-point weight other than 1, or with the literal integral, moves the command that holds a set-point or a load by gains that remember: nothing is claimed but the return to rest with the set-point at zero and no load"
+        "an accumulating law without leakage, or with the literal integral, moves the command that holds a set-point or a load by gains that remember for ever: nothing is claimed but the return to rest with the set-point at zero and no load"
     )]
     Remembered,
     /// No integral, and no bound of the error that is left.
@@ -128,6 +129,38 @@ impl<'a> Holding<'a> {
         Interval::point(off) * self.setpoint
     }
 
+    /// Largest magnitude of what a unit of kp makes of the command that the weight holds: $h(k_p) = k_p (b - 1) r$ with
+    /// $b = b' + s_b (k_p - k_p')$, from the gains at rest to any other,
+    ///
+    /// $$ \frac{h(k_p) - h(k_0)}{k_p - k_0} = (b' - 1 + s_b (k_p + k_0 - k_p')) r $$
+    fn weight_per_kp(&self) -> Interval {
+        let Followers { coupling, nominal } = Followers::of(&self.description.controller);
+        if coupling.setpoint_weight == 0.0 {
+            return self.by_weight();
+        }
+        let weight = self.description.controller.config().setpoint_weights.proportional;
+        let [kp, ..] = self.set.bounds();
+        let [at_rest, ..] = self.set.rest;
+        let off = Interval::point(weight) - Interval::ONE
+            + Interval::point(coupling.setpoint_weight)
+                * (kp + at_rest - Interval::point(nominal.kp));
+        Interval::point(off.magnitude()) * self.setpoint
+    }
+
+    /// Largest magnitude of $k_p (b - 1) r$ at rest.
+    fn of_weight_at_rest(&self) -> Interval {
+        let [kp, ..] = self.set.rest;
+        let Followers { coupling, nominal } = Followers::of(&self.description.controller);
+        let size = Interval::point(kp.magnitude());
+        if coupling.setpoint_weight == 0.0 {
+            return size * self.by_weight();
+        }
+        let weight = self.description.controller.config().setpoint_weights.proportional;
+        let off = Interval::point(weight) - Interval::ONE
+            + Interval::point(coupling.setpoint_weight) * (kp - Interval::point(nominal.kp));
+        size * Interval::point(off.magnitude()) * self.setpoint
+    }
+
     fn has_integral(&self) -> bool {
         self.description.settings().memory.integral
     }
@@ -199,10 +232,10 @@ impl<'a> Holding<'a> {
         }
         let literal = fspid.config().integral == IntegralForm::Literal;
         let command_rad = self.command_rad();
-        let kp = Interval::point(self.set.rest[0].magnitude());
-        let integral = Interval::point(command_rad) + kp * self.by_weight();
+        let integral = Interval::point(command_rad) + self.of_weight_at_rest();
+        let by_kp = self.weight_per_kp().upper();
         let mut rest = Rest {
-            held: HeldCommand { by_kp: self.by_weight().upper(), by_ki: 0.0, at_origin: true },
+            held: HeldCommand { by_kp, by_ki: 0.0, at_origin: true },
             command_rad,
             integral_rad: integral.upper(),
             ..self.still()
@@ -218,7 +251,11 @@ impl<'a> Holding<'a> {
             rest.held.by_ki = per_gain.upper();
             rest.integral_rad = (per_gain * Interval::point(ki.magnitude())).upper();
         }
-        let remembers = fspid.tuner().settings().law != Law::Memoryless;
+        let remembers = match fspid.tuner().settings().law {
+            Law::Memoryless => false,
+            // Without leakage gains rest wherever they are.
+            Law::Accumulating { leakage_per_s } => literal || !(leakage_per_s > 0.0),
+        };
         if remembers && !rest.held.is_none() {
             return Err(NoRest::Remembered);
         }
@@ -226,7 +263,13 @@ impl<'a> Holding<'a> {
     }
 
     fn plain(&self) -> bool {
-        self.description.controller.config().setpoint_weights.proportional - 1.0 == 0.0
+        let weight = self.description.controller.config().setpoint_weights.proportional;
+        weight - 1.0 == 0.0 && !self.weight_follows()
+    }
+
+    /// True where the set-point weight follows kp.
+    fn weight_follows(&self) -> bool {
+        Followers::of(&self.description.controller).coupling.setpoint_weight != 0.0
     }
 
     fn without_integral(&self, fspid: &Fspid<f64>) -> Result<Rest, NoRest> {
@@ -236,6 +279,11 @@ impl<'a> Holding<'a> {
         }
         if fspid.tuner().settings().law != Law::Memoryless {
             return Err(NoRest::Remembered);
+        }
+        // With another weight at every gain the error that stays is another; and a model's error stays with it.
+        let settings = fspid.tuner().settings();
+        if self.weight_follows() || settings.second_input != SecondInput::Change {
+            return Err(NoRest::NoIntegral);
         }
         let [kp, ..] = self.set.bounds();
         let (command_rad, driven_rad) = self.proportional(kp).ok_or(NoRest::NoIntegral)?;
@@ -254,7 +302,7 @@ fn size_least(value: Interval) -> Interval {
 
 #[cfg(test)]
 #[path = "../tests/flown_proofs/drawn.rs"]
-#[allow(clippy::expect_used, clippy::indexing_slicing, reason = "shared with a test")]
+#[allow(clippy::expect_used, clippy::indexing_slicing, dead_code, reason = "shared with a test")]
 mod drawn;
 
 #[cfg(test)]

@@ -13,6 +13,7 @@ use fspid_sim::loop_model::{LoopModel, SampledPlant};
 
 use crate::certificate::{BoundedRate, Certificate, Claim};
 use crate::description::LoopDescription;
+use crate::gain_set::MOST_CORNERS;
 
 /// Most states of a loop.
 pub const MOST_STATES: usize = 128;
@@ -108,6 +109,11 @@ pub(crate) fn check(certificate: &Certificate) -> Result<(), WrongSizes> {
     wrong.found.extend(description.too_large());
     let divisions = ("divisions", "cells along an input");
     wrong.within(divisions, certificate.divisions, [1, MOST_DIVISIONS]);
+    let more = match &certificate.claim {
+        Claim::CommonQuadratic { .. } => description.remembered_states(certificate.range),
+        _ => 0,
+    };
+    let states = states + more;
     wrong.of_claim(&certificate.claim, states);
     let inequalities = most_inequalities(certificate);
     let work = inequalities.saturating_mul((states as u64).saturating_pow(3));
@@ -124,7 +130,8 @@ fn most_inequalities(certificate: &Certificate) -> u64 {
             let settings = fspid.tuner().settings();
             let along = |scale: f64| if scale == 0.0 { 1 } else { divisions };
             match settings.law {
-                Law::Accumulating { .. } => 1,
+                // The corners of the body of gains that are reached.
+                Law::Accumulating { .. } => MOST_CORNERS,
                 Law::Memoryless => along(settings.input_scale.error_per_rad)
                     .saturating_mul(along(settings.input_scale.change_per_rad))
                     .saturating_add(4),
@@ -132,7 +139,8 @@ fn most_inequalities(certificate: &Certificate) -> u64 {
         }
     };
     // Eight of a box, each with what is held either way.
-    let corners = cells.saturating_mul(16);
+    let remembered = certificate.description.remembered_states(certificate.range) > 0;
+    let corners = cells.saturating_mul(if remembered { 72 } else { 16 });
     match &certificate.claim {
         Claim::CommonQuadratic { .. } => corners,
         Claim::SProcedure { multipliers, .. } => {

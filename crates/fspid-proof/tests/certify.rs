@@ -6,7 +6,7 @@ use fspid_core::{
 };
 use fspid_fuzzy::{Defuzzifier, NumberTable, OutOfRange, RuleTable, Supervisor};
 use fspid_lti::Matrix;
-use fspid_proof::gain_set::{IncrementCell, IncrementMap, IncrementSlopes, NoSlopes};
+use fspid_proof::gain_set::{IncrementCell, IncrementMap, IncrementSlopes};
 use fspid_proof::{
     Asked, Bearing, BoundedRate, Certificate, Claim, Effort, LeftOut, LoopDescription, NotProvable,
     Range, Verdict, certify,
@@ -269,46 +269,66 @@ fn an_input_that_the_supervisor_never_sees_refutes_nothing() {
 }
 
 #[test]
-fn rules_that_conclude_numbers_are_refused_and_bounded_by_the_range_alone() {
-    let numbers = NumberTable::new([[[1.0; 7]; 7]; 3]).expect("finite");
+fn rules_that_conclude_numbers_are_proved_as_what_they_say() {
+    let grid = core::array::from_fn(|row| {
+        core::array::from_fn(|column| row as f64 / 3.0 - 1.0 + 0.1 * (column % 2) as f64)
+    });
+    let numbers = NumberTable::new([grid; 3]).expect("finite");
     let supervisor = Supervisor::of_numbers(&numbers, 5.0, OutOfRange::Clamp).expect("allowed");
-    let tuner = SelfTuner::new(NOMINAL, supervisor, TunerSettings::literal()).expect("allowed");
+    let output_scale = Gains { kp: 0.3, ki: 0.1, kd: 0.2 };
+    let settings = TunerSettings { output_scale, ..TunerSettings::literal() };
+    let tuner = SelfTuner::new(NOMINAL, supervisor, settings).expect("allowed");
     let fspid = Fspid::new(tuner, config()).expect("allowed");
-    let refused = certify(&loop_of(Controller::SelfTuning(fspid)), &Asked::rest(), &quick());
-    let refused = refused.expect_err("another structure").to_string();
-    assert!(refused.contains("conclude numbers"), "{refused}");
+    assert!(proved(&loop_of(Controller::SelfTuning(fspid))).check().is_ok());
     let map = IncrementMap::of(&tuner, 3).expect("bounded");
     let holds = |cell: &IncrementCell| {
         let bounds = cell.delta.map(|delta| [delta.lower(), delta.upper()]);
-        bounds.iter().all(|[lower, upper]| *lower <= -5.0 && *upper >= 5.0)
+        bounds.iter().all(|[lower, upper]| *lower >= -1.01 && *upper <= 1.11)
     };
     assert!(map.cells.iter().all(holds));
-    assert_eq!(IncrementSlopes::of(&tuner, [1.0; 2]), Err(NoSlopes::Unbounded));
+    let slopes = IncrementSlopes::of(&tuner, [1.0; 2]).expect("bilinear").slopes;
+    let near = |one: f64, other: f64| (one - other).abs() < 1e-12;
+    for [by_error, by_change] in slopes {
+        assert!(near(by_error.upper(), 0.2) && by_error.lower() <= 0.0);
+        assert!(near(by_change.upper(), 0.06) && near(by_change.lower(), -0.06));
+    }
 }
 
 #[test]
-fn a_tuner_of_another_structure_is_refused_by_name() {
+fn a_tuner_of_another_structure_is_proved_as_what_it_is() {
     let model = ReferenceModel { bandwidth_rad_s: 1.0, damping: 1.0 };
     let uneven = InputSets { error: SetCentres::new(0.2, 0.5).ok(), change: None };
-    let refusal = |settings: TunerSettings<f64>| {
+    let output_scale = Gains { kp: 0.09, ki: 0.02, kd: 0.045 };
+    let proved = |settings: TunerSettings<f64>| {
         let table = RuleTable::parse([RISING; 3]).expect("a table");
         let supervisor = Supervisor::new(&table, 5.0, Defuzzifier::Exact, OutOfRange::Clamp);
         let tuner = SelfTuner::new(NOMINAL, supervisor.expect("allowed"), settings);
         let fspid = Fspid::new(tuner.expect("allowed"), config()).expect("allowed");
-        let refused = certify(&loop_of(Controller::SelfTuning(fspid)), &Asked::rest(), &quick());
-        let refused = refused.expect_err("another structure");
-        assert!(matches!(refused, NotProvable::Structure { .. }), "{refused}");
-        refused.to_string()
+        let certificate = proved(&loop_of(Controller::SelfTuning(fspid)));
+        certificate.check().expect("it holds")
     };
-    let plain = TunerSettings::literal();
-    let gain_coupling = GainCoupling { setpoint_weight: 0.1, rate_gain: 0.0 };
-    assert!(
-        refusal(TunerSettings { second_input: SecondInput::Rate, ..plain }).contains("pitch rate")
-    );
-    assert!(refusal(TunerSettings { gain_coupling, ..plain }).contains("follow the gains"));
-    let second_input = SecondInput::ModelError(model);
-    assert!(refusal(TunerSettings { second_input, ..plain }).contains("reference model"));
-    assert!(refusal(TunerSettings { input_sets: uneven, ..plain }).contains("not even"));
+    let plain = TunerSettings { output_scale, ..TunerSettings::literal() };
+    let law = Law::Accumulating { leakage_per_s: 1.0 };
+    for settings in [
+        TunerSettings { second_input: SecondInput::Rate, ..plain },
+        TunerSettings { second_input: SecondInput::ModelError(model), ..plain },
+        TunerSettings { input_sets: uneven, ..plain },
+        TunerSettings { second_input: SecondInput::ModelError(model), law, ..plain },
+    ] {
+        let rechecked = proved(settings);
+        assert!(rechecked.bounds[0].lower() < 1.65 && rechecked.bounds[0].upper() > 2.35);
+    }
+    // A rate loop that follows kd is in the loop that is proved: what it does there is not what kd does.
+    let gain_coupling = GainCoupling { setpoint_weight: 0.1, rate_gain: 0.5 };
+    assert!(proved(TunerSettings { gain_coupling, law, ..plain }).cells == 1);
+    let wild = GainCoupling { setpoint_weight: 0.0, rate_gain: -40.0 };
+    let settings = TunerSettings { gain_coupling: wild, law, ..plain };
+    let table = RuleTable::parse([RISING; 3]).expect("a table");
+    let supervisor = Supervisor::new(&table, 5.0, Defuzzifier::Exact, OutOfRange::Clamp);
+    let tuner = SelfTuner::new(NOMINAL, supervisor.expect("allowed"), settings).expect("allowed");
+    let wild = Controller::SelfTuning(Fspid::new(tuner, config()).expect("allowed"));
+    let outcome = certify(&loop_of(wild), &Asked::rest(), &quick()).expect("provable");
+    assert!(!matches!(outcome.verdict, Verdict::Proved(..)), "{outcome:?}");
 }
 
 #[test]

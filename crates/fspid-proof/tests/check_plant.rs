@@ -4,7 +4,7 @@ use fspid_core::{Gains, Pid, PidConfig};
 use fspid_numeric::scalar::Interval;
 use fspid_proof::check::{ActuatorLag, IntervalMatrix, NotProved, PrintedPlant, printed};
 use fspid_sim::actuator::{Actuator, Lag};
-use fspid_sim::loop_model::{LoopModel, LoopSettings, Memory, SampledPlant, Sensing};
+use fspid_sim::loop_model::{Followers, LoopModel, LoopSettings, Memory, SampledPlant, Sensing};
 use fspid_sim::signal::{Profile, Shape};
 use fspid_sim::{
     Controller, ElevatorSign, LinearPlant, NamedController, Scenario, Surroundings, Timing,
@@ -103,6 +103,7 @@ fn the_enclosed_loop_holds_the_loop_in_floats() {
     let config = PidConfig::sampled_every(0.02);
     let settings = LoopSettings {
         config,
+        followers: Followers::NONE,
         memory: Memory::of_gains(GAINS, &config),
         delay_samples: 1,
         pitch: Sensing::DIRECT,

@@ -6,8 +6,8 @@ use crate::gain_set_common;
 
 use fspid_core::fuzzy::OutOfRange;
 use fspid_core::{
-    ControllerSetting, DeadZone, ErrorSign, Fspid, GainLimits, Gains, InputScale, Limits,
-    PidConfig, SelfTuner, State, TunerSettings,
+    ControllerSetting, DeadZone, ErrorSign, Fspid, GainLimits, Gains, InputScale, InputSets,
+    Limits, PidConfig, SelfTuner, SetCentres, State, TunerSettings,
 };
 use fspid_numeric::scalar::Interval;
 use fspid_proof::gain_set::{GainCell, IncrementMap, NoBound, grid, producible};
@@ -88,7 +88,10 @@ fn whatever_the_settings_no_gain_lies_outside_of_its_cell() {
     let zone = Some(DeadZone { error_rad: 0.7, change_rad: 2.0 });
     let turned = TunerSettings { error_sign: ErrorSign::MeasurementMinusSetpoint, ..settings() };
     let mixed = Gains { kp: -0.3, ki: 0.0, kd: 10.0 };
+    let uneven =
+        InputSets { error: SetCentres::new(0.1, 0.8).ok(), change: SetCentres::new(0.4, 0.5).ok() };
     let all = [
+        TunerSettings { input_sets: uneven, dead_zone: zone, ..settings() },
         TunerSettings { dead_zone: zone, ..settings() },
         TunerSettings { gain_limits: Some(limits()), ..turned },
         TunerSettings { output_scale: mixed, ..settings() },
@@ -161,6 +164,48 @@ fn no_flown_gain_lies_outside_of_the_set_whatever_the_law() {
         fly(TunerSettings { law: leaking(0.0), gain_limits: held, ..settings });
         fly(TunerSettings { law: leaking(3.0), gain_limits: held, ..settings });
         fly(TunerSettings { dead_zone: zone, ..settings });
+    }
+}
+
+/// Flies a leaking law over errors that jump about and stay, and asks what it reaches at each sample.
+fn check_reached(settings: TunerSettings<f64>, sets: InputSets<f64>) -> f64 {
+    let scale = InputScale { error_per_rad: 2.0, change_per_rad: 0.1 };
+    let settings = TunerSettings { input_scale: scale, input_sets: sets, ..settings };
+    let tuner = tuner(supervisor(PRINTED, 5.0, OutOfRange::Clamp), settings);
+    let map = IncrementMap::of(&tuner, 24).expect("bounded");
+    let around = map.gains(1.0);
+    let set = map.sampled_every(PERIOD_S).gains(1.0);
+    let reached = set.reached.as_ref().expect("a leaking law");
+    let controller = Fspid::new(tuner, PidConfig::sampled_every(PERIOD_S)).expect("allowed");
+    let (mut state, mut dice, mut held) = (State::new(), Dice(5), 0.0);
+    for sample in 0..20_000 {
+        if sample % 150 == 0 {
+            held = 5.0 * dice.number();
+        }
+        let error_rad = if sample / 150 % 3 == 0 { 5.0 * dice.number() } else { held };
+        let gains = controller.step(&mut state, error(error_rad)).gains;
+        assert!(set.contains(gains), "{gains:?}");
+        let near = array(gains).map(|gain| Interval::between(0.99 * gain, 1.01 * gain));
+        let part = reached.part(near).expect("gains that are flown");
+        assert!(part.iter().zip(array(gains)).all(|(side, gain)| side.contains(gain)));
+    }
+    // Of the corners of the box so many are surely not reached.
+    let corners: Vec<Gains<f64>> = around.corners().map(|(_, corner)| corner).collect();
+    let beyond = corners.iter().filter(|corner| !set.contains(**corner)).count();
+    beyond as f64 / corners.len() as f64
+}
+
+#[test]
+fn no_combination_of_gains_that_is_flown_lies_outside_of_what_is_reached() {
+    let uneven = InputSets { error: SetCentres::new(0.1, 0.8).ok(), change: None };
+    for law in [leaking(0.5), leaking(3.0), leaking(100.0)] {
+        let settings = TunerSettings { law, ..settings() };
+        let cut = TunerSettings { gain_limits: Some(limits()), ..settings };
+        for sets in [InputSets::EVEN, uneven] {
+            // The three tables answer one after another, so that no corner of the box is reached at once.
+            assert!(check_reached(settings, sets) > 0.4);
+            check_reached(cut, sets);
+        }
     }
 }
 

@@ -129,10 +129,20 @@ fn the_literal_integral_is_proved_for_small_loads_and_not_for_large_ones() {
 }
 
 #[test]
-fn an_accumulating_law_with_a_weight_is_proved_to_return_to_rest_and_no_more() {
+fn an_accumulating_law_with_a_weight_is_proved_for_a_range_and_with_the_literal_integral_for_rest()
+{
     let law = Law::Accumulating { leakage_per_s: 1.0 };
     let description = tuned(weighted(0.5), law, NOMINAL);
-    let outcome = answer(&description, &asked(1.0, 0.0));
+    let (certificate, rechecked) = proved(answer(&description, &asked(1.0, 0.0)));
+    assert!(!rechecked.any_setpoint && rechecked.any_load);
+    assert!(rechecked.remains_rad < 0.01 * DEG, "{}", rechecked.remains_rad / DEG);
+    // The same matrices are no proof for set-points that move the gains' part of the command as far as it goes.
+    let setpoint_rad = 1000.0 * DEG;
+    let far = Certificate { range: Range { setpoint_rad, ..certificate.range }, ..certificate };
+    assert!(far.check().is_err());
+    // The literal integral makes something of the whole command.
+    let literal = PidConfig { integral: IntegralForm::Literal, ..weighted(0.5) };
+    let outcome = answer(&tuned(literal, law, NOMINAL), &asked(1.0, 0.0));
     assert_eq!(outcome.verdict, Verdict::Open);
     let (certificate, _) = outcome.instead.expect("return to rest");
     assert_eq!(certificate.range, Range::REST);

@@ -13,8 +13,10 @@ use core::cell::OnceCell;
 use std::rc::Rc;
 
 use fspid_core::fuzzy::OutOfRange;
-use fspid_core::{Change, Fspid, Law, SelfTuner};
+use fspid_core::{Change, Fspid, Law, SecondInput, SelfTuner};
 use fspid_numeric::scalar::Interval;
+
+use crate::remembered::Remembered;
 
 use super::slopes::{IncrementSlopes, NoSlopes};
 use super::{GainCell, GainSet};
@@ -90,7 +92,12 @@ impl GainSet {
             return Ok((self.clone(), 0.0));
         }
         if fspid.tuner().settings().law != Law::Memoryless {
-            return Err(NoSlopes::Remembered);
+            let remembered = Some(Remembered::of(self, fspid, factor, held)?);
+            return Ok((Self { remembered, ..self.clone() }, 0.0));
+        }
+        // A second input that is not in the loop's state has no gain there.
+        if fspid.tuner().settings().second_input != SecondInput::Change {
+            return Err(NoSlopes::OtherInput);
         }
         let over = Held::of(self, fspid, factor, held, known)?;
         let mut set = self.clone();

@@ -1,11 +1,12 @@
 //! Increments of the gains over cells of the supervisor's inputs, enclosed once for all scales.
 
-use fspid_core::SelfTuner;
 use fspid_core::fuzzy::{Defuzzifier, OutOfRange, Supervisor};
+use fspid_core::{SelfTuner, SetCentres};
 use fspid_fuzzy::audit::Reach;
 use fspid_fuzzy::system::{Parts, System};
 use fspid_numeric::scalar::Interval;
 
+use super::numbers::Numbers;
 use super::{EVERYWHERE, GainSet, NoBound, law};
 use crate::solve::never;
 
@@ -22,6 +23,8 @@ const ROUNDING: f64 = 1.0 / (1_u64 << 40) as f64;
 /// What each sample of a sampled centroid adds to [`ROUNDING`]: two roundings of sums up to the
 /// range.
 const ROUNDING_PER_SAMPLE: f64 = 1.0 / (1_u64 << 50) as f64;
+/// How far the moving of an input to the even sets may be off by rounding, as a share of the range: a dozen of them.
+const MOVED: f64 = 64.0 * f64::EPSILON;
 /// With so many cells between its samples, a sampled centroid meets every triangle at half its
 /// height or above, so that its area is not small. With fewer, nothing is said but that it lies in
 /// the range.
@@ -35,6 +38,8 @@ pub struct IncrementMap {
     /// At rest.
     pub(super) rest: [Interval; 3],
     pub(super) tuner: SelfTuner<f64>,
+    /// Sample period, where it is known.
+    pub(super) dt_s: Option<f64>,
 }
 
 /// Increments over a cell of the supervisor's inputs.
@@ -78,8 +83,10 @@ impl IncrementMap {
             None => enclosure.over([Side::point(0.0); 2]),
         };
         let scale = tuner.settings().input_scale;
-        let [errors, changes] = [scale.error_per_rad, scale.change_per_rad]
-            .map(|scale| sides(tuner.supervisor(), divisions.max(1), scale));
+        let sets = tuner.settings().input_sets;
+        let along = |scale, centres| sides(tuner.supervisor(), divisions.max(1), scale, centres);
+        let [errors, changes] =
+            [along(scale.error_per_rad, sets.error), along(scale.change_per_rad, sets.change)];
         let mut cells = Vec::with_capacity(errors.len() * changes.len() + 4);
         for &error in &errors {
             if stops() {
@@ -89,13 +96,22 @@ impl IncrementMap {
                 cells.push(enclosure.cell([error, change]));
             }
         }
-        if tuner.supervisor().out_of_range() == OutOfRange::Evaluate {
+        if tuner.supervisor().out_of_range() == OutOfRange::Evaluate
+            && !is_level(tuner.supervisor())
+        {
             let far = beyond([&errors, &changes]);
             cells.extend(far.into_iter().map(|sides| enclosure.far(sides)));
         }
-        let map = Self { cells, rest, tuner: *tuner };
+        let map = Self { cells, rest, tuner: *tuner, dt_s: None };
         law::check(&map)?;
         Ok(Some(map))
+    }
+
+    /// The same of a controller with this sample period, s: of an accumulating law it is then known which combinations
+    /// of gains it reaches.
+    #[must_use]
+    pub fn sampled_every(self, dt_s: f64) -> Self {
+        Self { dt_s: Some(dt_s), ..self }
     }
 
     /// The gains for `output_factor` times the tuner's output factors.
@@ -129,17 +145,44 @@ impl Side {
     }
 }
 
-/// Sides of the cells along an input.
-fn sides(supervisor: &Supervisor<f64>, divisions: usize, scale: f64) -> Vec<Side> {
+/// True where answers beyond the range are those at its border.
+fn is_level(supervisor: &Supervisor<f64>) -> bool {
+    supervisor.out_of_range() == OutOfRange::Clamp || supervisor.numbers().is_some()
+}
+
+/// Sides of the cells along an input: of even widths as the even sets see them.
+///
+/// A side is told by its inputs, and what is asked for is where the tuner moves them to, which it does in order; its
+/// rounding is added.
+fn sides(
+    supervisor: &Supervisor<f64>,
+    divisions: usize,
+    scale: f64,
+    centres: Option<SetCentres<f64>>,
+) -> Vec<Side> {
     // Such an input is always zero.
     if scale == 0.0 {
         return vec![Side::point(0.0)];
     }
     let (range, count) = (supervisor.range(), divisions as f64);
-    let at = |cell: f64| range * (2.0 * cell / count - 1.0);
-    let cells = (0..divisions).map(|cell| cell as f64);
-    let mut sides: Vec<Side> = cells.map(|cell| Side::between(at(cell), at(cell + 1.0))).collect();
-    if supervisor.out_of_range() == OutOfRange::Clamp {
+    let at = |cell: usize| range * (2.0 * cell as f64 / count - 1.0);
+    let side = |cell: usize| match centres {
+        None => Side::between(at(cell), at(cell + 1)),
+        Some(centres) => {
+            let [lower, upper] = [cell, cell + 1].map(|cell| match cell {
+                0 => -range,
+                cell if cell == divisions => range,
+                cell => moved_back(centres, at(cell), range),
+            });
+            let slack = Interval::between(-MOVED * range, MOVED * range);
+            let [from, to] = [lower, upper].map(|input| centres.warp(input, range));
+            let asked = Interval::between(from, to) + slack;
+            let within = asked.intersection(Interval::between(-range, range));
+            Side { asked: within.unwrap_or(asked), inputs: [lower, upper] }
+        }
+    };
+    let mut sides: Vec<Side> = (0..divisions).map(side).collect();
+    if is_level(supervisor) && supervisor.out_of_range() != OutOfRange::Error {
         if let Some(first) = sides.first_mut() {
             first.inputs[0] = f64::NEG_INFINITY;
         }
@@ -148,6 +191,20 @@ fn sides(supervisor: &Supervisor<f64>, divisions: usize, scale: f64) -> Vec<Side
         }
     }
     sides
+}
+
+/// The input that sets with these centres move to `even`, but for rounding.
+fn moved_back(centres: SetCentres<f64>, even: f64, range: f64) -> f64 {
+    let (small, medium) = (centres.small(), centres.medium());
+    let thirds = 3.0 * even.abs() / range;
+    let part = if thirds <= 1.0 {
+        small * thirds
+    } else if thirds <= 2.0 {
+        small + (medium - small) * (thirds - 1.0)
+    } else {
+        medium + (1.0 - medium) * (thirds - 2.0)
+    };
+    if even < 0.0 { -part * range } else { part * range }
 }
 
 /// Four regions around all cells, as far as inputs can be there.
@@ -175,6 +232,8 @@ fn beyond([errors, changes]: [&[Side]; 2]) -> Vec<[[f64; 2]; 2]> {
 /// Encloses increments over cells.
 struct Enclosure<'a> {
     reach: Option<Reach<'a>>,
+    /// Rules that conclude numbers.
+    numbers: Option<Numbers<'a>>,
     /// Where every answer of the supervisor lies.
     universe: Interval,
     slack: Interval,
@@ -183,12 +242,11 @@ struct Enclosure<'a> {
 }
 
 impl<'a> Enclosure<'a> {
-    fn new(tuner: &SelfTuner<f64>, system: Option<&'a System>) -> Self {
+    fn new(tuner: &'a SelfTuner<f64>, system: Option<&'a System>) -> Self {
         let supervisor = tuner.supervisor();
         let (range, rule) = (supervisor.range(), supervisor.defuzzifier());
         let samples = samples(rule);
         let slack = range * (ROUNDING + ROUNDING_PER_SAMPLE * f64::from(samples));
-        // Numbers lie anywhere within the range, and of what is in between nothing more is claimed.
         let has_labels = supervisor.numbers().is_none();
         let reach = system.filter(|_| has_labels && is_dense(rule)).map(Reach::new);
         let slack = Interval::between(-slack, slack);
@@ -201,7 +259,8 @@ impl<'a> Enclosure<'a> {
             [scale.error_per_rad * zone.error_rad, scale.change_per_rad * zone.change_rad]
                 .map(f64::abs)
         });
-        Self { reach, universe, slack, zone }
+        let numbers = supervisor.numbers().map(|table| Numbers { table, range });
+        Self { reach, numbers, universe, slack, zone }
     }
 
     fn cell(&mut self, sides: [Side; 2]) -> IncrementCell {
@@ -219,6 +278,7 @@ impl<'a> Enclosure<'a> {
         let asked = sides.map(|side| side.asked);
         let answers = self.reach.as_mut().map(|reach| reach.over(&asked));
         let known: Option<[Interval; 3]> = answers.and_then(|answers| answers.try_into().ok());
+        let known = known.or_else(|| self.numbers.as_ref().map(|numbers| numbers.over(asked)));
         let (slack, universe) = (self.slack, self.universe);
         let delta = known.map_or([universe; 3], |known| {
             known.map(|delta| (delta + slack).intersection(universe).unwrap_or(universe))

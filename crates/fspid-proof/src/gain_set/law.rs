@@ -4,7 +4,8 @@ use fspid_core::{Law, Limits};
 use fspid_fuzzy::OutOfRange;
 use fspid_numeric::scalar::Interval;
 
-use super::increments::IncrementMap;
+use super::increments::{IncrementCell, IncrementMap};
+use super::reached::{Reached, Told};
 use super::{EVERYWHERE, GainCell, GainSet, NAMES, NoBound, array};
 
 /// Roundings of the accumulating law, in units of the gains and distances that they act on; see
@@ -155,7 +156,15 @@ pub(super) fn gains(map: &IncrementMap, output_factor: f64) -> GainSet {
         let [kp, ki, kd] = &each;
         let [of_kp, of_ki, of_kd] = hull(map);
         let rates = [kp.rate_per_s(of_kp), ki.rate_per_s(of_ki), kd.rate_per_s(of_kd)];
-        return GainSet { nominal, rest, cells: vec![cell], rate_per_s: Some(rates) };
+        let reached = reached(map, &each, gains);
+        return GainSet {
+            nominal,
+            rest,
+            cells: vec![cell],
+            rate_per_s: Some(rates),
+            reached,
+            remembered: None,
+        };
     }
     let rest = of_each(&each, map.rest, One::memoryless);
     let cells = map.cells.iter().map(|cell| GainCell {
@@ -168,7 +177,26 @@ pub(super) fn gains(map: &IncrementMap, output_factor: f64) -> GainSet {
     if map.tuner.supervisor().out_of_range() == OutOfRange::Error {
         hold(&mut cells, array(nominal).map(Interval::point));
     }
-    GainSet { nominal, rest, cells, rate_per_s: None }
+    GainSet { nominal, rest, cells, rate_per_s: None, reached: None, remembered: None }
+}
+
+/// The combinations of gains that an accumulating law reaches within bounds.
+fn reached(map: &IncrementMap, each: &[One; 3], bounds: [Interval; 3]) -> Option<Reached> {
+    let leakage = Interval::point(each[0].leakage_per_s);
+    let target = |cell: &IncrementCell| {
+        [0, 1, 2].map(|gain: usize| {
+            let One { nominal, factor, .. } = each[gain];
+            Interval::point(nominal) + factor * cell.delta[gain] / leakage
+        })
+    };
+    let targets: Vec<[Interval; 3]> = map.cells.iter().map(target).collect();
+    Reached::of(&Told {
+        nominal: each.each_ref().map(|one| one.nominal),
+        targets: &targets,
+        limits: each.each_ref().map(|one| one.limits),
+        share: (leakage * Interval::point(map.dt_s?)).lower(),
+        bounds,
+    })
 }
 
 /// A supervisor that refuses inputs leaves the gains as they were, at the first sample the nominal

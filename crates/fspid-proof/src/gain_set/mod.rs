@@ -23,16 +23,21 @@ mod held;
 mod hull;
 mod increments;
 mod law;
+mod numbers;
 mod produced;
+mod reached;
 mod slopes;
 
 use fspid_core::Gains;
 use fspid_numeric::scalar::Interval;
 
+use crate::remembered::{Remembered, RememberedCorner};
 pub use cones::Cone;
 pub(crate) use held::{HeldCommand, KnownSlopes};
 pub use increments::{IncrementCell, IncrementMap};
 pub use produced::{grid, producible};
+pub(crate) use reached::MOST_CORNERS;
+pub use reached::Reached;
 pub use slopes::{IncrementSlopes, NoSlopes};
 
 /// Names of the gains in the order of all arrays here.
@@ -68,6 +73,10 @@ pub struct GainSet {
     /// Most that each gain changes by in a second, where that is bounded: not under the memoryless law,
     /// under which gains jump as the inputs do.
     pub rate_per_s: Option<[f64; 3]>,
+    /// Of an accumulating law, which combinations of gains within the one cell it reaches, where that is known.
+    pub reached: Option<Reached>,
+    /// What an accumulating law makes of a held command.
+    pub(crate) remembered: Option<Remembered>,
 }
 
 /// Gains, and what a held command adds to the gain on the change of the error.
@@ -75,6 +84,8 @@ pub struct GainSet {
 pub(crate) struct HeldGains {
     pub(crate) gains: Gains<f64>,
     pub(crate) change_gain: f64,
+    /// With the memory of an accumulating law, where something is held.
+    pub(crate) remembered: Option<RememberedCorner>,
 }
 
 /// The gains over a cell of the supervisor's inputs.
@@ -98,7 +109,14 @@ impl GainSet {
         let point = array(gains).map(Interval::point);
         let cell =
             GainCell { error: EVERYWHERE, change: EVERYWHERE, gains: point, change_gain: 0.0 };
-        Self { nominal: gains, rest: point, cells: vec![cell], rate_per_s: Some([0.0; 3]) }
+        Self {
+            nominal: gains,
+            rest: point,
+            cells: vec![cell],
+            rate_per_s: Some([0.0; 3]),
+            reached: None,
+            remembered: None,
+        }
     }
 
     /// The part of the set over some of its cells.
@@ -121,18 +139,31 @@ impl GainSet {
     }
 
     /// The corners of every box with the number of its cell; of a box that is flat along a gain
-    /// only those that differ.
+    /// only those that differ. Where it is known which combinations are reached, the corners of that body.
     pub fn corners(&self) -> impl Iterator<Item = (usize, Gains<f64>)> {
-        let cells = self.cells.iter().enumerate();
-        cells.flat_map(|(index, cell)| corners(cell.gains).map(move |corner| (index, corner)))
+        let cells = match &self.reached {
+            Some(_) => &[],
+            None => &self.cells[..],
+        };
+        let cells = cells.iter().enumerate();
+        let boxes =
+            cells.flat_map(|(index, cell)| corners(cell.gains).map(move |corner| (index, corner)));
+        let body = self.reached.iter().flat_map(|reached| &reached.corners);
+        boxes.chain(body.flat_map(|corner| corners(*corner).map(|corner| (0, corner))))
     }
 
     /// As [`corners`](Self::corners), each with either end of its cell's change gain.
     pub(crate) fn held_corners(&self) -> impl Iterator<Item = (usize, HeldGains)> {
-        self.corners().flat_map(|(index, gains)| {
+        let held = self.corners().flat_map(|(index, gains)| {
             let most = self.cells.get(index).map_or(0.0, |cell| cell.change_gain);
             let ends = [-most, most].into_iter().skip(usize::from(most == 0.0));
-            ends.map(move |change_gain| (index, HeldGains { gains, change_gain }))
+            ends.map(move |change_gain| (index, HeldGains { gains, change_gain, remembered: None }))
+        });
+        let corners = self.remembered.map(|remembered| remembered.corners());
+        let corners = corners.map_or(vec![None], |corners| corners.into_iter().map(Some).collect());
+        held.flat_map(move |(index, held)| {
+            let corners = corners.clone().into_iter();
+            corners.map(move |remembered| (index, HeldGains { remembered, ..held }))
         })
     }
 
@@ -148,11 +179,19 @@ impl GainSet {
             }
             Self { cells, ..self.clone() }.hull_within(tolerance)
         };
-        let still = part(false).into_iter().map(|gains| HeldGains { gains, change_gain: 0.0 });
+        let plain = |gains| HeldGains { gains, change_gain: 0.0, remembered: None };
+        let still = part(false).into_iter().map(plain);
         let held = part(true).into_iter();
-        let held = held
-            .flat_map(|gains| [-most, most].map(|change_gain| HeldGains { gains, change_gain }));
-        still.chain(held).collect()
+        let held = held.flat_map(|gains| {
+            [-most, most].map(|change_gain| HeldGains { change_gain, ..plain(gains) })
+        });
+        let all = still.chain(held);
+        let Some(remembered) = self.remembered else { return all.collect() };
+        let corners = remembered.corners();
+        let with = |held: HeldGains| {
+            corners.iter().map(move |corner| HeldGains { remembered: Some(*corner), ..held })
+        };
+        all.flat_map(with).collect()
     }
 
     /// Those of the [`corners`](Self::corners) that span the convex hull of all.
@@ -180,6 +219,7 @@ impl GainSet {
             cell.gains.iter().zip(array(gains)).all(|(bounds, gain)| bounds.contains(gain))
         };
         self.cells.iter().any(inside)
+            && self.reached.as_ref().is_none_or(|reached| reached.may_hold(array(gains)))
     }
 }
 
@@ -212,7 +252,14 @@ mod tests {
             |&gains| GainCell { error: EVERYWHERE, change: EVERYWHERE, gains, change_gain: 0.0 };
         let nominal = Gains { kp: 1.0, ki: 0.5, kd: 0.25 };
         let rest = array(nominal).map(Interval::point);
-        GainSet { nominal, rest, cells: boxes.iter().map(cell).collect(), rate_per_s: None }
+        GainSet {
+            nominal,
+            rest,
+            cells: boxes.iter().map(cell).collect(),
+            rate_per_s: None,
+            reached: None,
+            remembered: None,
+        }
     }
 
     #[test]

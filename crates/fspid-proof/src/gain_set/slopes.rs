@@ -1,12 +1,13 @@
 //! How steep the increments of the gains are over the supervisor's inputs.
 
 use fspid_core::fuzzy::OutOfRange;
-use fspid_core::{Law, SelfTuner};
+use fspid_core::{Law, SelfTuner, SetCentres};
 use fspid_fuzzy::audit::{SurfaceOptions, slopes};
 use fspid_fuzzy::system::{Parts, System};
 use fspid_numeric::scalar::Interval;
 
 use super::increments::is_dense;
+use super::numbers::Numbers;
 
 /// Bounds may be so far apart. Increments and inputs are in the same unit, and slopes of some 1 to 3.
 const TOLERANCE: f64 = 0.1;
@@ -22,6 +23,9 @@ const BOXES: u64 = 3000;
 /// of seven levels each moves it by no more than 32 spacings, and 1.43 per spacing is the steepest slope
 /// of a grade, which makes 320. Together that is $10^{-7}$ of the range.
 const OFF: f64 = 1.0 / (1_u64 << 21) as f64;
+
+/// Rounding of the moving of an input.
+const MOVED: f64 = 64.0 * f64::EPSILON;
 
 /// Slopes of the increments of kp, ki and kd, in supervisor units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,6 +49,9 @@ pub enum NoSlopes {
     /// Inputs may leave the range, where the surface is not known.
     #[error("beyond the supervisor's range nothing is known of slopes")]
     BeyondRange,
+    /// The gains are tied to something else than error and its change.
+    #[error("beside the error the supervisor sees something else than its change")]
+    OtherInput,
     /// No bounds were found.
     #[error("the slopes of the supervisor's surface have no bounds")]
     Unbounded,
@@ -64,6 +71,12 @@ impl IncrementSlopes {
         if settings.law != Law::Memoryless {
             return Err(NoSlopes::Remembered);
         }
+        Self::of_surface(tuner, within)
+    }
+
+    /// The slopes of what the rules answer, whatever the law makes of it.
+    pub(crate) fn of_surface(tuner: &SelfTuner<f64>, within: [f64; 2]) -> Result<Self, NoSlopes> {
+        let settings = tuner.settings();
         if settings.dead_zone.is_some() {
             return Err(NoSlopes::DeadZone);
         }
@@ -74,11 +87,20 @@ impl IncrementSlopes {
         if !clamps && !within.iter().all(inside) {
             return Err(NoSlopes::BeyondRange);
         }
-        if supervisor.numbers().is_some() || !is_dense(supervisor.defuzzifier()) {
+        let sets = [settings.input_sets.error, settings.input_sets.change];
+        if let Some(table) = supervisor.numbers() {
+            let slopes = moved(Numbers { table, range }.slopes(), sets);
+            return Ok(Self { slopes, off: OFF * range });
+        }
+        if !is_dense(supervisor.defuzzifier()) {
             return Err(NoSlopes::Unbounded);
         }
+        let even = |side: f64, centres: Option<SetCentres<f64>>| {
+            centres.map_or(side, |centres| (centres.warp(side, range) * (1.0 + MOVED)).min(range))
+        };
         let system = System::new(Parts::from(supervisor)).map_err(|_| NoSlopes::Unbounded)?;
-        let domain = within.map(|side| if inside(&side) { [-side, side] } else { [-range, range] });
+        let sides = [even(within[0].min(range), sets[0]), even(within[1].min(range), sets[1])];
+        let domain = sides.map(|side| if inside(&side) { [-side, side] } else { [-range, range] });
         let options = SurfaceOptions {
             domain: Some(domain.to_vec()),
             slope_tolerance: TOLERANCE,
@@ -98,7 +120,22 @@ impl IncrementSlopes {
             }
         }
         let known = bounds.iter().flatten().all(|bound| bound.is_bounded());
-        let slopes = Self { slopes: bounds, off: OFF * range };
+        let slopes = Self { slopes: moved(bounds, sets), off: OFF * range };
         known.then_some(slopes).ok_or(NoSlopes::Unbounded)
     }
+}
+
+/// Slopes over inputs that the tuner moves to even sets first: those over the even ones times those of the moving, of
+/// which each third of the range has one.
+fn moved(slopes: [[Interval; 2]; 3], sets: [Option<SetCentres<f64>>; 2]) -> [[Interval; 2]; 3] {
+    let moving = sets.map(|centres| {
+        centres.map_or(Interval::ONE, |centres| {
+            let [small, medium] = [centres.small(), centres.medium()].map(Interval::point);
+            let third = Interval::ONE / Interval::point(3.0);
+            let parts = [small, medium - small, Interval::ONE - medium];
+            let [one, other, last] = parts.map(|part| third / part);
+            one.hull(other).hull(last)
+        })
+    });
+    slopes.map(|[by_error, by_change]| [by_error * moving[0], by_change * moving[1]])
 }

@@ -56,6 +56,23 @@ impl Sides {
         ends.map(|(lower, upper)| [lower, upper]).collect()
     }
 
+    /// Of a cell what an accumulating law reaches.
+    fn part(&self, set: &GainSet, cell: Ends) -> Option<Ends> {
+        let Some(reached) = &set.reached else { return Some(cell) };
+        let mut gains = self.ends.map(|[lower, upper]| Interval::between(lower, upper));
+        for (&gain, &[lower, upper]) in self.moving.iter().zip(&cell) {
+            let (centre, half) = self.centre_and_half(gain);
+            gains[gain] = Interval::between(centre + lower * half, centre + upper * half);
+        }
+        let kept = self.cell(reached.part(gains)?);
+        let sides = kept.into_iter().zip(cell);
+        let within = sides.map(|([from, to], [lower, upper])| {
+            let [least, most] = [from.max(lower), to.min(upper)];
+            if least <= most { [least, most] } else { [lower, upper] }
+        });
+        Some(within.collect())
+    }
+
     /// Gains that are counted in half widths.
     fn gains(&self, counted: &[f64]) -> Gains<f64> {
         let mut gains = [0, 1, 2].map(|gain| self.centre_and_half(gain).0);
@@ -145,7 +162,7 @@ impl Prover<'_> {
             changes: &moved,
             rate: 1.0,
             points: &points,
-            part: &|cell| part_in(&cells, cell),
+            part: &|cell| sides.part(set, part_in(&cells, cell)?),
         };
         let verdict = solve::moving_form_over(&problem, &self.search());
         let MovingVerdict::Found(found) = verdict else { return None };

@@ -8,7 +8,7 @@ mod unstable;
 
 use core::cell::RefCell;
 
-use fspid_core::Fspid;
+use fspid_core::{Fspid, Gains};
 use fspid_lti::{Matrix, spectral_radius};
 use fspid_numeric::scalar::Interval;
 use fspid_sim::Controller;
@@ -132,6 +132,25 @@ pub fn certify(
     })
 }
 
+/// Whether a loop is proved stable while its gains move, for all that is asked: the first half of [`certify`] alone,
+/// which looks for no smaller range and no larger output scale.
+///
+/// What is necessary is asked first, and ends most searches at once: that the loop is stable at rest, and at the
+/// gains that span all that the controller can have, each standing still. Only then a form is looked for.
+///
+/// # Errors
+/// As [`certify`].
+pub fn is_proved(
+    description: &LoopDescription,
+    asked: &Asked,
+    effort: &Effort,
+) -> Result<bool, NotProvable> {
+    let prover = Prover::new(description, asked, effort)?;
+    let set = prover.set(1.0);
+    let proved = prover.frozen_growth().is_none() && prover.stable(&set).is_some();
+    if (effort.stops)() { Err(NotProvable::Stopped) } else { Ok(proved) }
+}
+
 /// Halvings in which the largest part of a range is looked for.
 const SHARES: u32 = 4;
 /// Halvings in which the largest part is looked for at which rest is within all limits: within 0.4 % of it, so
@@ -170,7 +189,8 @@ impl<'a> Prover<'a> {
             Controller::Fixed(_) => None,
             Controller::SelfTuning(fspid) => {
                 let map = IncrementMap::until(fspid.tuner(), effort.divisions, effort.stops)?;
-                Some(map.ok_or(NotProvable::Stopped)?)
+                let map = map.ok_or(NotProvable::Stopped)?;
+                Some(map.sampled_every(fspid.config().dt_s))
             }
         };
         Ok(Self {
@@ -265,7 +285,20 @@ impl<'a> Prover<'a> {
 
     /// Why nothing is proved of the range, where that is known.
     fn doubt(&self, set: &GainSet) -> Option<RecheckError> {
-        self.rest(set).err().map(RecheckError::Rest).or_else(|| self.too_much.borrow().clone())
+        let rest = self.rest(set).err().map(RecheckError::Rest);
+        let too_much = || self.too_much.borrow().clone();
+        rest.or_else(too_much).or_else(|| self.grows(set))
+    }
+
+    /// The corner of the set at which the loop grows most, standing still.
+    fn grows(&self, set: &GainSet) -> Option<RecheckError> {
+        let radius = |gains: Gains<f64>| {
+            let matrix = self.model.closed_matrix(gains).ok()?;
+            Some((spectral_radius(&matrix).ok()?, gains))
+        };
+        let all = set.hull().into_iter().filter_map(radius);
+        let (radius, gains) = all.max_by(|one, other| one.0.total_cmp(&other.0))?;
+        (radius > 1.0).then_some(RecheckError::Grows { gains })
     }
 
     /// Keeps the doubt that too much remains in the loop as it is, over the whole range.
@@ -324,13 +357,23 @@ impl<'a> Prover<'a> {
     }
 
     fn level(&self, corners: &[HeldGains], form: &Matrix, rest: &Rest) -> Option<f64> {
+        // Of gains that remember what is held no level is claimed.
+        if corners.iter().any(|held| held.remembered.is_some()) {
+            return None;
+        }
         limits::level(self.description, &self.model, corners, form, rest)
     }
 
     /// Closed loops at some gains, if each of them is stable on its own.
     fn matrices(&self, gains: &[HeldGains]) -> Option<Vec<Matrix>> {
         let closed = gains.iter().map(|held| {
-            self.model.with_change_gain(held.change_gain).closed_matrix(held.gains).ok()
+            let model = self.model.with_change_gain(held.change_gain);
+            match (held.remembered, self.tuned()) {
+                (Some(corner), Some(fspid)) => {
+                    Matrix::from_rows(&corner.closed(&model, fspid, held.gains)).ok()
+                }
+                _ => model.closed_matrix(held.gains).ok(),
+            }
         });
         let matrices: Vec<Matrix> = closed.collect::<Option<_>>()?;
         let holds = |matrix: &Matrix| spectral_radius(matrix).is_ok_and(|radius| radius < 1.0);

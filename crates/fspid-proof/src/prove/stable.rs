@@ -1,6 +1,6 @@
 //! Forms that decrease however fast the gains move, and forms that decrease as the error ties the gains.
 
-use fspid_core::{Fspid, Law};
+use fspid_core::{Fspid, Law, SecondInput};
 use fspid_lti::Matrix;
 
 use super::Prover;
@@ -39,6 +39,11 @@ impl Prover<'_> {
         blurred || self.rest(&self.set(1.0)).is_ok_and(|rest| !rest.held.is_none())
     }
 
+    /// True for a law that remembers.
+    fn remembers(&self) -> bool {
+        self.tuned().is_some_and(|fspid| fspid.tuner().settings().law != Law::Memoryless)
+    }
+
     /// As the memoryless law ties the gains to the error; not for gains that remember.
     pub(super) fn s_procedure(
         &self,
@@ -46,8 +51,11 @@ impl Prover<'_> {
         factor: f64,
         best_rate: bool,
     ) -> Option<(Certificate, Rechecked)> {
-        let memoryless = |fspid: &&Fspid<f64>| fspid.tuner().settings().law == Law::Memoryless;
-        let fspid = self.tuned().filter(memoryless).filter(|_| self.effort.cones > 0)?;
+        let tied = |fspid: &&Fspid<f64>| {
+            let settings = fspid.tuner().settings();
+            settings.law == Law::Memoryless && settings.second_input == SecondInput::Change
+        };
+        let fspid = self.tuned().filter(tied).filter(|_| self.effort.cones > 0)?;
         let rest = self.rest(set).ok()?;
         // With a steady error, or one that is seen in steps, gains are tied to something else.
         if rest.error_rad > 0.0 || self.description.blurs().iter().any(|blur| *blur > 0.0) {
@@ -95,9 +103,12 @@ impl Prover<'_> {
             let (claim, level) = claim(solution, rate);
             self.rechecked(claim, factor, level.filter(|_| self.covers_limits()))
         };
-        // What remains of a motion is known where there is a rate.
-        let at_best =
-            if best_rate || self.needs_a_rate() { best().and_then(rechecked) } else { None };
+        // What remains of a motion is known where there is a rate; nothing is known without of gains that remember.
+        let needs_a_rate = self.needs_a_rate();
+        let at_best = if best_rate || needs_a_rate { best().and_then(rechecked) } else { None };
+        if needs_a_rate && self.remembers() {
+            return at_best;
+        }
         at_best.or_else(|| plain().and_then(rechecked))
     }
 }

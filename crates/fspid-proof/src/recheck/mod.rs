@@ -3,7 +3,7 @@
 mod moving;
 mod remains;
 
-use fspid_core::{Change, Fspid, Gains, Law};
+use fspid_core::{Change, Fspid, Gains, Law, SecondInput};
 use fspid_lti::Matrix;
 use fspid_numeric::scalar::{Base, Interval};
 use fspid_sim::Controller;
@@ -92,6 +92,15 @@ pub enum RecheckError {
     /// Every inequality holds, and what they leave is no statement about the flight.
     #[error("{0}")]
     Remains(Remains),
+    /// Gains that are not known to be out of reach let the loop grow.
+    #[error(
+        "what is known to hold every gain of the controller holds {} as well, at which the loop grows standing still; whether it ever comes there is not known",
+        gains_in_words(.gains)
+    )]
+    Grows {
+        /// Which.
+        gains: Gains<f64>,
+    },
     /// The certificate does not fit together.
     #[error("{what}")]
     Malformed {
@@ -104,6 +113,10 @@ pub enum RecheckError {
 fn at(gains: &Option<Gains<f64>>) -> String {
     let words = |Gains { kp, ki, kd }| format!("at kp {kp:?}, ki {ki:?}, kd {kd:?}: ");
     gains.map_or_else(String::new, words)
+}
+
+fn gains_in_words(Gains { kp, ki, kd }: &Gains<f64>) -> String {
+    format!("kp {kp:.4}, ki {ki:.4}, kd {kd:.4}")
 }
 
 impl From<WrongSizes> for RecheckError {
@@ -171,6 +184,7 @@ impl<'a> Recheck<'a> {
             Controller::Fixed(pid) => GainSet::fixed(pid.gains()),
             Controller::SelfTuning(fspid) => IncrementMap::of(fspid.tuner(), certificate.divisions)
                 .map_err(NotProvable::from)?
+                .sampled_every(fspid.config().dt_s)
                 .gains(certificate.output_factor),
         };
         Self::with(certificate, model, set, &KnownSlopes::default())
@@ -273,16 +287,37 @@ impl<'a> Recheck<'a> {
 
     fn form(&self, form: &Matrix, rate: f64) -> Result<(), RecheckError> {
         allowed_rate(rate)?;
-        if (form.rows(), form.columns()) != (self.model.size(), self.model.size()) {
+        let size = self.model.size() + self.more_states();
+        if (form.rows(), form.columns()) != (size, size) {
             return Err(malformed("the form has another size than the loop's state"));
         }
         Ok(is_positive(form)?)
     }
 
+    /// States of the memory that gains have of a held command.
+    fn more_states(&self) -> usize {
+        let Certificate { description, range, .. } = self.certificate;
+        let remembers = self.held.remembered.is_some();
+        if remembers { description.remembered_states(*range) } else { 0 }
+    }
+
+    /// The loop at gains with all that a held command adds.
+    fn held_loop(&self, held: HeldGains) -> Result<IntervalMatrix, RecheckError> {
+        let at = points(held.gains);
+        let model = self.model.with_change_gain(Interval::point(held.change_gain));
+        match (held.remembered, &self.certificate.description.controller) {
+            (Some(corner), Controller::SelfTuning(fspid)) => {
+                let rows = corner.closed(&model, fspid, at);
+                IntervalMatrix::from_rows(&rows).map_err(|error| NotProved::from(error).into())
+            }
+            _ => closed(&model, at),
+        }
+    }
+
     /// Proves at gains that the form decreases, and that no limit acts within the level.
     fn holds(
         &self,
-        HeldGains { gains, change_gain }: HeldGains,
+        held: HeldGains,
         form: &Matrix,
         rate: f64,
         relaxation: Option<Relaxation<'_>>,
@@ -290,11 +325,17 @@ impl<'a> Recheck<'a> {
         if (self.stops)() {
             return Err(malformed("nobody wants the answer any more"));
         }
+        let HeldGains { gains, change_gain, remembered } = held;
         let doubt = |reason| RecheckError::Inequality { gains: Some(gains), reason };
+        decreases(form, rate, &self.held_loop(held)?, relaxation).map_err(doubt)?;
+        let Some(level) = self.certificate.level else { return Ok(1) };
+        if remembered.is_some() {
+            return Err(malformed(
+                "no level is claimed of a loop whose gains remember what is held",
+            ));
+        }
         let at = points(gains);
         let model = self.model.with_change_gain(Interval::point(change_gain));
-        decreases(form, rate, &closed(&model, at)?, relaxation).map_err(doubt)?;
-        let Some(level) = self.certificate.level else { return Ok(1) };
         let description = &self.certificate.description;
         let limits = limits::rows(description, &model, at, &self.rest);
         Ok(1 + limits::prove(&limits, form, level).map_err(doubt)?)
@@ -319,6 +360,9 @@ impl<'a> Recheck<'a> {
         };
         if fspid.tuner().settings().law != Law::Memoryless {
             return Err(malformed("gains that remember are not tied to the error of the moment"));
+        }
+        if fspid.tuner().settings().second_input != SecondInput::Change {
+            return Err(malformed("gains are tied to another input than the change of the error"));
         }
         // Without a cone nothing would be asked of the loop at all: sizes were checked.
         if self.rest.error_rad > 0.0 {

@@ -2,7 +2,7 @@
 
 use core::cmp::Ordering;
 
-use fspid_core::Gains;
+use fspid_core::{Gains, SecondInput};
 use fspid_lti::Matrix;
 use fspid_numeric::Scalar;
 use fspid_numeric::scalar::Interval;
@@ -72,6 +72,20 @@ impl GainBox {
         let cell =
             |gains: &[Interval; 3]| self.moving.iter().map(|&gain| side(gains, gain)).collect();
         set.cells.iter().map(|found| cell(&found.gains)).collect()
+    }
+
+    /// Of a cell what an accumulating law reaches: a cell that holds all of it, or nothing.
+    fn part(&self, set: &GainSet, cell: Ends) -> Option<Ends> {
+        let Some(reached) = &set.reached else { return Some(cell) };
+        let kept = reached.part(self.gains(&cell))?;
+        let sides = self.moving.iter().zip(cell);
+        let narrowed = sides.map(|(&gain, [lower, upper])| {
+            let counted = (kept[gain] - self.centre(gain)) / self.half_width(gain);
+            let [least, most] = [counted.lower().max(lower), counted.upper().min(upper)];
+            // What is left of a cell is in it, but for rounding.
+            if least <= most { [least, most] } else { [lower, upper] }
+        });
+        Some(narrowed.collect())
     }
 
     /// The gains of a cell whose sides are in half widths.
@@ -213,8 +227,8 @@ impl Recheck<'_> {
         let changes: Vec<f64> = gain_box.moving.iter().map(|&gain| claim.changes[gain]).collect();
         let moving = Moving { loops: &loops, forms: &forms, changes: &changes, rate: claim.rate };
         let cells = gain_box.counted(&self.set);
-        let proof = falls_while_moving(&moving, |cell| part_in(&cells, cell))
-            .map_err(|failed| doubt(&gain_box, failed))?;
+        let part = |cell: &Ends| gain_box.part(&self.set, part_in(&cells, cell)?);
+        let proof = falls_while_moving(&moving, part).map_err(|failed| doubt(&gain_box, failed))?;
         Ok(Decrease { gain_box, proof })
     }
 
@@ -244,6 +258,9 @@ impl Recheck<'_> {
         let Controller::SelfTuning(fspid) = &self.certificate.description.controller else {
             return Err(malformed("fixed gains have no rate"));
         };
+        if fspid.tuner().settings().second_input != SecondInput::Change {
+            return Err(malformed("gains are tied to another input than the change of the error"));
+        }
         let Some(inputs) = claim.inputs else {
             return Err(malformed("a level without bounds of error and change"));
         };

@@ -18,6 +18,7 @@ use fspid_sim::loop_model::BreakPoint;
 use super::{Recheck, RecheckError, malformed, points};
 use crate::check::{IntervalMatrix, NotProved, reach};
 use crate::gain_set::HeldGains;
+use crate::remembered::Remembered;
 use crate::scope::Range;
 
 /// Motions come within so much more of what is said to remain, in finite time.
@@ -79,6 +80,9 @@ impl Recheck<'_> {
 
     /// Proves how far the pitch angle may stay from rest, rad.
     pub(super) fn remains(&self, form: &Matrix, rate: f64) -> Result<f64, RecheckError> {
+        if let Some(remembered) = self.held.remembered {
+            return self.remembered_remains(&remembered, form, rate);
+        }
         if self.off_rad == 0.0 && !self.is_blurred() {
             return Ok(0.0);
         }
@@ -98,6 +102,34 @@ impl Recheck<'_> {
         }
         let by_form = reach(form, level, &self.pitch_row())?;
         Ok(by_form.min(self.sample_by_sample(form, rate)?))
+    }
+
+    /// The same where gains remember a held command: what is not known of the rules to the last digit enters there.
+    fn remembered_remains(
+        &self,
+        remembered: &Remembered,
+        form: &Matrix,
+        rate: f64,
+    ) -> Result<f64, RecheckError> {
+        if self.is_blurred() {
+            return Err(malformed(
+                "with a resolution gains that remember a held command are not covered",
+            ));
+        }
+        if !(rate < 1.0) {
+            return Err(malformed("without a rate below 1 nothing is known of what remains"));
+        }
+        let Controller::SelfTuning(fspid) = &self.certificate.description.controller else {
+            return Err(malformed("fixed gains remember nothing"));
+        };
+        let own = Norm(IntervalMatrix::from(form));
+        let [one, other] = remembered.entries(&self.model, fspid);
+        let most = own.of(&one)?.hull(own.of(&other)?).upper();
+        let added = Interval::point(NEARLY * most) * Interval::point(remembered.off);
+        let norm = added / (Interval::ONE - Interval::point(rate));
+        let mut pitch = self.pitch_row();
+        pitch.resize(form.rows(), Interval::ZERO);
+        Ok(reach(form, (norm * norm).upper(), &pitch)?)
     }
 
     fn pitch_row(&self) -> Vec<Interval> {
@@ -138,7 +170,7 @@ impl Recheck<'_> {
         }
         let [of_pitch, of_rate] = self.certificate.description.blurs().map(Interval::point);
         let mut most = 0.0_f64;
-        for (_, HeldGains { gains, change_gain }) in self.held.held_corners() {
+        for (_, HeldGains { gains, change_gain, .. }) in self.held.held_corners() {
             let model = self.model.with_change_gain(Interval::point(change_gain));
             let at = points(gains);
             let by_pitch = norm(&model.by_seen(BreakPoint::Pitch, at))?;

@@ -1,11 +1,11 @@
 //! Scenarios with every option that a proof accepts, drawn from a number.
 
 use fspid_core::{
-    AntiWindup, Change, ControllerSetting, DeadZone, Derivative, ErrorSign, Fspid, GainLimits,
-    Gains, Guard, InputScale, IntegralForm, Law, Limits, Pid, PidConfig, SelfTuner,
-    SetpointWeights, TunerSettings,
+    AntiWindup, Change, ControllerSetting, DeadZone, Derivative, ErrorSign, Fspid, GainCoupling,
+    GainLimits, Gains, Guard, InputScale, InputSets, IntegralForm, Law, Limits, Pid, PidConfig,
+    ReferenceModel, SecondInput, SelfTuner, SetCentres, SetpointWeights, TunerSettings,
 };
-use fspid_fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};
+use fspid_fuzzy::{Defuzzifier, NumberTable, OutOfRange, RuleTable, Supervisor};
 use fspid_sim::actuator::{Actuator, Lag};
 use fspid_sim::sensor::{PITCH, Sensor, SensorModel};
 use fspid_sim::signal::{Disturbance, Entry, Profile, Shape};
@@ -66,6 +66,92 @@ impl Dice {
 
 /// A scenario with one controller and one linear plant.
 pub(crate) fn scenario(dice: &mut Dice) -> Scenario {
+    of_controllers(dice, controller)
+}
+
+/// The same with a self-tuner of another structure than the paper's: what it sees, how its sets lie, what its rules
+/// conclude, what follows its gains, and more often than not a law that remembers.
+pub(crate) fn structured(dice: &mut Dice) -> Scenario {
+    of_controllers(dice, |dice, config, size| {
+        let weights =
+            SetpointWeights { proportional: dice.between(0.2, 1.2), ..config.setpoint_weights };
+        let integral = IntegralForm::Bumpless;
+        let config = PidConfig { setpoint_weights: weights, integral, ..config };
+        let Controller::SelfTuning(fspid) = controller(dice, config, size) else {
+            return controller(dice, config, size);
+        };
+        let (plain, range) = (fspid.tuner(), 5.0);
+        let settings = another(dice, *plain.settings(), plain.nominal());
+        let supervisor = if dice.happens(0.5) {
+            numbers(dice, range, plain.supervisor().out_of_range())
+        } else {
+            *plain.supervisor()
+        };
+        let tuner = SelfTuner::new(plain.nominal(), supervisor, settings).expect("allowed");
+        Controller::SelfTuning(Fspid::new(tuner, config).expect("allowed"))
+    })
+}
+
+fn another(
+    dice: &mut Dice,
+    settings: TunerSettings<f64>,
+    nominal: Gains<f64>,
+) -> TunerSettings<f64> {
+    let model =
+        ReferenceModel { bandwidth_rad_s: dice.sized(0.5, 4.0), damping: dice.between(0.5, 1.2) };
+    let centres = |dice: &mut Dice| {
+        let small = dice.between(0.05, 0.6);
+        let medium = dice.between(small + 0.1, 0.95);
+        if dice.happens(0.6) { SetCentres::new(small, medium).ok() } else { None }
+    };
+    let input_sets = InputSets { error: centres(dice), change: centres(dice) };
+    let gain_coupling = if dice.happens(0.5) {
+        GainCoupling {
+            setpoint_weight: dice.between(-0.3, 0.3) / nominal.kp,
+            rate_gain: dice.between(-0.5, 0.5),
+        }
+    } else {
+        GainCoupling::NONE
+    };
+    let remembers = dice.happens(0.7);
+    let leakage_per_s = dice.sized(0.3, 3.0);
+    // What the law adds in a second is what it leaks there.
+    let of_law = if remembers { 0.6 * leakage_per_s } else { 1.0 };
+    let scale = settings.output_scale;
+    TunerSettings {
+        second_input: dice.one_of(&[
+            SecondInput::Change,
+            SecondInput::Rate,
+            SecondInput::ModelError(model),
+            SecondInput::ModelError(model),
+        ]),
+        input_sets,
+        gain_coupling,
+        law: if remembers { Law::Accumulating { leakage_per_s } } else { settings.law },
+        output_scale: Gains { kp: of_law * scale.kp, ki: of_law * scale.ki, kd: of_law * scale.kd },
+        ..settings
+    }
+}
+
+fn numbers(dice: &mut Dice, range: f64, policy: OutOfRange) -> Supervisor<f64> {
+    let mut grid = || {
+        let [by_error, by_second] = [dice.between(-1.2, 1.2), dice.between(-1.2, 1.2)];
+        let bent = dice.between(-1.0, 1.0);
+        core::array::from_fn(|row| {
+            core::array::from_fn(|column| {
+                let [e, c] = [row, column].map(|step: usize| step as f64 / 3.0 - 1.0);
+                range * (by_error * e + by_second * c + bent * e * c).clamp(-1.0, 1.0)
+            })
+        })
+    };
+    let table = NumberTable::new([grid(), grid(), grid()]).expect("finite");
+    Supervisor::of_numbers(&table, range, policy).expect("allowed")
+}
+
+fn of_controllers(
+    dice: &mut Dice,
+    controller: impl Fn(&mut Dice, PidConfig<f64>, f64) -> Controller,
+) -> Scenario {
     let dt_s = dice.one_of(&[0.01, 0.02, 0.05]);
     let (numerator, denominator, size) = dice.one_of(&PLANTS);
     let mut bent = |values: &[f64]| -> Vec<f64> {

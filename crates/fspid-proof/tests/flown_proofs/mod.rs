@@ -10,6 +10,26 @@ use flown::Answer;
 /// With these numbers fixed and moving gains, refutations, and claims over a range come up, quickly.
 const SCENARIOS: [u64; 6] = [1, 5, 9, 13, 22, 24];
 
+/// With these numbers gains that remember, reference models, numbers and followers are proved, over a range as well.
+const STRUCTURES: [u64; 4] = [1, 4, 9, 10];
+
+#[test]
+fn every_flight_of_a_proved_loop_of_another_structure_settles_over_its_whole_range() {
+    let (mut proved, mut held) = (0, 0);
+    for seed in STRUCTURES {
+        let scenario = drawn::structured(&mut Dice::new(seed));
+        match flown::answer(&scenario) {
+            Answer::Contradicted(reason) => panic!("scenario {seed}: {reason}"),
+            Answer::Settled { held: held_here, .. } => {
+                proved += 1;
+                held += usize::from(held_here);
+            }
+            Answer::NotProvable(_) | Answer::Open | Answer::Refuted => {}
+        }
+    }
+    assert!(proved >= 3 && held >= 1, "{proved} proved, {held} of them over a range of set-points");
+}
+
 #[test]
 fn every_flight_of_a_proved_loop_settles_over_its_whole_range() {
     let (mut proved, mut held) = (0, 0);

@@ -1,11 +1,13 @@
 //! The controller of a certificate's loop: radians and supervisor units, nothing left to defaults.
 
 use fspid_core::{
-    AntiWindup, Change, ControllerSetting, DeadZone, Derivative, ErrorSign, Fspid, GainLimits,
-    Gains, Guard, InputScale, IntegralForm, Law, Limits, Pid, PidConfig, SelfTuner,
-    SetpointWeights, TunerSettings,
+    AntiWindup, Change, ControllerSetting, DeadZone, Derivative, ErrorSign, Fspid, GainCoupling,
+    GainLimits, Gains, Guard, InputScale, InputSets, IntegralForm, Law, Limits, Pid, PidConfig,
+    ReferenceModel, SecondInput, SelfTuner, SetCentres, SetpointWeights, TunerSettings,
 };
-use fspid_fuzzy::{Defuzzifier, Label, OutOfRange, Output, RuleTable, Supervisor};
+use fspid_fuzzy::{
+    Defuzzifier, Label, NumberGrid, NumberTable, OutOfRange, Output, RuleTable, Supervisor,
+};
 use fspid_sim::Controller;
 use serde::{Deserialize, Serialize};
 
@@ -70,8 +72,45 @@ struct TunerFile {
     range: f64,
     defuzzifier: String,
     out_of_range: String,
-    /// None for numbers, of which no proof speaks.
+    /// None where rules conclude numbers.
     rules: Option<RulesFile>,
+    /// What the rules conclude in place of labels.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    numbers: Option<NumbersFile>,
+    /// None for the change of the error.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    second_input: Option<SecondInputFile>,
+    /// Small and medium centres of the error's sets, shares of the range; none for even ones.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    error_set_centres: Option<[f64; 2]>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    change_set_centres: Option<[f64; 2]>,
+    /// None where nothing follows the gains.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    gain_coupling: Option<CouplingFile>,
+}
+
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+enum SecondInputFile {
+    Rate,
+    ModelError { bandwidth_rad_s: f64, damping: f64 },
+}
+
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CouplingFile {
+    setpoint_weight_per_kp: f64,
+    rate_gain_per_kd: f64,
+}
+
+/// Seven rows of seven numbers for each gain.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct NumbersFile {
+    delta_kp: NumberGrid<f64>,
+    delta_ki: NumberGrid<f64>,
+    delta_kd: NumberGrid<f64>,
 }
 
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -233,6 +272,11 @@ impl TunerFile {
             defuzzifier: supervisor.defuzzifier().to_string(),
             out_of_range: supervisor.out_of_range().name().to_owned(),
             rules: supervisor.table().as_ref().map(RulesFile::of),
+            numbers: supervisor.numbers().map(NumbersFile::of),
+            second_input: SecondInputFile::of(settings.second_input),
+            error_set_centres: settings.input_sets.error.map(centres),
+            change_set_centres: settings.input_sets.change.map(centres),
+            gain_coupling: CouplingFile::of(settings.gain_coupling),
         }
     }
 
@@ -259,8 +303,12 @@ impl TunerFile {
             dead_zone: self
                 .dead_zone
                 .map(|[error_rad, change_rad]| DeadZone { error_rad, change_rad }),
-            // A proof speaks of no other structure.
-            ..TunerSettings::literal()
+            second_input: self.second_input.map_or(SecondInput::Change, SecondInputFile::build),
+            input_sets: InputSets {
+                error: self.error_set_centres.map(set_centres).transpose()?,
+                change: self.change_set_centres.map(set_centres).transpose()?,
+            },
+            gain_coupling: self.gain_coupling.map_or(GainCoupling::NONE, CouplingFile::build),
         };
         SelfTuner::new(nominal, self.supervisor()?, settings).map_err(said("tuner"))
     }
@@ -279,9 +327,18 @@ impl TunerFile {
                 self.defuzzifier
             ));
         }
-        let rules = self.rules.as_ref().ok_or("rules: none; no proof speaks of numbers")?;
-        let table = rules.build()?;
-        Supervisor::new(&table, self.range, defuzzifier, policy).map_err(said("supervisor"))
+        match (&self.rules, &self.numbers) {
+            (Some(rules), None) => {
+                Supervisor::new(&rules.build()?, self.range, defuzzifier, policy)
+                    .map_err(said("supervisor"))
+            }
+            (None, Some(numbers)) => Supervisor::of_numbers(&numbers.build()?, self.range, policy)
+                .map_err(said("supervisor")),
+            (Some(_), Some(_)) => {
+                Err("rules and numbers: one of them is what rules conclude".to_owned())
+            }
+            (None, None) => Err("rules: none, and no numbers in their place".to_owned()),
+        }
     }
 }
 
@@ -300,6 +357,60 @@ fn samples(defuzzifier: Defuzzifier) -> Option<u32> {
 fn gain_limits([kp, ki, kd]: [Ends; 3]) -> Result<GainLimits<f64>, String> {
     let limits = |ends| limits(ControllerSetting::GainLimits, ends);
     Ok(GainLimits { kp: limits(kp)?, ki: limits(ki)?, kd: limits(kd)? })
+}
+
+fn centres(centres: SetCentres<f64>) -> [f64; 2] {
+    [centres.small(), centres.medium()]
+}
+
+fn set_centres([small, medium]: [f64; 2]) -> Result<SetCentres<f64>, String> {
+    SetCentres::new(small, medium).map_err(|error| error.to_string())
+}
+
+impl SecondInputFile {
+    fn of(second_input: SecondInput<f64>) -> Option<Self> {
+        match second_input {
+            SecondInput::Change => None,
+            SecondInput::Rate => Some(Self::Rate),
+            SecondInput::ModelError(ReferenceModel { bandwidth_rad_s, damping }) => {
+                Some(Self::ModelError { bandwidth_rad_s, damping })
+            }
+        }
+    }
+
+    fn build(self) -> SecondInput<f64> {
+        match self {
+            Self::Rate => SecondInput::Rate,
+            Self::ModelError { bandwidth_rad_s, damping } => {
+                SecondInput::ModelError(ReferenceModel { bandwidth_rad_s, damping })
+            }
+        }
+    }
+}
+
+impl CouplingFile {
+    fn of(coupling: GainCoupling<f64>) -> Option<Self> {
+        let GainCoupling { setpoint_weight, rate_gain } = coupling;
+        let file = Self { setpoint_weight_per_kp: setpoint_weight, rate_gain_per_kd: rate_gain };
+        (coupling != GainCoupling::NONE).then_some(file)
+    }
+
+    fn build(self) -> GainCoupling<f64> {
+        let Self { setpoint_weight_per_kp, rate_gain_per_kd } = self;
+        GainCoupling { setpoint_weight: setpoint_weight_per_kp, rate_gain: rate_gain_per_kd }
+    }
+}
+
+impl NumbersFile {
+    fn of(table: &NumberTable<f64>) -> Self {
+        let [delta_kp, delta_ki, delta_kd] = Output::ALL.map(|output| *table.grid(output));
+        Self { delta_kp, delta_ki, delta_kd }
+    }
+
+    fn build(&self) -> Result<NumberTable<f64>, String> {
+        let Self { delta_kp, delta_ki, delta_kd } = self;
+        NumberTable::new([*delta_kp, *delta_ki, *delta_kd]).map_err(said("numbers"))
+    }
 }
 
 impl RulesFile {
@@ -326,18 +437,29 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rules_that_conclude_numbers_are_written_as_none_and_refused_in_words() {
-        let zeros = format!("[{}]", ["[0, 0, 0, 0, 0, 0, 0]"; 7].join(", "));
-        let numbers =
-            format!("numbers = {{ delta_kp = {zeros}, delta_ki = {zeros}, delta_kd = {zeros} }} #");
-        let text = fspid_scenario::file::starter().replace("table = \"mirrored\" ", &numbers);
+    fn rules_that_conclude_numbers_are_written_with_all_that_they_are_tied_to_and_read_again() {
+        let zeros = format!("[{}]", ["[0, 0.5, 0, 0, 0, 0, -1]"; 7].join(", "));
+        let numbers = format!(
+            "numbers = {{ delta_kp = {zeros}, delta_ki = {zeros}, delta_kd = {zeros} }}\n\
+             second_input = \"error-and-model-error\"\n\
+             model = {{ bandwidth_rad_s = 2.0, damping = 0.7 }}\n\
+             error_set_centres = [0.2, 0.5] #"
+        );
+        let follows = "gain_coupling = { setpoint_weight_per_kp = 0.1, rate_gain_per_kd = 2.0 }";
+        let text = fspid_scenario::file::starter()
+            .replace("table = \"mirrored\" ", &numbers)
+            .replace("law = \"memoryless\" ", &format!("{follows}\nlaw = \"memoryless\" "));
         let study = fspid_scenario::file::parse(&text, "mine.toml", None, &[]).expect("a scenario");
         let controllers = &study.scenario.controllers;
         let is_tuned = |it: &Controller| matches!(it, Controller::SelfTuning(_));
         let tuned = controllers.iter().find(|it| is_tuned(&it.controller)).expect("one");
-        let file = ControllerFile::of(&tuned.controller);
-        assert!(file.tuner.as_ref().is_some_and(|tuner| tuner.rules.is_none()));
-        let told = file.build(study.scenario.timing.dt_s()).expect_err("no labels");
-        assert_eq!(told, "rules: none; no proof speaks of numbers");
+        let mut file = ControllerFile::of(&tuned.controller);
+        let dt_s = study.scenario.timing.dt_s();
+        assert_eq!(file.build(dt_s).as_ref(), Ok(&tuned.controller));
+        if let Some(tuner) = &mut file.tuner {
+            tuner.numbers = None;
+        }
+        let told = file.build(dt_s).expect_err("nothing is concluded");
+        assert_eq!(told, "rules: none, and no numbers in their place");
     }
 }

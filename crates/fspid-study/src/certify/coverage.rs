@@ -284,12 +284,12 @@ pub const COVERAGE: &[KeyCoverage] = &[
     row(
         "controller.law",
         Covered,
-        "memoryless: gains belong to the error of the moment; accumulating: every gain within its bounds, at any time",
+        "memoryless: gains belong to the error of the moment; accumulating: every combination of gains that the law reaches, at any time",
     ),
     row(
         "controller.leakage_per_s",
         Covered,
-        "what bounds the gains of the accumulating law; without bounds it is refused",
+        "what bounds the gains of the accumulating law, and which combinations it reaches; without bounds it is refused",
     ),
     row("controller.gain_limits.*", Covered, "gains that are enclosed are moved into them"),
     row(
@@ -299,14 +299,18 @@ pub const COVERAGE: &[KeyCoverage] = &[
     ),
     row(
         "controller.gain_coupling.*",
-        Refused,
-        "where a number moves with the gains: the matrix is not affine in the gains",
+        Covered,
+        "the rate loop follows kd in the matrix of the loop; the set-point weight follows kp in what the gains make of a held command",
     ),
     row("controller.supervisor.range", Covered, "the cells over which gains are enclosed fill it"),
     row("controller.supervisor.table", Covered, GAINS),
     row("controller.supervisor.table.*", Covered, GAINS),
     row("controller.supervisor.system", Covered, GAINS),
-    row("controller.supervisor.numbers.*", Refused, "rules that conclude numbers are not enclosed"),
+    row(
+        "controller.supervisor.numbers.*",
+        Covered,
+        "the interpolation of the numbers is enclosed over everything that the supervisor can see",
+    ),
     row(
         "controller.supervisor.defuzzifier",
         Covered,
@@ -329,8 +333,8 @@ pub const COVERAGE: &[KeyCoverage] = &[
     ),
     row(
         "controller.supervisor.error_set_centres",
-        Refused,
-        "sets that are not even are not enclosed",
+        Covered,
+        "cells are told by their inputs, and asked for where the tuner moves these to",
     ),
     row("controller.supervisor.change", Covered, "as for the scales: per second or per sample"),
     row(
@@ -340,11 +344,19 @@ pub const COVERAGE: &[KeyCoverage] = &[
     ),
     row(
         "controller.supervisor.change_set_centres",
-        Refused,
-        "sets that are not even are not enclosed",
+        Covered,
+        "cells are told by their inputs, and asked for where the tuner moves these to",
     ),
-    row("controller.supervisor.second_input", Refused, "what is not error and change"),
-    row("controller.supervisor.model.*", Refused, "the error of a reference model is not enclosed"),
+    row(
+        "controller.supervisor.second_input",
+        Covered,
+        "the gains of all inputs are in the claim, whatever shows them; the pitch rate only through a sensor without bias",
+    ),
+    row(
+        "controller.supervisor.model.*",
+        Covered,
+        "its error may be any; where gains remember a held command, its states are in the loop",
+    ),
     row(
         "controller.supervisor.output_scale.*",
         Covered,

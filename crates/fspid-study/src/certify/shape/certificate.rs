@@ -134,7 +134,33 @@ const TUNER: Shape = Object(&[
     key("defuzzifier", Text(32)),
     key("out_of_range", Text(32)),
     key("rules", OrNull(&RULES)),
+    optional("numbers", NUMBERS),
+    optional("second_input", SECOND_INPUT),
+    optional("error_set_centres", CENTRES),
+    optional("change_set_centres", CENTRES),
+    optional("gain_coupling", COUPLING),
 ]);
+
+const NUMBER_GRID: Shape = List(&List(&REAL, [7, 7]), [7, 7]);
+const NUMBERS: Shape = Object(&[
+    key("delta_kp", NUMBER_GRID),
+    key("delta_ki", NUMBER_GRID),
+    key("delta_kd", NUMBER_GRID),
+]);
+const SECOND_INPUT: Shape = Kinds(
+    "kind",
+    &[
+        ("rate", &[]),
+        (
+            "model-error",
+            &[key("bandwidth_rad_s", Positive(FACTOR)), key("damping", Positive(FACTOR))],
+        ),
+    ],
+);
+/// Small and medium centres as shares of the range.
+const CENTRES: Shape = List(&Positive(1.0), [2, 2]);
+const COUPLING: Shape =
+    Object(&[key("setpoint_weight_per_kp", REAL), key("rate_gain_per_kd", REAL)]);
 
 const LAW: Shape = Kinds(
     "kind",
