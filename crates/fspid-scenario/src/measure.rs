@@ -15,6 +15,8 @@ pub enum Family {
     Frozen,
     /// The aircraft without its controller, behind servo and dead time.
     Airframe,
+    /// The linear loop while its gains move, proved; the worst of the aircraft's plants counts.
+    Proof,
 }
 
 /// A measure that can be asked for by name.
@@ -120,6 +122,8 @@ pub enum Measure {
     LargestSink,
     /// Descent at the end, ft/min.
     FinalSink,
+    /// 1 if stability while the gains move is proved, 0 if not.
+    Certified,
 }
 
 /// All that is to be known about a measure.
@@ -152,8 +156,8 @@ const fn row(
 
 /// One row a measure, in the order of the enumeration.
 #[rustfmt::skip] // a table: one row a measure
-const ROWS: [Row; 50] = {
-    use Family::{Aircraft, Airframe, Flight, Frozen, Loop, Step};
+const ROWS: [Row; 51] = {
+    use Family::{Aircraft, Airframe, Flight, Frozen, Loop, Proof, Step};
     use Measure as M;
     [
         row(M::Overshoot, ("overshoot_pct", "%"), Step, &[], "how far the response goes beyond the new set-point, of the step"),
@@ -206,6 +210,7 @@ const ROWS: [Row; 50] = {
         row(M::LeastPitch, ("least_pitch_deg", "deg"), Aircraft, TIMES, "least pitch above the horizon; its limits may be below 0"),
         row(M::LargestSink, ("largest_sink_ft_min", "ft/min"), Aircraft, TIMES, "fastest descent; 0 where it never descends"),
         row(M::FinalSink, ("final_sink_ft_min", "ft/min"), Aircraft, TIMES, "descent at the end of the time that counts; below 0 in a climb"),
+        row(M::Certified, ("certified", ""), Proof, &[], "1 if the loop is proved stable while its gains move, for every set-point and load that the scenario commands; needs no limit"),
     ]
 };
 
@@ -264,7 +269,16 @@ impl Measure {
     /// True for a measure that is 1 or 0, so that it needs no limit.
     #[must_use]
     pub const fn is_yes_or_no(self) -> bool {
-        matches!(self, Self::Stable | Self::FrozenStable)
+        matches!(self, Self::Stable | Self::FrozenStable | Self::Certified)
+    }
+
+    /// What 1 and 0 are of such a measure.
+    #[must_use]
+    pub const fn yes_and_no(self) -> [&'static str; 2] {
+        match self {
+            Self::Certified => ["proved stable", "not proved stable"],
+            _ => ["stable", "unstable"],
+        }
     }
 
     /// True for a measure that may be below 0, so that its limits may be too.
@@ -288,7 +302,7 @@ impl Measure {
         let of_family = match self.family() {
             Family::Step => &["step_deg", "air"][..],
             Family::Flight | Family::Aircraft => &["air"],
-            Family::Loop | Family::Frozen | Family::Airframe => &[],
+            Family::Loop | Family::Frozen | Family::Airframe | Family::Proof => &[],
         };
         of_family.contains(&condition) || self.row().conditions.contains(&condition)
     }

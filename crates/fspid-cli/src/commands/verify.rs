@@ -90,6 +90,8 @@ Measures of the loop as sampled, at the gains it has at rest; the worst plant co
   delay_margin_s disk_margin sensitivity_peak gain_crossover_rad_s mode_damping (from_hz, to_hz)
 The same at the worst gains that the supervisor produces over its range, held still (memoryless law):
   frozen_stable frozen_gain_margin_db frozen_phase_margin_deg frozen_disk_margin
+The loop while its gains move, for all set-points and loads that the scenario commands, as certify proves it:
+  certified
 Measures of the aircraft without its controller, behind servo and dead time:
   short_period_damping cap_rad_s2_per_g phugoid_damping phugoid_doubling_s equivalent_delay_s
 

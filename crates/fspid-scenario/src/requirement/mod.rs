@@ -112,7 +112,10 @@ impl Requirement {
             unit => format!(" {unit}"),
         };
         match (self.least, self.most) {
-            _ if self.measure.is_yes_or_no() => "stable".to_owned(),
+            _ if self.measure.is_yes_or_no() => {
+                let [yes, _] = self.measure.yes_and_no();
+                yes.to_owned()
+            }
             (Some(least), Some(most)) => format!("{least} to {most}{unit}"),
             (Some(least), None) => format!("at least {least}{unit}"),
             (None, Some(most)) => format!("at most {most}{unit}"),

@@ -76,7 +76,8 @@ impl Judgement {
             Err(reason) => return reason.to_string(),
         };
         if self.requirement.measure.is_yes_or_no() {
-            return if value > 0.0 { "stable" } else { "unstable" }.to_owned();
+            let [yes, no] = self.requirement.measure.yes_and_no();
+            return if value > 0.0 { yes } else { no }.to_owned();
         }
         if value.is_infinite() {
             return "without end".to_owned();

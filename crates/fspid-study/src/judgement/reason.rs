@@ -74,6 +74,12 @@ pub enum NotEvaluated {
         /// Why.
         why: &'static str,
     },
+    /// No proof can speak of the loop.
+    #[error("no proof speaks of this loop: {why}")]
+    NotProvable {
+        /// Why.
+        why: String,
+    },
     /// A loop that has no equations.
     #[error(
         "an external controller has no equations here, so that its loop cannot be asked; its flights can"

@@ -467,6 +467,20 @@ fn a_loop_whose_gain_is_nowhere_one_has_no_crossover() {
     assert!(phase.met && phase.value_in_words() == "without end");
 }
 
+/// A proof is a requirement.
+#[test]
+fn a_loop_that_is_proved_meets_it_and_one_that_grows_standing_still_does_not() {
+    let judged = |controller, scale: &str| {
+        let output = "controller.FSPID.supervisor.output_scale";
+        let set = ["kp", "ki", "kd"].map(|gain| format!("{output}.{gain}={scale}"));
+        of(controller, "measure = \"certified\"", &set.each_ref().map(String::as_str))
+    };
+    let proved = ["P", "FSPID"].map(|controller| judged(controller, "0.001"));
+    assert!(proved.iter().all(|it| it.met && it.value_in_words() == "proved stable"), "{proved:?}");
+    let refuted = judged("FSPID", "1.0");
+    assert!(!refuted.met && refuted.value_in_words() == "not proved stable", "{refuted:?}");
+}
+
 /// Under the accumulating law the gains add up beyond every point of the map, and an input that is evaluated beyond
 /// the range lies beyond it: no margin of the map is then one of all gains.
 #[test]

@@ -5,6 +5,7 @@ mod airframe;
 mod flown;
 mod frozen;
 mod linear;
+mod proof;
 
 use std::cell::OnceCell;
 
@@ -88,6 +89,7 @@ impl<'a> Evidence<'a> {
                 frozen::cases(self.mapped()?, requirement)
             }
             Family::Airframe => airframe::cases(self.study, requirement),
+            Family::Proof => proof::cases(self.study, self.named()?),
         }
     }
 
