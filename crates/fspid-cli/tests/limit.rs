@@ -195,7 +195,8 @@ fn a_front_holds_a_contest_at_every_effort_and_tells_of_all() {
     let answer = json(&output);
     assert_eq!(answer["rungs"].as_array().expect("a list").len(), 2);
     assert!(answer["fronts"][0]["standing"].is_string(), "{answer}");
-    for file in ["front.html", "front.json", "travel-12-deg/contest.html", "travel-24-deg/designs"] {
+    for file in ["front.html", "front.json", "travel-12-deg/contest.html", "travel-24-deg/designs"]
+    {
         assert!(folder.path().join("front").join(file).exists(), "{file}");
     }
     // The same command goes on from there, and tells the same.

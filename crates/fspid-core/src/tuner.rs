@@ -175,7 +175,7 @@ impl<R: Real> TunerSettings<R> {
     }
 
     /// True where a change of the error is what the supervisor sees, its sets are even and nothing but
-    /// the gains moves: the structure that proofs and gains along a trajectory are written for.
+    /// the gains moves: the structure that flights in sets and gains along a trajectory are written for.
     pub fn is_plain(&self) -> bool {
         // In full, so that somebody says of a new setting whether it is plain.
         let Self {

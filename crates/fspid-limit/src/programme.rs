@@ -354,9 +354,7 @@ impl<'a> Programme<'a> {
     fn errors(&self, solved: &Solved<'_>) -> Vec<f64> {
         let Solved { layout, begin, .. } = solved;
         let setpoint = |k: usize| solved.setpoint_rad.get(k).copied().unwrap_or(0.0);
-        let error_at = |k: usize| {
-            setpoint(k) - solved.of(layout.state(k, 0)) * self.units[0] / DEG
-        };
+        let error_at = |k: usize| setpoint(k) - solved.of(layout.state(k, 0)) * self.units[0] / DEG;
         let later = (layout.first + 1..=layout.last).map(error_at);
         std::iter::once(setpoint(layout.first) - begin.state[0]).chain(later).collect()
     }

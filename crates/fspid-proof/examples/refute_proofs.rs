@@ -1,10 +1,11 @@
 //! Tries to refute what is proved: draws scenarios, certifies them, and flies each proved one over its whole
 //! range of set-points and loads.
 //!
-//! `cargo run --release -p fspid-proof --example refute_proofs -- --count 3000 [--from 0] [--structures]`
+//! `cargo run --release -p fspid-proof --example refute_proofs -- --count 3000 [--from 0] [--structures | --limits]`
 //!
 //! With `--structures` the self-tuners are of other structures than the paper's.
 //!
+//! With `--limits` the gains are fixed and limits of servo and command hold every step up.
 //! Ends with 1 where a flight of a proved loop does not settle.
 
 #![allow(clippy::print_stdout, reason = "an example shows something")]
@@ -31,12 +32,18 @@ fn main() -> ExitCode {
         text.and_then(|text| text.parse().ok()).unwrap_or(otherwise)
     };
     let (count, from) = (after("--count", 100), after("--from", 0));
-    let structures = arguments.iter().any(|argument| argument == "--structures");
+    let [structures, limits] = ["--structures", "--limits"]
+        .map(|option| arguments.iter().any(|argument| argument == option));
     let mut answers: BTreeMap<String, u64> = BTreeMap::new();
-    let (mut flights, mut held_in_all, mut contradicted) = (0, 0, 0);
+    let (mut flights, mut held_in_all, mut stepped_in_all, mut contradicted) = (0, 0, 0, 0);
     for seed in from..from + count {
-        let drawn = if structures { drawn::structured } else { drawn::scenario };
-        let answer = flown::answer(&drawn(&mut Dice::new(seed)));
+        let dice = &mut Dice::new(seed);
+        let drawn = match (structures, limits) {
+            (true, _) => drawn::structured(dice),
+            (false, true) => drawn::with_limits(dice),
+            (false, false) => drawn::scenario(dice),
+        };
+        let answer = flown::answer(&drawn);
         if arguments.iter().any(|argument| argument == "--each") {
             println!("scenario {seed}: {answer:?}");
         }
@@ -44,7 +51,8 @@ fn main() -> ExitCode {
             Answer::NotProvable(reason) => format!("not provable: {reason}"),
             Answer::Open => "open".to_owned(),
             Answer::Refuted => "refuted".to_owned(),
-            Answer::Settled { whole, flights: flown, held } => {
+            Answer::Settled { whole, flights: flown, held, stepped } => {
+                stepped_in_all += u64::from(stepped);
                 flights += flown;
                 held_in_all += u64::from(held);
                 format!("proved for {}, all flights settle", if whole { "all" } else { "less" })
@@ -61,7 +69,7 @@ fn main() -> ExitCode {
         println!("{count:6}  {name}");
     }
     println!(
-        "{flights} flights; {held_in_all} claims over a range of set-points that matters; {contradicted} contradicted"
+        "{flights} flights; {held_in_all} claims over a range of set-points that matters; {stepped_in_all} of steps with limits; {contradicted} contradicted"
     );
     ExitCode::from(u8::from(contradicted > 0))
 }

@@ -6,6 +6,7 @@ use crate::description::LoopDescription;
 use crate::limits;
 use crate::recheck::Rechecked;
 use crate::scope::{LeftOut, Range, Scope};
+use crate::steps::Steps;
 
 /// A claim about a loop and the matrices that carry it.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,6 +27,8 @@ pub struct Certificate {
     /// a bounded rate, in it the law keeps to the rate as well, and limits are left out that an ellipsoid does
     /// not cover.
     pub level: Option<f64>,
+    /// Steps from rest whose flights may meet limits, where such are claimed.
+    pub steps: Option<Steps>,
 }
 
 /// What is claimed.
@@ -119,6 +122,7 @@ impl Certificate {
             limits: self.description.limits(),
             pitch_within_rad: rechecked.pitch_within_rad,
             limits_left_out: self.limits_left_out(rechecked),
+            stepped: rechecked.stepped,
             left_out,
         }
     }

@@ -23,6 +23,7 @@ mod rest;
 mod scope;
 pub mod sizes;
 pub mod solve;
+mod steps;
 
 pub use asked::left_out_of;
 pub use bearing::Bearing;
@@ -33,3 +34,4 @@ pub use prove::{Effort, Largest, Outcome, Verdict, certify, is_proved};
 pub use recheck::{Kept, RecheckError, Rechecked, Remains};
 pub use rest::NoRest;
 pub use scope::{Asked, LeftOut, Range, Scope};
+pub use steps::{Stepped, Steps, Terminal};

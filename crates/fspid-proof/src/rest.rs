@@ -303,7 +303,7 @@ fn size_least(value: Interval) -> Interval {
 #[cfg(test)]
 #[path = "../tests/flown_proofs/drawn.rs"]
 #[allow(clippy::expect_used, clippy::indexing_slicing, dead_code, reason = "shared with a test")]
-mod drawn;
+pub(crate) mod drawn;
 
 #[cfg(test)]
 mod tests {

@@ -2,6 +2,8 @@
 
 use core::fmt;
 
+use crate::steps::Stepped;
+
 /// The constant set-points and loads that a claim is made for: everything up to these, either way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
@@ -81,6 +83,8 @@ pub struct Scope {
     pub pitch_within_rad: Option<f64>,
     /// Why limits are left out; none where they are covered, or there are none.
     pub limits_left_out: Option<&'static str>,
+    /// Steps from rest that are proved with the limits acting on the way.
+    pub stepped: Option<Stepped>,
     /// What the claim does not speak of.
     pub left_out: Vec<LeftOut>,
 }

@@ -25,6 +25,8 @@ pub const MOST_DIVISIONS: usize = 96;
 pub const MOST_CONES: usize = 96;
 /// Longest sequence of gains that is multiplied out.
 pub const MOST_SAMPLES: usize = 20_000;
+pub use crate::steps::{MOST_LOADS, MOST_PIECES};
+
 /// Most work of a re-check: cubes of the number of states, one for each inequality. That is some minutes.
 pub const MOST_WORK: u64 = 4_000_000_000;
 
@@ -115,6 +117,11 @@ pub(crate) fn check(certificate: &Certificate) -> Result<(), WrongSizes> {
     };
     let states = states + more;
     wrong.of_claim(&certificate.claim, states);
+    if let Some(steps) = &certificate.steps {
+        wrong.within(("steps.ends", "ends of boxes"), steps.ends.len(), [2, MOST_PIECES + 1]);
+        wrong.within(("steps.loads", "parts of the loads"), steps.loads, [1, MOST_LOADS]);
+        wrong.of_form("steps.near_rest.form", &steps.terminal.form, states);
+    }
     let inequalities = most_inequalities(certificate);
     let work = inequalities.saturating_mul((states as u64).saturating_pow(3));
     wrong.push(("claim", "products of the re-check"), work, [0, MOST_WORK]);

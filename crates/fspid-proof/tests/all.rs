@@ -15,3 +15,4 @@ mod solve_growth;
 mod solve_loops;
 mod solve_lyapunov;
 mod solve_moving;
+mod steps;

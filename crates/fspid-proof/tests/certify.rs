@@ -237,6 +237,7 @@ fn a_certificate_that_asks_nothing_of_the_loop_does_not_hold() {
         divisions: 4,
         range: Range::REST,
         left_out: Vec::new(),
+        steps: None,
         claim: Claim::SProcedure { form: Matrix::identity(size), rate: 1.0, multipliers },
         level: None,
     };

@@ -32,4 +32,5 @@ pub use lyapunov::{
 };
 pub use matrix::IntervalMatrix;
 pub use moving::{Ends, Moving, MovingProof, NotProvedAt, falls_while_moving};
+pub(crate) use plant::Passed;
 pub use plant::{ActuatorLag, PrintedPlant, printed};

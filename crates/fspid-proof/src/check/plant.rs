@@ -46,6 +46,14 @@ pub struct PrintedPlant<'a> {
     pub dt_s: f64,
 }
 
+/// A plant over a time, see [`PrintedPlant::over`].
+#[derive(Clone, Debug)]
+pub(crate) struct Passed {
+    pub(crate) follow: IntervalMatrix,
+    pub(crate) by_command: Vec<Interval>,
+    pub(crate) ramp: Vec<Interval>,
+}
+
 /// All decimals that a printed number can stand for, and then some: from the float below it to the one
 /// above. Zero is zero.
 #[must_use]
@@ -102,6 +110,39 @@ impl PrintedPlant<'_> {
         let a = IntervalMatrix::from_rows(&companion(&alpha))?;
         let motion = exponential(&a.scaled(Interval::ZERO.hull(dt_s)))?;
         Ok(motion.product(&IntervalMatrix::from_rows(&column)?)?.entries().collect())
+    }
+
+    /// The plant over a time with a lag of first order: states at its end by states and by a command that is held, and
+    /// what a deflection that runs at 1 rad/s adds to states that begin at rest. Rows are over plant and deflection.
+    ///
+    /// # Errors
+    /// As [`sampled`](Self::sampled); [`NotProved::Number`] for another lag.
+    pub(crate) fn over(&self, time_s: Interval) -> Result<Passed, NotProved> {
+        let ActuatorLag::First { .. } = self.lag else {
+            let what = "order of the lag";
+            return Err(NotProved::Number { what, found: 0.0, allowed: "1" });
+        };
+        let alpha = self.monic_denominator();
+        let sign = Interval::point(self.elevator_sign.per_nose_up());
+        let by_elevator: Vec<Interval> =
+            self.markov_parameters(&alpha).into_iter().map(|h| sign * h).collect();
+        let (a, b) = self.with_actuator(companion(&alpha), &by_elevator)?;
+        let (follow, by_command) =
+            held(&IntervalMatrix::from_rows(&a)?, &IntervalMatrix::from_rows(&b)?, time_s)?;
+        // The deflection is what it was and the held rate makes of it.
+        let mut ramp = a;
+        let mut by_rate = vec![vec![Interval::ZERO]; ramp.len()];
+        if let (Some(row), Some(rate)) = (ramp.last_mut(), by_rate.last_mut()) {
+            row.fill(Interval::ZERO);
+            *rate = vec![Interval::ONE];
+        }
+        let (_, ramp) = held(
+            &IntervalMatrix::from_rows(&ramp)?,
+            &IntervalMatrix::from_rows(&by_rate)?,
+            time_s,
+        )?;
+        let column = |matrix: &IntervalMatrix| matrix.entries().collect();
+        Ok(Passed { by_command: column(&by_command), ramp: column(&ramp), follow })
     }
 
     /// $a_{n-1} \dots a_0$ of the monic denominator.

@@ -128,15 +128,15 @@ impl IncrementMap {
 
 /// A side of a cell.
 #[derive(Clone, Copy, Debug)]
-struct Side {
+pub(super) struct Side {
     /// What the rules are asked for.
-    asked: Interval,
+    pub(super) asked: Interval,
     /// The inputs that this stands for.
-    inputs: [f64; 2],
+    pub(super) inputs: [f64; 2],
 }
 
 impl Side {
-    fn point(value: f64) -> Self {
+    pub(super) fn point(value: f64) -> Self {
         Self { asked: Interval::point(value), inputs: [value; 2] }
     }
 
@@ -230,7 +230,7 @@ fn beyond([errors, changes]: [&[Side]; 2]) -> Vec<[[f64; 2]; 2]> {
 }
 
 /// Encloses increments over cells.
-struct Enclosure<'a> {
+pub(super) struct Enclosure<'a> {
     reach: Option<Reach<'a>>,
     /// Rules that conclude numbers.
     numbers: Option<Numbers<'a>>,
@@ -242,7 +242,7 @@ struct Enclosure<'a> {
 }
 
 impl<'a> Enclosure<'a> {
-    fn new(tuner: &'a SelfTuner<f64>, system: Option<&'a System>) -> Self {
+    pub(super) fn new(tuner: &'a SelfTuner<f64>, system: Option<&'a System>) -> Self {
         let supervisor = tuner.supervisor();
         let (range, rule) = (supervisor.range(), supervisor.defuzzifier());
         let samples = samples(rule);
@@ -274,7 +274,7 @@ impl<'a> Enclosure<'a> {
         IncrementCell { error, change, delta: self.silenced([error, change], delta) }
     }
 
-    fn over(&mut self, sides: [Side; 2]) -> [Interval; 3] {
+    pub(super) fn over(&mut self, sides: [Side; 2]) -> [Interval; 3] {
         let asked = sides.map(|side| side.asked);
         let answers = self.reach.as_mut().map(|reach| reach.over(&asked));
         let known: Option<[Interval; 3]> = answers.and_then(|answers| answers.try_into().ok());

@@ -1,6 +1,6 @@
 //! From increments to gains: what the tuning laws make of them.
 
-use fspid_core::{Law, Limits};
+use fspid_core::{Law, Limits, SelfTuner};
 use fspid_fuzzy::OutOfRange;
 use fspid_numeric::scalar::Interval;
 
@@ -13,7 +13,7 @@ use super::{EVERYWHERE, GainCell, GainSet, NAMES, NoBound, array};
 const STEP_ROUNDINGS: f64 = 8.0 * f64::EPSILON;
 
 /// One of the three gains: its nominal value $k'$, factor $f s$, limits, and the leakage.
-struct One {
+pub(super) struct One {
     nominal: f64,
     factor: Interval,
     limits: Option<Limits<f64>>,
@@ -24,7 +24,7 @@ impl One {
     /// The gain of the memoryless law.
     ///
     /// Interval arithmetic holds the exact and the rounded $k' + s \Delta k$ alike.
-    fn memoryless(&self, delta: Interval) -> Interval {
+    pub(super) fn memoryless(&self, delta: Interval) -> Interval {
         self.limited(Interval::point(self.nominal) + self.factor * delta)
     }
 
@@ -99,14 +99,14 @@ fn drift(increment: Interval) -> Interval {
 }
 
 /// The three gains of a tuner.
-fn each(map: &IncrementMap, output_factor: f64) -> [One; 3] {
-    let settings = map.tuner.settings();
+pub(super) fn each(tuner: &SelfTuner<f64>, output_factor: f64) -> [One; 3] {
+    let settings = tuner.settings();
     let leakage_per_s = match settings.law {
         Law::Memoryless => 0.0,
         Law::Accumulating { leakage_per_s } => leakage_per_s,
     };
     let limits = settings.gain_limits.map(|limits| [limits.kp, limits.ki, limits.kd]);
-    let [nominal, scale] = [map.tuner.nominal(), settings.output_scale].map(array);
+    let [nominal, scale] = [tuner.nominal(), settings.output_scale].map(array);
     [0, 1, 2].map(|gain: usize| One {
         nominal: nominal[gain],
         factor: Interval::point(output_factor) * Interval::point(scale[gain]),
@@ -138,7 +138,7 @@ pub(super) fn check(map: &IncrementMap) -> Result<(), NoBound> {
     if map.tuner.settings().law == Law::Memoryless {
         return Ok(());
     }
-    let bounds = of_each(&each(map, 1.0), hull(map), One::accumulated);
+    let bounds = of_each(&each(&map.tuner, 1.0), hull(map), One::accumulated);
     match NAMES.into_iter().zip(bounds).find(|(_, bounds)| !bounds.is_bounded()) {
         Some((gain, _)) => Err(NoBound::Accumulating { gain }),
         None => Ok(()),
@@ -147,7 +147,7 @@ pub(super) fn check(map: &IncrementMap) -> Result<(), NoBound> {
 
 /// The gains of a tuner with `output_factor` times its output factors.
 pub(super) fn gains(map: &IncrementMap, output_factor: f64) -> GainSet {
-    let each = each(map, output_factor);
+    let each = each(&map.tuner, output_factor);
     let nominal = map.tuner.nominal();
     if map.tuner.settings().law != Law::Memoryless {
         let gains = of_each(&each, hull(map), One::accumulated);

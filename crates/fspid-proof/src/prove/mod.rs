@@ -22,6 +22,7 @@ use crate::recheck::{Kept, Recheck, RecheckError, Rechecked};
 use crate::rest::{NoRest, Rest};
 use crate::scope::{Asked, Range};
 use crate::solve::{self, never};
+use crate::steps::Steps;
 
 /// How hard to try. Nothing depends on a clock.
 #[derive(Clone, Copy, Debug)]
@@ -115,6 +116,7 @@ pub fn certify(
     let prover = Prover::new(description, asked, effort)?;
     let set = prover.set(1.0);
     let (verdict, instead) = prover.verdict(&set);
+    let verdict = prover.with_steps(verdict, &set);
     let open_because = match verdict {
         Verdict::Open => prover.doubt(&set),
         Verdict::Proved(..) | Verdict::Refuted(..) => None,
@@ -231,6 +233,25 @@ impl<'a> Prover<'a> {
         match self.smaller(set) {
             None => (self.sequence_growth().unwrap_or(Verdict::Open), None),
             smaller => (Verdict::Open, smaller),
+        }
+    }
+
+    /// The verdict with what is proved of steps from rest.
+    fn with_steps(&self, verdict: Verdict, set: &GainSet) -> Verdict {
+        let Verdict::Proved(certificate, rechecked) = verdict else { return verdict };
+        let held = self.rest(set).ok().and_then(|rest| self.held(set, 1.0, &rest).ok());
+        let steps = held.and_then(|held| {
+            Steps::found(&certificate, &self.enclosed, [set, &held], self.effort.stops)
+        });
+        let stepping = Certificate { steps, ..certificate.clone() };
+        let again = || {
+            let recheck =
+                Recheck::with(&stepping, self.enclosed.clone(), set.clone(), &self.slopes);
+            recheck.ok()?.until(self.effort.stops).run().ok()
+        };
+        match stepping.steps.as_ref().and_then(|_| again()) {
+            Some(rechecked) => Verdict::Proved(stepping, rechecked),
+            None => Verdict::Proved(certificate, rechecked),
         }
     }
 
@@ -406,6 +427,7 @@ impl<'a> Prover<'a> {
             left_out: self.asked.left_out.clone(),
             claim,
             level,
+            steps: None,
         };
         let set = self.set(factor);
         let recheck = Recheck::with(&certificate, self.enclosed.clone(), set, &self.slopes).ok()?;

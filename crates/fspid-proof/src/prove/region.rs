@@ -47,6 +47,7 @@ impl<'a> Region<'a> {
             range: prover.range,
             left_out: prover.asked.left_out.clone(),
             claim: Claim::BoundedRate(claim.clone()),
+            steps: None,
             level: None,
         };
         let recheck =

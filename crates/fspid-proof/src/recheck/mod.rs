@@ -17,6 +17,7 @@ use crate::limits;
 use crate::rest::{NoRest, Rest};
 use crate::sizes::{self, WrongSizes};
 use crate::solve::never;
+use crate::steps::{Stepped, corners_within};
 
 pub(crate) use moving::{Corner, moved_inputs, part_in};
 pub use remains::Remains;
@@ -44,6 +45,8 @@ pub struct Rechecked {
     pub rest_error_rad: f64,
     /// How far from rest the pitch angle may stay, rad; 0 where every deviation decreases for ever.
     pub remains_rad: f64,
+    /// Steps from rest that were flown in sets; none where none are claimed.
+    pub stepped: Option<Stepped>,
 }
 
 /// Where a law keeps its gains to a rate.
@@ -231,6 +234,7 @@ impl<'a> Recheck<'a> {
             return Err(malformed(what));
         }
         let Proved { inequalities, kept, pitch_within_rad, remains_rad } = self.proved()?;
+        let stepped = self.stepped()?;
         let bounds = self.set.bounds();
         Ok(Rechecked {
             cells: self.set.cells.len(),
@@ -242,7 +246,43 @@ impl<'a> Recheck<'a> {
             any_load: self.rest.any_load,
             rest_error_rad: self.rest.error_rad,
             remains_rad,
+            stepped,
         })
+    }
+
+    /// Proves that a form decreases, and that no limit acts, for all gains that there are within its level.
+    fn holds_near_rest(&self) -> Result<(), RecheckError> {
+        let (Claim::CommonQuadratic { form, rate }, Some(level)) =
+            (&self.certificate.claim, self.certificate.level)
+        else {
+            return Err(malformed("steps: no form near rest"));
+        };
+        let description = &self.certificate.description;
+        if let Some(what) = limits::not_covered(description) {
+            return Err(malformed(what));
+        }
+        self.form(form, *rate)?;
+        if !(*rate < 1.0) || self.off_rad > 0.0 || self.is_blurred() {
+            return Err(malformed("steps: near rest something remains"));
+        }
+        for corner in corners_within(description, &self.model, &self.held, (form, level))? {
+            self.holds(corner, form, *rate, None)?;
+        }
+        Ok(())
+    }
+
+    /// Proves what is claimed of steps: the form near rest as any other, then the flights.
+    fn stepped(&self) -> Result<Option<Stepped>, RecheckError> {
+        let Some(steps) = &self.certificate.steps else { return Ok(None) };
+        if !self.certificate.claim.is_of_stability() {
+            return Err(malformed("steps: of a loop that is not claimed to be stable"));
+        }
+        let near_rest = steps.near_rest(self.certificate);
+        let known = KnownSlopes::default();
+        let near = Recheck::with(&near_rest, self.model.clone(), self.set.clone(), &known)?;
+        near.until(self.stops).holds_near_rest()?;
+        let stepped = steps.proved(self.certificate, &self.model, &self.set, self.stops);
+        stepped.map(Some).map_err(malformed)
     }
 
     fn proved(&self) -> Result<Proved, RecheckError> {

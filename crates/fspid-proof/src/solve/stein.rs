@@ -32,6 +32,11 @@ pub(super) fn stable_sum(a: &Dense, w: &Dense) -> Option<Dense> {
     None
 }
 
+/// As [`stable_sum`], of matrices.
+pub(crate) fn summed(a: &Matrix, w: &Matrix) -> Option<Matrix> {
+    stable_sum(&Dense::from(a), &Dense::from(w))?.to_matrix()
+}
+
 /// The symmetric P of $A^T P A - s P = W$, by elimination on its entries; `None` when there is none or many.
 pub(super) fn solution(a: &Dense, s: f64, w: &Dense) -> Option<Dense> {
     let (size, unknowns) = (a.rows, packed_len(a.rows));

@@ -181,6 +181,30 @@ fn of_controllers(
     }
 }
 
+/// A scenario with fixed gains whose steps are held up by limits of servo and command.
+pub(crate) fn with_limits(dice: &mut Dice) -> Scenario {
+    let mut scenario = scenario(dice);
+    scenario.surroundings.pitch_sensor = None;
+    let lag = Lag::first_order(dice.between(0.05, 0.15)).expect("allowed");
+    let limit_rad = dice.between(12.0, 30.0) * DEG;
+    let servo = Actuator::new(lag)
+        .with_command_limits(-limit_rad, limit_rad)
+        .and_then(|servo| servo.with_rate_limit(dice.between(15.0, 60.0) * DEG))
+        .and_then(|servo| servo.with_delay(dice.one_of(&[0, 1, 3])));
+    scenario.actuator = servo.expect("allowed");
+    let step_rad = dice.between(1.0, 6.0) * DEG;
+    scenario.setpoint = Profile::new(step_rad, Shape::Step { at_s: 0.0 }).expect("allowed");
+    let controller = &scenario.controllers[0].controller;
+    let config = PidConfig {
+        integral: IntegralForm::Bumpless,
+        guard: Guard::default(),
+        ..*controller.config()
+    };
+    let fixed = Pid::new(controller.nominal(), config).expect("allowed");
+    scenario.controllers[0].controller = Controller::Fixed(fixed);
+    scenario
+}
+
 fn actuator(dice: &mut Dice) -> Actuator {
     let lag = match (dice.part() * 4.0) as u32 {
         0 => Lag::NONE,

@@ -32,6 +32,8 @@ pub(crate) enum Answer {
         whole: bool,
         flights: usize,
         held: bool,
+        /// Steps from rest were claimed, limits acting, and flown.
+        stepped: bool,
     },
     /// Proved, and a flight did not settle.
     Contradicted(String),
@@ -98,7 +100,7 @@ fn fly_all(scenario: &Scenario, proved: &(Certificate, Rechecked), whole: bool) 
             - own_load.bias_rad))
         .max(0.0);
     let loads = if rechecked.any_load { [0.0, 5.0_f64.to_radians()] } else { [0.0, room] };
-    let mut flights = 0;
+    let (mut flights, mut stepped) = (0, false);
     for (setpoint_rad, load_rad, kick_rad) in [
         (any, 0.0, 0.0),
         (-any, loads[1], 0.0),
@@ -121,8 +123,38 @@ fn fly_all(scenario: &Scenario, proved: &(Certificate, Rechecked), whole: bool) 
             flights += 2;
         }
     }
+    for start in steps_of(scenario, rechecked) {
+        if let Err(reason) = ends_at_its_setpoint(scenario, proved, start) {
+            return Answer::Contradicted(format!("a step with limits, {start:?}: {reason}"));
+        }
+        (flights, stepped) = (flights + 1, true);
+    }
     let held = far > 0.0 && !rechecked.any_setpoint;
-    Answer::Settled { whole, flights, held }
+    Answer::Settled { whole, flights, held, stepped }
+}
+
+/// Steps up to the edge of what is claimed, either way, with loads.
+fn steps_of(scenario: &Scenario, rechecked: &Rechecked) -> Vec<Start> {
+    // Steps are claimed for sensors without bias.
+    let biased = scenario.surroundings.pitch_sensor.as_ref().is_some_and(|it| it.bias() != 0.0);
+    let Some(stepped) = rechecked.stepped.filter(|_| !biased) else { return Vec::new() };
+    let shares = [(1.0, 1.0), (-1.0, 1.0), (0.999, -1.0), (-0.61, 0.3), (0.37, 0.0), (0.05, -0.7)];
+    let start = |(setpoint, load): (f64, f64)| Start {
+        setpoint_rad: setpoint * stepped.setpoint_rad,
+        load_rad: load * stepped.load_rad,
+        kick_rad: 0.0,
+        ramp: false,
+    };
+    shares.map(start).to_vec()
+}
+
+/// A flight of the loop with its limits ends where the same loop without limits does.
+fn ends_at_its_setpoint(
+    scenario: &Scenario,
+    proved: &(Certificate, Rechecked),
+    start: Start,
+) -> Result<(), String> {
+    rests_as_without_limits([scenario, &without_limits(scenario)], proved, start)
 }
 
 fn controller_config(scenario: &Scenario) -> &PidConfig<f64> {

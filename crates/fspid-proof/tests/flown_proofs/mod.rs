@@ -46,3 +46,16 @@ fn every_flight_of_a_proved_loop_settles_over_its_whole_range() {
     }
     assert!(proved >= 3 && held >= 1, "{proved} proved, {held} of them over a range of set-points");
 }
+
+#[test]
+fn every_flight_of_a_proved_step_ends_where_it_is_claimed_with_its_limits() {
+    let mut stepped = 0;
+    for seed in 0..6 {
+        match flown::answer(&drawn::with_limits(&mut Dice::new(seed))) {
+            Answer::Contradicted(reason) => panic!("scenario {seed}: {reason}"),
+            Answer::Settled { stepped: here, .. } => stepped += usize::from(here),
+            Answer::NotProvable(_) | Answer::Open | Answer::Refuted => {}
+        }
+    }
+    assert!(stepped >= 2, "{stepped} with steps");
+}

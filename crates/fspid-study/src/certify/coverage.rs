@@ -53,7 +53,8 @@ const DRIFT: &str = "a bias stands still in the claim";
 const LINEAR_AT_TRIM: &str =
     "the linear model at the trim; that the aircraft is nonlinear is said beside the verdict";
 const TERMS: &str = "the constant set-points and loads of the range are those that it reaches; the time while it moves is left out";
-const AT_LIMITS: &str = "an ellipsoid in which no limit acts, or said to be left out; where rest itself is at a limit nothing is proved";
+const AT_LIMITS: &str = "steps from rest up to a stated size are flown in sets with the limit acting; other motions within an ellipsoid in which none acts, or said to be left out; where rest itself is at a limit nothing is proved";
+const AT_STOPS: &str = "no step of the stated size meets an end; other motions within an ellipsoid in which none acts, or said to be left out; where rest itself is at a limit nothing is proved";
 const STEPS: &str = "a disturbance of half a step; what it leaves is stated, and nothing is proved where that is more than a tenth of the set-points and than ten steps";
 const AROUND: &str = "the claim is about the pitch loop alone, not about the loops around it";
 const AIM: &str = "asked of flights, not of the loop";
@@ -126,7 +127,7 @@ pub const COVERAGE: &[KeyCoverage] = &[
     row("actuator.damping", Covered, "exactly held between samples"),
     row("actuator.delay_samples", Covered, "a queue of commands in the state"),
     row("actuator.position_limit_deg", Bounded, AT_LIMITS),
-    row("actuator.travel_deg", Bounded, AT_LIMITS),
+    row("actuator.travel_deg", Bounded, AT_STOPS),
     row("actuator.rate_limit_deg_s", Bounded, AT_LIMITS),
     row("actuator.bias_deg", Bounded, "a constant load; limits are then left out"),
     row("actuator.deadband_deg", Refused, "above 0: around rest the loop is not linear"),
@@ -269,11 +270,15 @@ pub const COVERAGE: &[KeyCoverage] = &[
     row(
         "controller.anti_windup.kind",
         Bounded,
-        "clamping is a limit; the others act at limits alone",
+        "clamping is a limit; the others act at limits alone, and in steps as they fly",
     ),
     row("controller.anti_windup.lower_deg", Bounded, AT_LIMITS),
     row("controller.anti_windup.upper_deg", Bounded, AT_LIMITS),
-    row("controller.anti_windup.tracking_s", Bounded, "it acts at limits alone"),
+    row(
+        "controller.anti_windup.tracking_s",
+        Bounded,
+        "it acts at limits alone, and in steps as it flies",
+    ),
     row("controller.output_limits_deg", Bounded, AT_LIMITS),
     row("controller.slew_limit_deg_s", Bounded, AT_LIMITS),
     row(

@@ -14,6 +14,7 @@ use super::json_text;
 use super::loop_file::LoopFile;
 use super::no_certificate::NoCertificate;
 use super::shape::{self, CERTIFICATE, Wrong};
+use super::steps_file::StepsFile;
 
 /// First words of every certificate.
 const KIND: &str = "fspid stability certificate";
@@ -55,6 +56,8 @@ struct CertificateFile {
     claim: ClaimFile,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     level: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    steps: Option<StepsFile>,
 }
 
 /// What becomes of limits.
@@ -87,7 +90,7 @@ struct RangeFile {
     load_rad: f64,
 }
 
-type Rows = Vec<Vec<f64>>;
+pub(super) type Rows = Vec<Vec<f64>>;
 
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
@@ -167,6 +170,7 @@ pub fn to_text(certificate: &Certificate, origin: &Origin) -> String {
         limits: limits_of(certificate),
         claim: claim_file(&certificate.claim),
         level: certificate.level,
+        steps: certificate.steps.as_ref().map(StepsFile::of),
     };
     file.content_digest = Some(file.content());
     let value = serde_json::to_value(&file).unwrap_or_else(|error| json!(error.to_string()));
@@ -247,7 +251,10 @@ impl CertificateFile {
         let named = |name: &String| LeftOut::named(name).ok_or_else(|| unknown_left_out(name));
         let left_out = self.not_in_this_claim.iter().map(named).collect::<Result<Vec<_>, _>>();
         let left_out = kept(&mut problems, "not_in_this_claim", left_out);
-        let Some(((description, claim), left_out)) = description.zip(claim).zip(left_out) else {
+        let steps = self.steps.as_ref().map(StepsFile::build).transpose();
+        let steps = kept(&mut problems, "steps", steps);
+        let parts = description.zip(claim).zip(left_out).zip(steps);
+        let Some((((description, claim), left_out), steps)) = parts else {
             return Err(NoCertificate { problems });
         };
         let certificate = Certificate {
@@ -258,6 +265,7 @@ impl CertificateFile {
             left_out,
             claim,
             level: self.level,
+            steps,
         };
         let stated = limits_of(&certificate);
         if self.limits != stated {
@@ -288,11 +296,11 @@ fn limits_of(certificate: &Certificate) -> LimitsFile {
     }
 }
 
-fn rows(matrix: &Matrix) -> Rows {
+pub(super) fn rows(matrix: &Matrix) -> Rows {
     matrix.data().chunks(matrix.columns().max(1)).map(<[f64]>::to_vec).collect()
 }
 
-fn matrix(rows: &Rows) -> Result<Matrix, String> {
+pub(super) fn matrix(rows: &Rows) -> Result<Matrix, String> {
     Matrix::from_rows(rows).map_err(|error| error.to_string())
 }
 

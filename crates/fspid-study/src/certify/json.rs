@@ -13,13 +13,16 @@ use crate::json::{merged, present, with_null_reasons};
 const SCHEMA: u32 = 2;
 
 /// Why keys of these answers are null.
-const NULLS: [(&str, &str); 7] = [
+const NULLS: [(&str, &str); 10] = [
     (
         "law_keeps_to_the_rate",
         "the claim is about no rate, or it is not shown that the law keeps to it",
     ),
     ("limits_left_out", "no limit is left out"),
     ("pitch_within_deg", "the claim holds for every pitch angle"),
+    ("steps_within_deg", "no step from rest is proved with limits acting"),
+    ("steps_load_within_deg", "no step from rest is proved with limits acting"),
+    ("steps_limited_until_s", "no step from rest is proved with limits acting"),
     ("open_because", "there is an answer, or nothing more is known of why there is none"),
     ("not_proved", "no factor was tried and not proved"),
     ("bearing", "the certificate does not hold"),

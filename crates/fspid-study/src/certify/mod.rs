@@ -17,6 +17,7 @@ mod loop_file;
 mod no_certificate;
 mod scope;
 mod shape;
+mod steps_file;
 #[cfg(test)]
 mod tests;
 mod text;

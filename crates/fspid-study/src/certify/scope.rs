@@ -1,7 +1,7 @@
 //! What is said beside a verdict: where the claim holds and what it does not speak of, the same in every
 //! answer, in text and JSON, from a proof and from a certificate that is checked.
 
-use fspid_proof::{Certificate, LeftOut, Range, Rechecked, Scope};
+use fspid_proof::{Certificate, LeftOut, Range, Rechecked, Scope, Stepped};
 use serde_json::{Value, json};
 
 use crate::json::merged;
@@ -33,6 +33,7 @@ impl Told {
             }
             sentences.push(("remains", remains(scope)));
             sentences.push(("limits", limits(scope)));
+            sentences.extend(scope.stepped.map(|stepped| ("steps", steps(&stepped))));
         }
         let left_out = self.left_out.iter().enumerate();
         sentences.extend(left_out.map(|(place, one)| {
@@ -62,6 +63,7 @@ impl Told {
                 limits,
                 pitch_within_rad,
                 limits_left_out,
+                stepped,
                 left_out: _,
             } = scope;
             json!({
@@ -74,6 +76,9 @@ impl Told {
                 "limits": limits,
                 "pitch_within_deg": pitch_within_rad.map(told_deg),
                 "limits_left_out": limits_left_out,
+                "steps_within_deg": stepped.map(|it| told_deg(it.setpoint_rad)),
+                "steps_load_within_deg": stepped.map(|it| told_deg(it.load_rad)),
+                "steps_limited_until_s": stepped.map(|it| it.settled_s),
             })
         };
         merged([told, self.stable.as_ref().map_or_else(|| json!({}), stable)])
@@ -151,6 +156,25 @@ fn limits(scope: &Scope) -> String {
         (_, None, Some(reason)) => format!("SATURATION IS NOT COVERED: {named}; {reason}"),
         (_, None, None) => format!("SATURATION IS NOT COVERED: {named}"),
     }
+}
+
+/// Steps from rest, limits acting on the way. With an integral that is the set-point; the error at rest is told beside it.
+fn steps(stepped: &Stepped) -> String {
+    let [setpoint, load] = [stepped.setpoint_rad, stepped.load_rad].map(degrees);
+    let loaded = match load {
+        0.0 => String::new(),
+        most => format!(" and of a load by up to {} deg of elevator at once", short(most)),
+    };
+    let acting = if stepped.limited {
+        "with its limits acting on the way"
+    } else {
+        "without meeting one on the way"
+    };
+    format!(
+        "from rest at the trim, sensors without bias, any step of the set-point by up to {} deg{loaded} ends where the loop without limits does, {acting}; {} s later none acts any more",
+        short(setpoint),
+        short(stepped.settled_s)
+    )
 }
 
 /// The set-points and loads that limits are covered for, which may be fewer than those of the claim itself.

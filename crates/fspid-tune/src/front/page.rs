@@ -2,9 +2,7 @@
 
 use fspid_page::analysis::{Chapter, DataTable, Datum, Item, Picture, Standing, Verdict};
 use fspid_page::campaign::CampaignPage;
-use fspid_plot::{
-    LineFigure, LinePanel, Series, SeriesStyle, Svg, TradeFigure, TradeSeries,
-};
+use fspid_plot::{LineFigure, LinePanel, Series, SeriesStyle, Svg, TradeFigure, TradeSeries};
 
 use super::band::{CONFIDENCE, DRAWS, PLACES};
 use super::text::{change_pct, headline, share};

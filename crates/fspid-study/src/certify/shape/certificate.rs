@@ -3,7 +3,9 @@
 //! Ranges are wide: they keep out what no loop has, and what would cost time or memory before a proof
 //! could refuse it. What a number may be beyond that is asked where the loop is built.
 
-use fspid_proof::sizes::{MOST_CONES, MOST_DIVISIONS, MOST_SAMPLES, MOST_STATES};
+use fspid_proof::sizes::{
+    MOST_CONES, MOST_DIVISIONS, MOST_LOADS, MOST_PIECES, MOST_SAMPLES, MOST_STATES,
+};
 
 use super::{Key, Shape, key, optional};
 use Shape::{Digest, Kinds, List, Number, Object, OrNull, Positive, Text, Whole, Word};
@@ -23,6 +25,19 @@ pub(in super::super) const CERTIFICATE: Shape = Object(&[
     key("limits", Word(&["none-are-there", "none-acts-within-the-level", "left-out"])),
     key("claim", CLAIM),
     optional("level", Positive(LARGE)),
+    optional("steps", STEPS),
+]);
+
+/// Boxes of set-points, and parts of the loads.
+const STEPS: Shape = Object(&[
+    key("setpoint_rad", Positive(ANGLE)),
+    key("load_rad", Number(0.0, ANGLE)),
+    key("ends", List(&END, [2, MOST_PIECES + 1])),
+    key("loads", Whole(1, MOST_LOADS as u64)),
+    key(
+        "near_rest",
+        Object(&[key("rate", RATE), key("form", FORM), key("level", Positive(LARGE))]),
+    ),
 ]);
 
 /// Longest names.

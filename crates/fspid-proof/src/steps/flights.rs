@@ -1,0 +1,465 @@
+//! Sets of flights, from a step at rest to where no limit acts any more.
+
+use fspid_core::Gains;
+use fspid_fuzzy::system::System;
+use fspid_lti::Matrix;
+use fspid_numeric::Scalar;
+use fspid_numeric::scalar::Interval;
+use fspid_sim::Controller;
+use fspid_sim::loop_model::LoopModel;
+
+use super::affine::{Affine, raised};
+use super::ball::{Growth, Norm};
+use super::gains::{Between, SeenGains};
+use super::sample::{
+    FREE, Flight, Flown, Judge, LOAD, Layout, Moment, OWN, PLACES, Passage, Row, SETPOINT, Stop,
+};
+use super::servo::Curve;
+use super::terminal::Terminal;
+use crate::check::{IntervalMatrix, NotProved};
+use crate::description::LoopDescription;
+use crate::gain_set::GainSet;
+
+/// Unknowns that are told apart; where there are more, the smallest become a ball.
+const MOST_SYMBOLS: usize = 256;
+const KEPT_SYMBOLS: usize = 160;
+/// Every so many samples it is asked whether the flights are near enough to rest.
+const LOOKS: usize = 8;
+/// Shares of all gains, around those at rest, for each of which the growth of the ball is known.
+const SHARES: [f64; 7] = [0.001, 0.01, 0.05, 0.1, 0.25, 0.5, 1.0];
+/// A set that is so many times as far off as its set-points and loads is given up.
+const FAR: f64 = 30.0;
+
+/// The loop made ready for sets of flights.
+pub(super) struct Ready<'a> {
+    flown: Flown<'a>,
+    /// In which the ball is counted.
+    norm: Norm,
+    /// Of the form near rest.
+    near: Norm,
+    /// How many times the one the other is at most.
+    into_near: f64,
+    growth: Vec<Growth>,
+    /// Root of the level within which no limit acts.
+    within: f64,
+    /// What a wrong rest may add.
+    off_rest: f64,
+    /// Rest by set-point and by load.
+    rest: [Vec<f64>; 2],
+    slew_rad: Option<f64>,
+    /// Command at rest by set-point and by load.
+    rest_command: [f64; 2],
+    /// Boxes around the gains at rest, each within the next.
+    around: Vec<[Interval; 3]>,
+}
+
+/// A box of set-points and loads.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Patch {
+    pub(super) setpoint: [f64; 2],
+    pub(super) load: [f64; 2],
+}
+
+/// What came of a set of flights that ended near enough to rest.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Landed {
+    /// Samples from the step to there.
+    pub(super) samples: usize,
+    /// A limit may have acted.
+    pub(super) limited: bool,
+}
+
+impl<'a> Ready<'a> {
+    /// The loop with a form near rest.
+    pub(super) fn of(
+        description: &'a LoopDescription,
+        model: &LoopModel<Interval>,
+        set: &GainSet,
+        [terminal, common]: [&Terminal; 2],
+        system: Option<&'a System>,
+    ) -> Result<Option<Self>, NotProved> {
+        let near = Norm::of(&terminal.form, terminal.rate);
+        let norm = Norm::of(&common.form, common.rate);
+        // Gains that move are proved to make the form fall where it is the claim's own.
+        let falls = matches!(description.controller, Controller::Fixed(_)) || common != terminal;
+        let growth = if falls { Growth::with_rate(common.rate) } else { Growth::default() };
+        let mut flown = flown(description, model, set, system)?;
+        flown.reach = norm.reach()?;
+        let mut ready = Self {
+            around: SHARES.map(|share| around(set, share)).to_vec(),
+            growth: vec![growth; SHARES.len()],
+            into_near: norm.factor_into(&near),
+            near,
+            within: Interval::point(terminal.level).sqrt().lower(),
+            slew_rad: flown.config.slew_rad_s.map(|slew| 0.5 * slew * flown.config.dt_s),
+            flown,
+            norm,
+            off_rest: 0.0,
+            rest: [Vec::new(), Vec::new()],
+            rest_command: [0.0; 2],
+        };
+        let at_rest = ready.flown.gains.at_rest();
+        if !ready.is_the_model(model, at_rest) || !ready.find_rest(at_rest, terminal.rate) {
+            return Ok(None);
+        }
+        Ok(Some(ready))
+    }
+
+    /// Flies a box of set-points and loads, beginning with a step at rest.
+    ///
+    /// # Errors
+    /// Why it was given up, and after how many samples.
+    pub(super) fn fly(
+        &mut self,
+        patch: Patch,
+        first: Moment,
+        most: usize,
+    ) -> Result<Landed, (Stop, usize)> {
+        self.flown.gains.forget();
+        let mut flight = begun(&self.flown, patch);
+        let size = |[least, most]: [f64; 2]| least.abs().max(most.abs());
+        let far = FAR * (size(patch.setpoint) + size(patch.load));
+        for sample in 0..most {
+            let moment = if sample == 0 { first } else { Moment::Later };
+            flight = self.after(&flight, moment).map_err(|stop| (stop, sample))?;
+            if !(flight.values[0].magnitude() <= far && flight.ball.is_finite()) {
+                return Err((Stop::Lost, sample));
+            }
+            if sample % LOOKS == LOOKS - 1 && self.is_near(&flight) {
+                return Ok(Landed { samples: sample + 1, limited: flight.limited });
+            }
+        }
+        Err((Stop::Lost, most))
+    }
+
+    /// A set of flights a sample later, what rounding leaves in the ball.
+    fn after(&mut self, flight: &Flight, moment: Moment) -> Result<Flight, Stop> {
+        let Passage { flight: mut next, shares, gains } =
+            self.flown.pass(flight, moment, Judge::Measured)?;
+        let off: Vec<f64> = next.values.iter().map(|value| value.off).collect();
+        let grown = self.grown(shares, gains) * flight.ball;
+        next.ball = raised(grown + self.norm.of_box(&off), 4);
+        next.values.iter_mut().for_each(|value| (value.off, value.of_ball) = (0.0, 0.0));
+        if next.symbols > MOST_SYMBOLS {
+            self.absorb(&mut next);
+        }
+        Ok(next)
+    }
+
+    fn grown(&mut self, shares: [f64; PLACES], gains: Between) -> f64 {
+        let Self { growth, norm, flown, around, .. } = self;
+        let size = flown.layout.size;
+        let inside = |bounds: &[Interval; 3]| {
+            bounds.iter().zip(gains.middle).all(|(bounds, gain)| bounds.contains(gain))
+        };
+        let Some(place) = around.iter().position(inside) else { return f64::INFINITY };
+        let corners = corners(around[place]);
+        growth[place].of(norm, shares, |shares| {
+            let matrix = |gains: &Between| forced(flown, shares, *gains).unwrap_or(unknown(size));
+            corners.iter().map(matrix).collect()
+        })
+    }
+
+    /// Makes the smallest unknowns a ball.
+    fn absorb(&self, flight: &mut Flight) {
+        let own = OWN..flight.symbols;
+        let column = |flight: &Flight, symbol: usize| -> Vec<f64> {
+            flight
+                .values
+                .iter()
+                .map(|value| value.parts.get(symbol).copied().unwrap_or(0.0))
+                .collect()
+        };
+        let mut sizes: Vec<(f64, usize)> =
+            own.map(|symbol| (self.norm.size_of(&column(flight, symbol)), symbol)).collect();
+        sizes.sort_unstable_by(|one, other| other.0.total_cmp(&one.0).then(one.1.cmp(&other.1)));
+        let absorbed = sizes.split_off(sizes.len().min(KEPT_SYMBOLS));
+        let sum = absorbed.iter().map(|(size, _)| size).sum::<f64>() + flight.ball;
+        flight.ball = raised(sum, absorbed.len() + 2);
+        let mut kept: Vec<usize> =
+            (0..OWN).chain(sizes.iter().map(|(_, symbol)| *symbol)).collect();
+        kept.sort_unstable();
+        let gone: Vec<usize> = absorbed.iter().map(|(_, symbol)| *symbol).collect();
+        let part = |value: &Affine, symbol: usize| value.parts.get(symbol).copied().unwrap_or(0.0);
+        let lost = gone.iter().map(|symbol| part(&flight.last, *symbol).abs()).sum::<f64>();
+        flight.last.off = raised(flight.last.off + lost, gone.len() + 2);
+        for value in flight.values.iter_mut().chain([&mut flight.last]) {
+            value.parts = kept.iter().map(|symbol| part(value, *symbol)).collect();
+        }
+        flight.symbols = kept.len();
+    }
+
+    /// True where every flight is within the level, and its last command within a slew limit.
+    fn is_near(&self, flight: &Flight) -> bool {
+        let away = |value: &Affine, by: [f64; 2]| {
+            let terms = [
+                (Interval::point(-by[0]), &flight.setpoint),
+                (Interval::point(-by[1]), &flight.load),
+            ];
+            Affine::sum(terms.into_iter().chain([(Interval::ONE, value)]))
+        };
+        let values: Vec<Affine> = flight
+            .values
+            .iter()
+            .enumerate()
+            .map(|(place, value)| away(value, [self.rest[0][place], self.rest[1][place]]))
+            .collect();
+        // A look at the largest parts first.
+        let middle: Vec<f64> = values.iter().map(|value| value.centre).collect();
+        let mut size = self.near.size_of(&middle) + self.into_near * flight.ball;
+        let off: Vec<f64> = values.iter().map(|value| value.off).collect();
+        size += self.near.of_box(&off);
+        let sizes = [&flight.setpoint, &flight.load].map(Affine::magnitude);
+        size += self.off_rest * raised(sizes[0] + sizes[1], 2);
+        for symbol in 0..flight.symbols {
+            if size > self.within {
+                return false;
+            }
+            let column: Vec<f64> = values
+                .iter()
+                .map(|value| value.parts.get(symbol).copied().unwrap_or(0.0))
+                .collect();
+            size += self.near.size_of(&column);
+        }
+        let slewed = self
+            .slew_rad
+            .is_none_or(|most| away(&flight.last, self.rest_command).magnitude() < most);
+        raised(size, flight.symbols + 8) <= self.within && slewed && self.is_clear(flight)
+    }
+
+    /// True where no command on its way meets a limit when it arrives: the form bounds those that come after it.
+    fn is_clear(&self, flight: &Flight) -> bool {
+        let Flown { layout, arriving, travel, reach, .. } = &self.flown;
+        let limits = [arriving, travel].into_iter().flatten();
+        let on_their_way = layout.plant..layout.plant + layout.queue;
+        let mut each =
+            limits.flat_map(|limits| on_their_way.clone().map(move |place| (place, limits)));
+        each.all(|(place, (least, most))| {
+            let mut command = flight.values[place].clone();
+            command.of_ball = raised(reach[place] * flight.ball, 2);
+            command.range().lower() > *least && command.range().upper() < *most
+        })
+    }
+
+    /// Whether the samples that are flown are those of the model that the form is proved for.
+    fn is_the_model(&self, model: &LoopModel<Interval>, gains: Between) -> bool {
+        let Some(own) = forced(&self.flown, FREE, gains) else { return false };
+        let [kp, ki, kd] = gains.middle.map(Interval::point);
+        let rows = model.closed(Gains { kp, ki, kd });
+        let Ok(matrix) = IntervalMatrix::from_rows(&rows) else { return false };
+        let [own, matrix] = [own.midpoint(), matrix.midpoint()];
+        let apart = own
+            .data()
+            .iter()
+            .zip(matrix.data())
+            .map(|(one, other)| (one - other).abs() / (1.0 + one.abs().max(other.abs())));
+        own.data().len() == matrix.data().len() && apart.fold(0.0, f64::max) <= 1e-9
+    }
+
+    /// Rest by set-point and load, in ordinary arithmetic, and how far the true one may be from it.
+    fn find_rest(&mut self, gains: Between, rate: f64) -> bool {
+        let size = self.flown.layout.size;
+        let Some(matrix) = forced(&self.flown, FREE, gains).map(|matrix| matrix.midpoint()) else {
+            return false;
+        };
+        let Ok(left) = Matrix::identity(size).sum(&matrix.scaled(-1.0)) else { return false };
+        let still = Between { radius: [0.0; 3], ..gains };
+        let Ok(pushed) =
+            self.flown.pass(&self.unit(None), Moment::Later, Judge::Forced(FREE, still))
+        else {
+            return false;
+        };
+        for symbol in [SETPOINT, LOAD] {
+            let by: Vec<[f64; 1]> = pushed
+                .flight
+                .values
+                .iter()
+                .map(|value| [value.parts.get(symbol).copied().unwrap_or(0.0)])
+                .collect();
+            let solved = Matrix::from_rows(&by).and_then(|right| left.solve(&right));
+            let Ok(solved) = solved else { return false };
+            self.rest[symbol] = solved.data().to_vec();
+        }
+        // What a sample still moves there, the gains at rest between their bounds.
+        let Ok(moved) = self.flown.pass(
+            &self.unit(Some(&self.rest)),
+            Moment::Later,
+            Judge::Forced(FREE, gains),
+        ) else {
+            return false;
+        };
+        let at = self.unit(Some(&self.rest));
+        let off: Vec<f64> = moved
+            .flight
+            .values
+            .iter()
+            .zip(&at.values)
+            .map(|(next, now)| next.less(now).magnitude())
+            .collect();
+        self.off_rest = (Interval::point(self.near.of_box(&off))
+            / (Interval::ONE - Interval::point(rate)))
+        .upper();
+        let command = &moved.flight.last;
+        self.rest_command =
+            [SETPOINT, LOAD].map(|symbol| command.parts.get(symbol).copied().unwrap_or(0.0));
+        self.off_rest.is_finite()
+    }
+
+    /// A set-point and a load of 1, at rest or at the trim.
+    fn unit(&self, at: Option<&[Vec<f64>; 2]>) -> Flight {
+        let size = self.flown.layout.size;
+        let mut flight = Flight {
+            values: vec![Affine::default(); size],
+            last: Affine::default(),
+            setpoint: Affine::unknown([-1.0, 1.0], SETPOINT),
+            load: Affine::unknown([-1.0, 1.0], LOAD),
+            ball: 0.0,
+            symbols: OWN,
+            limited: false,
+        };
+        if let Some([by_setpoint, by_load]) = at {
+            for (place, value) in flight.values.iter_mut().enumerate() {
+                value.parts = vec![by_setpoint[place], by_load[place]];
+            }
+        }
+        flight
+    }
+}
+
+/// At rest, when set-point and load have just stepped.
+pub(super) fn begun(flown: &Flown<'_>, patch: Patch) -> Flight {
+    let setpoint = Affine::unknown(patch.setpoint, SETPOINT);
+    let load = Affine::unknown(patch.load, LOAD);
+    let mut values = vec![Affine::default(); flown.layout.size];
+    // Behind the deflection there is its rate where the lag is of second order.
+    let place = flown.layout.plant - if flown.lag_order == 2 { 2 } else { 1 };
+    values[place] = load.clone();
+    let last = Affine::default();
+    Flight { values, last, setpoint, load, ball: 0.0, symbols: OWN, limited: false }
+}
+
+fn unknown(size: usize) -> IntervalMatrix {
+    IntervalMatrix::from_rows(&vec![vec![Interval::ENTIRE; size]; size])
+        .unwrap_or_else(|_| IntervalMatrix::zeros(size, size))
+}
+
+/// The matrix of a sample with these shares and gains.
+fn forced(flown: &Flown<'_>, shares: [f64; PLACES], gains: Between) -> Option<IntervalMatrix> {
+    let size = flown.layout.size;
+    let mut flight = Flight {
+        values: vec![Affine::default(); size],
+        last: Affine::default(),
+        setpoint: Affine::default(),
+        load: Affine::default(),
+        ball: 0.0,
+        symbols: size,
+        limited: false,
+    };
+    for (place, value) in flight.values.iter_mut().enumerate() {
+        value.parts = vec![0.0; size];
+        value.parts[place] = 1.0;
+    }
+    let still = Between { radius: [0.0; 3], ..gains };
+    let moved = flown.pass(&flight, Moment::Later, Judge::Forced(shares, still)).ok()?;
+    let row = |value: &Affine| -> Vec<Interval> {
+        let off = Interval::between(-value.off, value.off);
+        let entry = |place: usize| value.parts.get(place).copied().unwrap_or(0.0);
+        (0..size).map(|place| Interval::point(entry(place)) + off).collect()
+    };
+    let rows: Vec<Vec<Interval>> = moved.flight.values.iter().map(row).collect();
+    IntervalMatrix::from_rows(&rows).ok()
+}
+
+/// A box around the gains at rest with a share of all gains.
+fn around(set: &GainSet, share: f64) -> [Interval; 3] {
+    let bounds = set.bounds();
+    [0, 1, 2].map(|gain: usize| {
+        let (rest, whole) = (set.rest[gain], bounds[gain]);
+        if share >= 1.0 {
+            return whole.hull(rest);
+        }
+        let between = |end: f64, rest: f64| rest + share * (end - rest);
+        rest.hull(Interval::between(
+            between(whole.lower(), rest.lower()),
+            between(whole.upper(), rest.upper()),
+        ))
+    })
+}
+
+/// Corners of a box of gains.
+fn corners(bounds: [Interval; 3]) -> Vec<Between> {
+    let ends = |corner: usize| {
+        [0, 1, 2].map(|gain: usize| match corner >> gain & 1 {
+            0 => bounds[gain].lower(),
+            _ => bounds[gain].upper(),
+        })
+    };
+    let mut found: Vec<Between> = Vec::new();
+    for corner in 0..8 {
+        let between = Between { middle: ends(corner), radius: [0.0; 3] };
+        if !found.contains(&between) {
+            found.push(between);
+        }
+    }
+    found
+}
+
+/// The loop as its samples are flown.
+pub(super) fn flown<'a>(
+    description: &'a LoopDescription,
+    model: &LoopModel<Interval>,
+    set: &GainSet,
+    system: Option<&'a System>,
+) -> Result<Flown<'a>, NotProved> {
+    let settings = model.settings();
+    let config = settings.config;
+    let uses_rate = config.rate_gain_s != 0.0;
+    let plant = model.plant();
+    let remembered = |sensing: &fspid_sim::loop_model::Sensing| {
+        sensing.samples + usize::from(sensing.part > 0.0)
+    };
+    let queue = settings.delay_samples;
+    let pitch = remembered(&settings.pitch);
+    let rate = if uses_rate { remembered(&settings.rate) } else { 0 };
+    let mut size = plant.states + queue + pitch + rate;
+    let mut place = |there: bool| {
+        there.then(|| {
+            size += 1;
+            size - 1
+        })
+    };
+    let memory = settings.memory;
+    let [integral, derivative, previous] =
+        [memory.integral, memory.derivative, memory.previous].map(&mut place);
+    let layout =
+        Layout { plant: plant.states, queue, pitch, rate, integral, derivative, previous, size };
+    let sparse = |row: &[Interval]| -> Row {
+        let entries = row.iter().copied().enumerate();
+        entries.filter(|(_, entry)| entry.magnitude() > 0.0).collect()
+    };
+    let [seen_pitch, seen_rate] = model.seen_rows();
+    let actuator = &description.actuator;
+    let lag_order = actuator.lag().order();
+    let arriving = match (actuator.command_limits_rad(), actuator.travel_rad()) {
+        (Some((a, b)), Some((c, d))) if lag_order == 0 => Some((a.max(c), b.min(d))),
+        (None, travel) if lag_order == 0 => travel,
+        (limits, _) => limits,
+    };
+    let fspid = match &description.controller {
+        Controller::Fixed(_) => None,
+        Controller::SelfTuning(fspid) => Some(fspid),
+    };
+    Ok(Flown {
+        plant: plant.rows.chunks(plant.states + 1).map(<[Interval]>::to_vec).collect(),
+        seen: [sparse(&seen_pitch), sparse(&seen_rate)],
+        rate: sparse(&plant.rate),
+        config,
+        gains: SeenGains::of(set, fspid, system),
+        curve: Curve::of(description)?,
+        arriving,
+        travel: actuator.travel_rad(),
+        lag_order,
+        reach: vec![0.0; size],
+        layout,
+    })
+}

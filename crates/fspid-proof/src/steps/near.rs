@@ -1,0 +1,73 @@
+//! The gains that a loop can have near rest.
+
+use fspid_core::Fspid;
+use fspid_fuzzy::system::System;
+use fspid_lti::Matrix;
+use fspid_numeric::scalar::Interval;
+use fspid_sim::Controller;
+use fspid_sim::loop_model::LoopModel;
+
+use crate::check::{NotProved, reach};
+use crate::description::LoopDescription;
+use crate::gain_set::{GainSet, GainsOver, HeldGains};
+use crate::recheck::input_rows;
+
+/// The rules of a self-tuner, made ready to be enclosed.
+pub(super) fn system(description: &LoopDescription) -> Option<System> {
+    let Controller::SelfTuning(fspid) = &description.controller else { return None };
+    System::new(fspid_fuzzy::system::Parts::from(fspid.tuner().supervisor())).ok()
+}
+
+/// Corners of all gains that the controller can have in the ellipsoid $z^T P z \le$ `level` around rest.
+///
+/// `held` is the set of all gains, with what they make of the command that is held.
+pub(crate) fn corners_within(
+    description: &LoopDescription,
+    model: &LoopModel<Interval>,
+    held: &GainSet,
+    (form, level): (&Matrix, f64),
+) -> Result<Vec<HeldGains>, NotProved> {
+    let Controller::SelfTuning(fspid) = &description.controller else {
+        return Ok(held.held_corners().map(|(_, corner)| corner).collect());
+    };
+    let [error, change] = input_rows(model, fspid);
+    let within = [reach(form, level, &error)?, reach(form, level, &change)?];
+    let inputs = within.map(|most| Interval::between(-most, most));
+    let holds_nothing = held.cells.iter().all(|cell| cell.change_gain <= 0.0);
+    if holds_nothing && let Some(gains) = over(description, fspid, inputs) {
+        return Ok(boxed(gains));
+    }
+    let meets = |side: [f64; 2], most: f64| side[0] <= most && side[1] >= -most;
+    let cells: Vec<usize> = (0..held.cells.len())
+        .filter(|&cell| {
+            let cell = &held.cells[cell];
+            meets(cell.error, within[0]) && meets(cell.change, within[1])
+        })
+        .collect();
+    let near = held.of_cells(&cells);
+    let corners: Vec<HeldGains> = near.held_corners().map(|(_, corner)| corner).collect();
+    Ok(corners)
+}
+
+/// The gains over a box of inputs.
+fn over(
+    description: &LoopDescription,
+    fspid: &Fspid<f64>,
+    inputs: [Interval; 2],
+) -> Option<[Interval; 3]> {
+    let system = system(description);
+    GainsOver::of(fspid.tuner(), system.as_ref())?.over(inputs)
+}
+
+/// Corners of a box of gains.
+fn boxed(gains: [Interval; 3]) -> Vec<HeldGains> {
+    let end = |corner: usize, gain: usize| match corner >> gain & 1 {
+        0 => gains[gain].lower(),
+        _ => gains[gain].upper(),
+    };
+    let corner = |corner: usize| {
+        let [kp, ki, kd] = [0, 1, 2].map(|gain| end(corner, gain));
+        HeldGains { gains: fspid_core::Gains { kp, ki, kd }, change_gain: 0.0, remembered: None }
+    };
+    (0..8).map(corner).collect()
+}

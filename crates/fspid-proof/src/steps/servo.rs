@@ -1,0 +1,189 @@
+//! A servo of first order with a rate limit over one sample, as the simulator passes through it.
+//!
+//! With a command v that is held over a sample of T and a gap $g = v - \delta$ at its beginning the deflection runs at R
+//! towards v for
+//!
+//! $$ t_1 = \min\left(T, \max\left(0, \frac{|g|}{R} - \tau\right)\right) $$
+//!
+//! and follows its lag for the rest. To what states do beside a deflection that stands still, this adds a vector D(g). The
+//! law changes at $t_1$ without a jump of rate, so that moving $t_1$ adds nothing of first order and only the command that
+//! the lag follows counts:
+//!
+//! $$ D'(g) = S(T - t_1), \qquad S(t) = \int_0^t e^{A s} b \ ds $$
+//!
+//! D is odd, linear up to $R \tau$, constant beyond $R (\tau + T)$, and between them enclosed over pieces of $t_1$.
+
+use fspid_numeric::scalar::Interval;
+
+use super::cut::{Line, beside_line, is_same};
+use crate::check::{ActuatorLag, IntervalMatrix, NotProved, Passed, PrintedPlant, printed};
+use crate::description::LoopDescription;
+
+/// Pieces of the time at the rate limit.
+const PIECES: u32 = 8;
+/// Times are taken so much wider, so that a float may stand for the gap at which a piece begins.
+const WIDER: f64 = 1e-12;
+
+/// What a gap adds to plant and deflection within a sample.
+#[derive(Clone, Debug)]
+pub(super) struct Curve {
+    /// Gaps at which a piece begins, with D there; the last is that from which D stands still.
+    knots: Vec<(f64, Vec<Interval>)>,
+    /// Slopes from each knot to the next.
+    slopes: Vec<Vec<Interval>>,
+    /// Slope up to the first knot.
+    linear: Vec<Interval>,
+}
+
+impl Curve {
+    /// The curve of a loop with a rate limit and a lag of first order; none without a rate limit.
+    pub(super) fn of(description: &LoopDescription) -> Result<Option<Self>, NotProved> {
+        let actuator = &description.actuator;
+        let (Some(limit), Some(time_s)) =
+            (actuator.rate_limit_rad_s(), actuator.lag().time_constant_s())
+        else {
+            return Ok(None);
+        };
+        let plant = PrintedPlant {
+            numerator: &description.numerator,
+            denominator: &description.denominator,
+            elevator_sign: description.elevator_sign,
+            lag: ActuatorLag::from(actuator.lag()),
+            dt_s: description.controller.config().dt_s,
+        };
+        let (limit, lag_s, dt_s) = (Interval::point(limit), printed(time_s), printed(plant.dt_s));
+        let at = |piece: u32| {
+            dt_s * Interval::point(f64::from(piece)) / Interval::point(f64::from(PIECES))
+        };
+        let wider = Interval::between(1.0 - WIDER, 1.0 + WIDER);
+        let mut knots = Vec::new();
+        let mut slopes = Vec::new();
+        for piece in 0..=PIECES {
+            let (ran, left) = (at(piece), at(PIECES - piece));
+            let gap = limit * (lag_s + ran);
+            // The curve is Lipschitz, so that a knot may be called by a float near it.
+            let slope = plant.over(left)?.by_command;
+            let value = landed(&plant, [ran, left], limit, limit * lag_s)?;
+            let beside = (gap - Interval::point(gap.midpoint())).hull(Interval::ZERO);
+            let value = value.iter().zip(&slope).map(|(value, slope)| *value + *slope * beside);
+            knots.push((gap.midpoint(), value.collect()));
+            if piece > 0 {
+                let left = at(PIECES - piece).hull(at(PIECES - piece + 1)) * wider;
+                slopes.push(plant.over(left)?.by_command);
+            }
+        }
+        let linear = plant.over(dt_s * wider)?.by_command;
+        Ok(Some(Self { knots, slopes, linear }))
+    }
+
+    /// How many numbers D has.
+    pub(super) fn size(&self) -> usize {
+        self.linear.len()
+    }
+
+    /// True where the curve is linear, or stands still, over a range.
+    pub(super) fn is_linear(&self, gap: Interval) -> bool {
+        let first = self.knots.first().map_or(0.0, |(at, _)| *at);
+        gap.magnitude() <= first * (1.0 - 1e-9)
+    }
+
+    /// Lines for each number of D over a range of gaps, with the share of the linear slope that they have.
+    pub(super) fn lines(&self, gap: Interval) -> (Vec<Line>, f64) {
+        if let Some(constant) = self.constant(gap) {
+            return (constant.iter().map(|value| Line::between(*value)).collect(), 0.0);
+        }
+        if !gap.is_bounded() {
+            return (vec![Line::between(Interval::ENTIRE); self.size()], 0.0);
+        }
+        let [a, b] = [gap.lower(), gap.upper()];
+        let ends = [self.value(a), self.value(b)];
+        let pieces = self.pieces(a, b);
+        let lines = (0..self.size()).map(|place| {
+            let [from, to] = [&ends[0], &ends[1]].map(|end| end[place].midpoint());
+            let slope = if is_same(a, b) { 0.0 } else { (to - from) / (b - a) };
+            let offs = pieces.iter().map(|(ends, value, slopes)| {
+                beside_line(*ends, value[place], slopes[place], slope)
+            });
+            let whole = offs.reduce(Interval::hull).unwrap_or(Interval::ENTIRE);
+            Line { slope, ..Line::between(whole) }
+        });
+        let lines: Vec<Line> = lines.collect();
+        let last = self.size() - 1;
+        let share = (lines[last].slope / self.linear[last].midpoint()).clamp(0.0, 1.0);
+        (lines, share)
+    }
+
+    /// The linear slopes.
+    pub(super) fn linear(&self) -> &[Interval] {
+        &self.linear
+    }
+
+    /// D where it stands still.
+    fn constant(&self, gap: Interval) -> Option<Vec<Interval>> {
+        let (at, value) = self.knots.last()?;
+        let beyond = at * (1.0 + 1e-9);
+        if gap.lower() >= beyond {
+            return Some(value.clone());
+        }
+        (gap.upper() <= -beyond).then(|| value.iter().map(|value| -*value).collect())
+    }
+
+    /// D at a gap.
+    fn value(&self, gap: f64) -> Vec<Interval> {
+        let size = gap.abs();
+        let sign = Interval::point(if gap < 0.0 { -1.0 } else { 1.0 });
+        let before = self.knots.iter().rposition(|(at, _)| *at <= size);
+        let value: Vec<Interval> = match before {
+            None => self.linear.iter().map(|slope| *slope * Interval::point(size)).collect(),
+            Some(place) => {
+                let (at, value) = &self.knots[place];
+                let along = Interval::point(size) - Interval::point(*at);
+                let slopes = self.slopes.get(place);
+                let slope = |number: usize| slopes.map_or(Interval::ZERO, |all| all[number]);
+                value
+                    .iter()
+                    .enumerate()
+                    .map(|(number, value)| *value + slope(number) * along)
+                    .collect()
+            }
+        };
+        value.into_iter().map(|value| sign * value).collect()
+    }
+
+    /// Pieces of a range in which the slopes of D are known, each with D at its beginning and its slopes.
+    fn pieces(&self, a: f64, b: f64) -> Vec<([f64; 2], Vec<Interval>, Vec<Interval>)> {
+        let places = self.knots.iter().flat_map(|(at, _)| [-*at, *at]);
+        let mut ends: Vec<f64> = places.filter(|at| *at > a && *at < b).collect();
+        ends.extend([a, b]);
+        ends.sort_unstable_by(f64::total_cmp);
+        let piece = |pair: &[f64]| {
+            let middle = (0.5 * (pair[0] + pair[1])).abs();
+            let before = self.knots.iter().rposition(|(at, _)| *at <= middle);
+            let slopes = match before {
+                None => self.linear.clone(),
+                Some(place) => match self.slopes.get(place) {
+                    Some(slopes) => slopes.clone(),
+                    None => vec![Interval::ZERO; self.size()],
+                },
+            };
+            ([pair[0], pair[1]], self.value(pair[0]), slopes)
+        };
+        ends.windows(2).map(piece).collect()
+    }
+}
+
+/// D where the limit holds for a time and the lag follows for another.
+fn landed(
+    plant: &PrintedPlant<'_>,
+    [ran, left]: [Interval; 2],
+    limit: Interval,
+    gap_left: Interval,
+) -> Result<Vec<Interval>, NotProved> {
+    let states = plant.over(ran)?.ramp;
+    let states: Vec<[Interval; 1]> = states.into_iter().map(|value| [value * limit]).collect();
+    let deflection = states.last().map_or(Interval::ZERO, |[value]| *value);
+    let Passed { follow, by_command, .. } = plant.over(left)?;
+    let moved = follow.product(&IntervalMatrix::from_rows(&states)?)?;
+    let command = deflection + gap_left;
+    Ok(moved.entries().zip(by_command).map(|(value, by)| value + by * command).collect())
+}

@@ -1,0 +1,94 @@
+//! Sets of flights hold what the simulator flies.
+
+use core::ops::ControlFlow;
+
+use fspid_sim::signal::{Disturbance, Entry, Profile, Shape};
+use fspid_sim::{Scenario, Timing, fly};
+
+use super::*;
+use crate::gain_set::IncrementMap;
+use crate::rest::drawn;
+use crate::steps::sample::Judge;
+
+/// Samples of a flight, and what rounding of the simulator's own may be off, rad.
+const SAMPLES: usize = 160;
+const ROUNDING: f64 = 1e-9;
+
+/// The pitch angle of a flight, sample by sample.
+fn flown(scenario: &Scenario, [setpoint_rad, load_rad]: [f64; 2], at: usize) -> Vec<f64> {
+    let dt_s = scenario.timing.dt_s();
+    let at_s = at as f64 * dt_s;
+    let mut scenario = scenario.clone();
+    scenario.timing = Timing::new(dt_s, (SAMPLES + at) as f64 * dt_s).expect("allowed");
+    scenario.setpoint = Profile::new(setpoint_rad, Shape::Step { at_s }).expect("allowed");
+    let load = Disturbance::new(Entry::Elevator, load_rad, Shape::Step { at_s });
+    scenario.disturbances = vec![load.expect("allowed")];
+    let prepared = scenario.prepare().expect("prepared");
+    let mut theta = Vec::new();
+    fly(&prepared, &scenario.controllers[0].controller, |instant| {
+        theta.push(instant.theta_rad);
+        ControlFlow::Continue(())
+    })
+    .expect("flies");
+    theta.split_off(at)
+}
+
+/// Drawn loops with every limit there is, each flown as a set and at three points of it.
+#[test]
+fn a_set_of_flights_holds_every_flight_of_the_simulator() {
+    let (mut compared, mut limited) = (0, 0);
+    for seed in 0..100 {
+        let dice = &mut drawn::Dice::new(seed);
+        let mut scenario = match seed % 2 {
+            0 => drawn::scenario(dice),
+            _ => drawn::with_limits(dice),
+        };
+        // Bias and resolution are no part of a claim about steps.
+        scenario.surroundings.pitch_sensor = None;
+        let plant = scenario.plant.linear().expect("linear");
+        let controller = &scenario.controllers[0].controller;
+        let Ok(description) = LoopDescription::of(&scenario, plant, controller) else { continue };
+        if not_covered(&description).is_some() || description.limits().is_empty() {
+            continue;
+        }
+        let Ok(model) = description.enclosed() else { continue };
+        let set = match controller {
+            Controller::Fixed(pid) => GainSet::fixed(pid.gains()),
+            Controller::SelfTuning(fspid) => {
+                IncrementMap::of(fspid.tuner(), 12).expect("bounded").gains(1.0)
+            }
+        };
+        let rules = system(&description);
+        let loop_ = flights::flown(&description, &model, &set, rules.as_ref()).expect("enclosed");
+        let most = 0.02 + 0.1 * (seed % 7) as f64;
+        let patch = Patch { setpoint: [most, most * 1.001], load: [-0.01, -0.0099] };
+        for (first, at) in [(Moment::First, 0), (Moment::Stepped, 3)] {
+            let flights: Vec<Vec<f64>> = [0.0, 0.4, 1.0]
+                .map(|share: f64| {
+                    let between = |[a, b]: [f64; 2]| a + share * (b - a);
+                    flown(&scenario, [between(patch.setpoint), between(patch.load)], at)
+                })
+                .to_vec();
+            let mut set = flights::begun(&loop_, patch);
+            for sample in 0..SAMPLES {
+                let range = set.values[0].range();
+                for flight in &flights {
+                    let theta = flight[sample];
+                    let inside =
+                        theta >= range.lower() - ROUNDING && theta <= range.upper() + ROUNDING;
+                    assert!(inside, "{seed} {first:?}, sample {sample}: {theta:e} {range:?}");
+                }
+                let moment = if sample == 0 { first } else { Moment::Later };
+                let Ok(passage) = loop_.pass(&set, moment, Judge::Measured) else { break };
+                set = passage.flight;
+                // Sets so wide say nothing any more.
+                if set.symbols > 400 || range.width() > 1.0 {
+                    break;
+                }
+                compared += 1;
+            }
+            limited += usize::from(set.limited);
+        }
+    }
+    assert!(compared > 1000 && limited > 15, "{compared} samples, {limited} sets at limits");
+}

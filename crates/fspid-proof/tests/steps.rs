@@ -1,0 +1,71 @@
+//! Steps from rest that are proved with the limits acting on the way.
+
+use fspid_core::{AntiWindup, ControllerSetting, Derivative, Gains, Limits, Pid, PidConfig};
+use fspid_proof::{
+    Asked, Certificate, Effort, LoopDescription, Range, Steps, Terminal, Verdict, certify,
+};
+use fspid_sim::actuator::Actuator;
+use fspid_sim::loop_model::Sensing;
+use fspid_sim::{Controller, ElevatorSign};
+
+const DEG: f64 = core::f64::consts::PI / 180.0;
+
+/// The Navion with a PID behind a servo of 20 deg and `rate_deg_s`, up to a step.
+fn proved(rate_deg_s: f64, step_deg: f64) -> (Certificate, Option<fspid_proof::Stepped>) {
+    let limits = Limits::new(ControllerSetting::OutputLimits, -20.0 * DEG, 20.0 * DEG);
+    let config = PidConfig {
+        derivative: Derivative { filter_s: 0.05 },
+        limits: Some(limits.expect("allowed")),
+        anti_windup: AntiWindup::BackCalculation { tracking_s: 1.25 },
+        ..PidConfig::sampled_every(0.02)
+    };
+    let gains = Gains { kp: 0.82, ki: 0.43, kd: 0.165 };
+    let servo = Actuator::first_order(0.1)
+        .and_then(|servo| servo.with_position_limit(20.0 * DEG))
+        .and_then(|servo| servo.with_rate_limit(rate_deg_s * DEG))
+        .and_then(|servo| servo.with_delay(1));
+    let description = LoopDescription {
+        numerator: vec![-11.01, -22.6, -1.31],
+        denominator: vec![1.0, 5.1, 13.3, 0.684, 0.632],
+        elevator_sign: ElevatorSign::NoseDownPositive,
+        actuator: servo.expect("allowed"),
+        pitch: Sensing::DIRECT,
+        rate: Sensing::DIRECT,
+        controller: Controller::Fixed(Pid::new(gains, config).expect("allowed")),
+    };
+    let asked = Asked::within(Range { setpoint_rad: step_deg * DEG, load_rad: 0.5 * DEG });
+    let outcome = certify(&description, &asked, &Effort::default()).expect("an answer");
+    let Verdict::Proved(certificate, rechecked) = outcome.verdict else { panic!("not proved") };
+    (certificate, rechecked.stepped)
+}
+
+#[test]
+fn a_step_of_five_degrees_through_a_slow_servo_is_proved_with_its_limits() {
+    let (certificate, stepped) = proved(10.0, 5.0);
+    let stepped = stepped.expect("steps are proved");
+    assert!((stepped.setpoint_rad - 5.0 * DEG).abs() < 1e-12 && stepped.limited, "{stepped:?}");
+    assert_eq!(certificate.check().expect("holds").stepped, Some(stepped));
+}
+
+#[test]
+fn steps_are_not_believed_beyond_their_boxes_their_range_or_their_form() {
+    let (certificate, _) = proved(20.0, 2.0);
+    let steps = certificate.steps.clone().expect("steps are proved");
+    let refused = |steps: Steps| {
+        let changed = Certificate { steps: Some(steps), ..certificate.clone() };
+        changed.check().expect_err("refused").to_string()
+    };
+    let wider = Steps { setpoint_rad: 1.5 * steps.setpoint_rad, ..steps.clone() };
+    assert!(refused(wider).contains("range"));
+    let mut ends = steps.ends.clone();
+    ends.pop();
+    assert!(refused(Steps { ends, ..steps.clone() }).contains("fill") || steps.ends.len() == 2);
+    let heavier = Steps { load_rad: 2.0 * steps.load_rad, ..steps.clone() };
+    assert!(refused(heavier).contains("range"));
+    let level = 4.0 * steps.terminal.level;
+    let larger = Steps { terminal: Terminal { level, ..steps.terminal.clone() }, ..steps.clone() };
+    refused(larger);
+    let rate = 0.5 * steps.terminal.rate;
+    let faster = Steps { terminal: Terminal { rate, ..steps.terminal.clone() }, ..steps };
+    refused(faster);
+}
