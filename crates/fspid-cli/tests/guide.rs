@@ -10,10 +10,11 @@ const PROGRAM: &str = "cargo run --release -- ";
 /// What else is run: building what the next command flies.
 const COMPILER: &str = "cc -shared ";
 /// Commands that are not run here, each with the reason.
-const NOT_RUN: [(&str, &str); 8] = [
+const NOT_RUN: [(&str, &str); 9] = [
     ("serve", "goes on until Ctrl-C; tests of its own run it"),
     ("reproduce", "the end-to-end check runs it"),
     ("contest", "takes most of an hour"),
+    ("adaptation", "takes minutes; tests of its own fly fewer"),
     ("bench", "measures"),
     ("campaign run", "ten thousand flights; the end-to-end check runs five hundred"),
     ("campaign re", "of those flights"),

@@ -2,9 +2,10 @@
 
 use fspid_numeric::Real;
 
-use crate::equations::{PidEquations, TunerEquations};
+use crate::equations::{Memory, PidEquations, TunerEquations};
 use crate::error::ConfigError;
 use crate::gains::Gains;
+use crate::guard::Faults;
 use crate::pid_config::{Moment, PidConfig, SetpointWeights};
 use crate::sample::Sample;
 use crate::second_input::ModelState;
@@ -133,13 +134,48 @@ impl<R: Real> Fspid<R> {
     /// Answers one sample; call it once every period.
     #[inline]
     pub fn step(&self, state: &mut State<R>, sample: Sample<R>) -> Step<R> {
+        self.step_by(state, sample, |memory, sample| {
+            self.tuner.gains(&self.tuner_equations, memory, sample)
+        })
+    }
+
+    /// What the supervisor has before it at a sample: the error, rad, and what stands beside it, before any factor.
+    /// `None` for a sample that a step would hold.
+    pub fn inputs(&self, state: &State<R>, sample: Sample<R>) -> Option<[R; 2]> {
+        let sample = self.config.admitted(sample, self.uses_rate()).ok()?;
+        let memory = state.memory_for(&self.equations, &sample, &self.tuner.nominal());
+        Some(self.tuner_equations.inputs(&memory, &sample))
+    }
+
+    /// As [`step`](Self::step), with other [inputs](Self::inputs) before the supervisor than the sample has. For
+    /// experiments: where the inputs are the sample's own, it is that step bit for bit.
+    pub fn step_seeing(&self, state: &mut State<R>, sample: Sample<R>, inputs: [R; 2]) -> Step<R> {
+        self.step_by(state, sample, |memory, _| {
+            self.tuner.gains_where(&self.tuner_equations, memory, inputs)
+        })
+    }
+
+    /// As [`step`](Self::step), with these gains in place of the supervisor's: what follows them, the reference model
+    /// and the limits of the command are those of a step. For experiments.
+    pub fn step_at(&self, state: &mut State<R>, sample: Sample<R>, gains: Gains<R>) -> Step<R> {
+        self.step_by(state, sample, |_, _| Ok((gains, Faults::NONE)))
+    }
+
+    /// One sample with the gains that somebody has for it.
+    #[inline(always)]
+    fn step_by(
+        &self,
+        state: &mut State<R>,
+        sample: Sample<R>,
+        gains: impl FnOnce(&Memory<R>, &Sample<R>) -> Result<(Gains<R>, Faults), Faults>,
+    ) -> Step<R> {
         let (equations, nominal) = (&self.equations, self.tuner.nominal());
         let sample = match self.config.admitted(sample, self.uses_rate()) {
             Ok(sample) => sample,
             Err(fault) => return self.config.hold(state, fault, nominal),
         };
         let memory = state.memory_for(equations, &sample, &nominal);
-        match self.tuner.gains(&self.tuner_equations, &memory, &sample) {
+        match gains(&memory, &sample) {
             Ok((gains, fault)) => {
                 state.latch(fault);
                 let model = self.tuner_equations.next_model(&memory, &sample);

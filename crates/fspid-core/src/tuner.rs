@@ -324,8 +324,20 @@ impl<R: Real> SelfTuner<R> {
         memory: &Memory<R>,
         sample: &Sample<R>,
     ) -> Result<(Gains<R>, Faults), Faults> {
-        let error_rad = sample.setpoint_rad - sample.measurement_rad;
-        let second_rad = equations.second_rad(memory, sample);
+        self.gains_where(equations, memory, equations.inputs(memory, sample))
+    }
+
+    /// The same where the loop has this error and this beside it.
+    ///
+    /// # Errors
+    /// As [`gains`](Self::gains).
+    #[inline(always)]
+    pub(crate) fn gains_where(
+        &self,
+        equations: &TunerEquations<R>,
+        memory: &Memory<R>,
+        [error_rad, second_rad]: [R; 2],
+    ) -> Result<(Gains<R>, Faults), Faults> {
         let before = Gains { kp: memory.kp, ki: memory.ki, kd: memory.kd };
         let (scaled, fault) = match self.increments(equations, error_rad, second_rad) {
             Err(Faults::OUT_OF_RANGE) => return Ok((before, Faults::OUT_OF_RANGE)),

@@ -80,9 +80,9 @@ macro_rules! counts {
 
 counts! {
     THREADS: "the number of threads",
-        ["campaign run --threads", "campaign shard --threads", "campaign search --threads", "campaign rare --threads", "tune --threads", "contest --threads", "bench --threads"],
+        ["campaign run --threads", "campaign shard --threads", "campaign search --threads", "campaign rare --threads", "tune --threads", "contest --threads", "adaptation --threads", "bench --threads"],
         0 to 1024, "more than any machine has stall it; 0 is as many as it has";
-    RUNS: "the number of runs", ["campaign run --runs", "campaign plan --runs"],
+    RUNS: "the number of runs", ["campaign run --runs", "campaign plan --runs", "adaptation --runs"],
         1 to 1_000_000_000, "an assumption: hours to weeks of flights";
     SHARD_RUNS: "the number of runs in a shard", ["campaign run --shard-runs", "campaign plan --shard-runs"],
         1 to 65_536, "a shard is in memory until it is written, some 100 MB";
@@ -94,11 +94,11 @@ counts! {
         1 to 10_000_000, "an assumption: hours of flights";
     RARE_FLIGHTS: "the number of flights", ["campaign rare --flights"],
         1000 to 100_000_000, "of fewer no interval can be made; the most are hours of flights, whose scores are some gigabytes";
-    BUDGET: "the budget", ["tune --budget", "contest --budget"],
+    BUDGET: "the budget", ["tune --budget", "contest --budget", "adaptation --budget"],
         1 to 10_000_000, "each candidate is kept with its costs, some 300 bytes";
     POPULATION: "the population", ["tune --population"],
         2 to 1_000_000, "a generation is flown and held in memory together";
-    SEEDS: "the number of seeds", ["contest --seeds", "reproduce --seeds"],
+    SEEDS: "the number of seeds", ["contest --seeds", "adaptation --seeds", "reproduce --seeds"],
         1 to 1000, "each is a search of its own, and all are listed";
     EPOCHS: "the number of epochs", ["learn --epochs"],
         1 to 1_000_000, "an assumption; each is kept and told";

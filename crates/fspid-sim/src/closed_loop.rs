@@ -142,10 +142,10 @@ pub(crate) fn watch(
 }
 
 /// An answer, and what it asks for beside the command.
-type Answered = (Step<f64>, Asked);
+pub(crate) type Answered = (Step<f64>, Asked);
 
 #[inline]
-fn watch_answers(
+pub(crate) fn watch_answers(
     prepared: &Prepared,
     mut answer: impl FnMut(&Seen, Option<&AircraftSample>) -> Result<Answered, ControllerLoss>,
     perturbation: &Perturbation,

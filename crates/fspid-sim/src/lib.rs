@@ -42,6 +42,7 @@ mod math;
 mod plant;
 mod propagation;
 mod propagator;
+pub mod replay;
 mod rest;
 mod scenario;
 pub mod sensor;

@@ -8,6 +8,7 @@ mod empirical;
 mod in_flight;
 mod moving_air;
 mod reference;
+mod replay;
 mod set_centres;
 mod squadron;
 #[path = "../../fspid-aircraft/tests/support/mod.rs"]

@@ -12,6 +12,7 @@
     allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")
 )]
 
+pub mod adaptation;
 pub mod anfis;
 pub mod baseline;
 mod bits;

@@ -109,7 +109,7 @@ fn value(judgement: &Judgement) -> Option<f64> {
 }
 
 /// How far a requirement is broken, as a share of its limit.
-fn violation(judgement: &Judgement) -> f64 {
+pub(crate) fn violation(judgement: &Judgement) -> f64 {
     if judgement.met {
         return 0.0;
     }

@@ -1,5 +1,6 @@
 //! All integration tests in one binary: linking one takes less than linking many.
 
+mod adaptation;
 mod anfis;
 mod contest;
 mod crew;

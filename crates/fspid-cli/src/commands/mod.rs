@@ -1,5 +1,6 @@
 //! The commands, one file each.
 
+pub(crate) mod adaptation;
 pub(crate) mod aircraft;
 pub(crate) mod analyse;
 pub(crate) mod audit;

@@ -196,6 +196,12 @@ impl<S: Scalar> TunerEquations<S> {
         }
     }
 
+    /// The error, rad, and what is seen beside it.
+    #[inline(always)]
+    pub fn inputs(&self, memory: &Memory<S>, sample: &Sample<S>) -> [S; 2] {
+        [sample.setpoint_rad - sample.measurement_rad, self.second_rad(memory, sample)]
+    }
+
     /// Both as the supervisor sees them, with its sign and in its units.
     #[inline(always)]
     pub fn seen(&self, error_rad: S, second_rad: S) -> [S; 2] {

@@ -1,0 +1,431 @@
+//! What the flights tell: shares of the win, how gains move, and what they follow.
+
+use fspid_core::Gains;
+
+use super::best::Best;
+use super::flown::{First, Values};
+use super::means::{Draws, Estimate, Means, Quantity, Weights, line};
+use super::treatment::Treatment;
+use super::{Adaptation, Plants};
+
+/// What flew in the place of the self-tuner, beside the self-tuner as it is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// What.
+    pub treatment: Treatment,
+    /// Mean ratio of the IAE to that of the flights as they are (geometric).
+    pub iae: Option<Estimate>,
+    /// The same of the travel of the elevator.
+    pub travel: Option<Estimate>,
+    /// Flights that were lost.
+    pub lost: usize,
+    /// Flights, shuffles counted each.
+    pub flights: usize,
+    /// Flights that break a requirement; none where they were not asked.
+    pub broken: Option<usize>,
+}
+
+/// A part of the win.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Step {
+    /// What comes in with it.
+    pub treatment: Treatment,
+    /// Ratio of the IAE with it to that without it.
+    pub iae: Option<Estimate>,
+    /// The same of the travel.
+    pub travel: Option<Estimate>,
+    /// Share of the whole win, in logarithms; none where there is no win.
+    pub share: Option<Estimate>,
+}
+
+/// How one gain moves, as shares of its variance over flights and time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moved {
+    /// Its name.
+    pub gain: &'static str,
+    /// Nominal value, none where it differs from flight to flight.
+    pub nominal: f64,
+    /// Mean over all flights.
+    pub mean: f64,
+    /// Standard deviation over flights and time.
+    pub deviation: f64,
+    /// Variance of the means of plants, as a share.
+    pub between_plants: Option<Estimate>,
+    /// Variance of the means of flights of one plant.
+    pub between_flights: Option<Estimate>,
+    /// Variance within flights.
+    pub within_flights: Option<Estimate>,
+}
+
+/// How a gain depends on something, in logarithms.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Followed {
+    /// Correlation.
+    pub correlation: Estimate,
+    /// Per cent of the gain for a per cent of it.
+    pub slope: Estimate,
+}
+
+/// What the mean gains of plants follow; none where a number is not positive, or nothing differs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Following {
+    /// Name of the gain.
+    pub gain: &'static str,
+    /// The effectiveness of the elevator.
+    pub effectiveness: Option<Followed>,
+    /// The best gain by the same.
+    pub best_by_effectiveness: Option<Followed>,
+    /// The airspeed.
+    pub airspeed: Option<Followed>,
+    /// The gain that is best for the plant; a slope of 1 is whole adaptation.
+    pub best: Option<Followed>,
+    /// Among flights of the same plant, the size of the command: per cent of the gain for a degree.
+    pub amplitude: Option<Followed>,
+}
+
+/// A plant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlantRow {
+    /// Its first case.
+    pub name: String,
+    /// Its flights.
+    pub flights: usize,
+    /// Change of pitch acceleration with the elevator, 1/s².
+    pub effectiveness_1_s2: Option<f64>,
+    /// True airspeed, m/s.
+    pub airspeed_m_s: Option<f64>,
+    /// Mean gains of its flights.
+    pub mean: Gains<f64>,
+    /// The gains that are best for it.
+    pub best: Option<Gains<f64>>,
+}
+
+/// What was found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Answer {
+    /// Name of the scenario.
+    pub scenario: String,
+    /// Its file.
+    pub file: String,
+    /// Changes from outside.
+    pub overrides: Vec<String>,
+    /// Its digest.
+    pub digest: String,
+    /// The self-tuner.
+    pub controller: String,
+    /// The controller that it is compared with.
+    pub against: Option<String>,
+    /// Shuffles, the first seed, candidates for each plant.
+    pub effort: (u64, u64, usize),
+    /// Draws of the dispersions that were asked for.
+    pub runs: Option<u64>,
+    /// Flights.
+    pub flights: usize,
+    /// Those that nobody lost of whom the win is made.
+    pub kept: usize,
+    /// Plants.
+    pub plants: Vec<PlantRow>,
+    /// Ratio of the IAE as it is to that of the one compared with.
+    pub win: Option<Estimate>,
+    /// The same of the travel.
+    pub win_travel: Option<Estimate>,
+    /// What the win is made of.
+    pub steps: Vec<Step>,
+    /// Everything that flew.
+    pub rows: Vec<Row>,
+    /// How kp, ki and kd move.
+    pub moved: [Moved; 3],
+    /// What they follow.
+    pub following: [Following; 3],
+}
+
+const GAINS: [&str; 3] = ["kp", "ki", "kd"];
+
+fn parts(gains: Gains<f64>) -> [f64; 3] {
+    [gains.kp, gains.ki, gains.kd]
+}
+
+pub(super) fn answer(
+    asked: &Adaptation,
+    named: Vec<String>,
+    firsts: &[First],
+    plants: &Plants,
+    values: &[Values],
+    best: &[Option<Best>],
+) -> Answer {
+    let of_plant: Vec<(usize, Values)> =
+        plants.of.iter().copied().zip(values.iter().cloned()).collect();
+    let flown: Vec<(usize, Values)> = match asked.against {
+        Some(_) => of_plant,
+        // Without another controller the chain begins at the nominal gains.
+        None => of_plant.into_iter().map(|(plant, values)| (plant, without(values))).collect(),
+    };
+    let means = Means::of(&flown, plants.keys.len());
+    let seeds = usize::try_from(asked.options.seeds).unwrap_or(1);
+    let draws = Draws::new(plants.keys.len(), seeds, asked.options.seed);
+    let told = Told { means: &means, draws: &draws };
+    let path = &asked.source.path;
+    let file = path.file_name().map(|name| name.to_string_lossy().into_owned());
+    let facts = Facts { firsts, plants, best };
+    let nominal = asked.flights.jobs().next().and_then(|(case, run)| {
+        let study = asked.flights.study(&[], case, run).ok()?;
+        Some(super::flown::tuner(&study)?.tuner().nominal())
+    });
+    let chain = &means.chain;
+    Answer {
+        scenario: asked.name.clone(),
+        file: file.unwrap_or_default(),
+        overrides: asked.source.overrides.clone(),
+        digest: asked.digest.clone(),
+        controller: asked.controller.clone(),
+        against: asked.against.clone(),
+        effort: (asked.options.seeds, asked.options.seed, asked.options.budget),
+        runs: asked.options.runs,
+        flights: firsts.len(),
+        kept: means.kept,
+        plants: facts.rows(&named),
+        win: told.between(chain.first().copied(), Treatment::AsItIs, Quantity::Iae),
+        win_travel: told.between(chain.first().copied(), Treatment::AsItIs, Quantity::Travel),
+        steps: told.steps(chain),
+        rows: rows(&told, values, asked.against.is_some()),
+        moved: facts.moved(&draws, nominal.unwrap_or(Gains::ZERO)),
+        following: facts.following(&draws),
+    }
+}
+
+/// Values without the controller that is compared with.
+fn without(mut values: Values) -> Values {
+    values[Treatment::Against.place()].clear();
+    values
+}
+
+/// Estimates from means.
+struct Told<'a> {
+    means: &'a Means,
+    draws: &'a Draws,
+}
+
+impl Told<'_> {
+    /// Logarithm of the ratio of one to another.
+    fn logarithm(
+        &self,
+        from: Treatment,
+        to: Treatment,
+        quantity: Quantity,
+        weights: &Weights,
+    ) -> Option<f64> {
+        let beyond = |treatment| self.means.beyond(treatment, quantity, weights);
+        Some(beyond(to)? - beyond(from)?)
+    }
+
+    /// Ratio of one to another.
+    fn between(
+        &self,
+        from: Option<Treatment>,
+        to: Treatment,
+        quantity: Quantity,
+    ) -> Option<Estimate> {
+        let from = from?;
+        let found = self.draws.estimate(|it| self.logarithm(from, to, quantity, it))?;
+        Some(found.map(libm::exp))
+    }
+
+    fn steps(&self, chain: &[Treatment]) -> Vec<Step> {
+        let first = chain.first().copied().unwrap_or(Treatment::Nominal);
+        let whole =
+            |weights: &Weights| self.logarithm(first, Treatment::AsItIs, Quantity::Iae, weights);
+        let is_win = self.draws.estimate(whole).is_some_and(|whole| whole.value < 0.0);
+        let pairs = chain.iter().zip(chain.iter().skip(1));
+        pairs
+            .map(|(&from, &to)| {
+                let share = |weights: &Weights| {
+                    let part = self.logarithm(from, to, Quantity::Iae, weights)?;
+                    Some(part / whole(weights)?)
+                };
+                Step {
+                    treatment: to,
+                    iae: self.between(Some(from), to, Quantity::Iae),
+                    travel: self.between(Some(from), to, Quantity::Travel),
+                    share: if is_win { self.draws.estimate(share) } else { None },
+                }
+            })
+            .collect()
+    }
+}
+
+fn rows(told: &Told<'_>, values: &[Values], against: bool) -> Vec<Row> {
+    let row = |treatment: Treatment| {
+        let flown = || values.iter().flat_map(|values| &values[treatment.place()]);
+        let is_asked = flown().next().is_some_and(|it| it.broken.is_some());
+        let from = Some(Treatment::AsItIs);
+        Row {
+            treatment,
+            iae: told.between(from, treatment, Quantity::Iae),
+            travel: told.between(from, treatment, Quantity::Travel),
+            lost: flown().filter(|it| it.lost).count(),
+            flights: flown().count(),
+            broken: is_asked.then(|| flown().filter(|it| it.broken != Some(false)).count()),
+        }
+    };
+    let asked = |treatment: &Treatment| against || *treatment != Treatment::Against;
+    Treatment::ALL.into_iter().filter(asked).map(row).collect()
+}
+
+/// What is known of flights and plants.
+struct Facts<'a> {
+    firsts: &'a [First],
+    plants: &'a Plants,
+    best: &'a [Option<Best>],
+}
+
+impl Facts<'_> {
+    /// Something of the first flight of a plant.
+    fn of_first<T>(&self, plant: usize, of: impl Fn(&First) -> T) -> Option<T> {
+        let place = self.plants.of.iter().position(|it| *it == plant)?;
+        self.firsts.get(place).map(of)
+    }
+
+    fn rows(&self, named: &[String]) -> Vec<PlantRow> {
+        let row = |plant: usize| {
+            let place = self.plants.of.iter().position(|it| *it == plant).unwrap_or(0);
+            PlantRow {
+                name: named.get(place).cloned().unwrap_or_default(),
+                flights: self.plants.of.iter().filter(|it| **it == plant).count(),
+                effectiveness_1_s2: self.of_first(plant, |it| it.effectiveness_1_s2).flatten(),
+                airspeed_m_s: self.of_first(plant, |it| it.airspeed_m_s).flatten(),
+                mean: self.plants.means.get(plant).copied().unwrap_or(Gains::ZERO),
+                best: self.best_of(plant),
+            }
+        };
+        (0..self.plants.keys.len()).map(row).collect()
+    }
+
+    fn best_of(&self, plant: usize) -> Option<Gains<f64>> {
+        self.best.get(plant)?.as_ref().map(|best| best.gains)
+    }
+
+    /// Flights that are not lost, each with its plant.
+    fn kept(&self) -> impl Iterator<Item = (&First, usize)> + Clone {
+        let all = self.firsts.iter().zip(self.plants.of.iter().copied());
+        all.filter(|(first, _)| !first.lost)
+    }
+
+    fn moved(&self, draws: &Draws, nominal: Gains<f64>) -> [Moved; 3] {
+        let of = |gain: usize| {
+            let share = |part: usize| {
+                draws.estimate(|weights| {
+                    let parts = self.variances(gain, weights)?;
+                    let whole: f64 = parts.iter().sum();
+                    (whole > 0.0).then(|| parts[part] / whole)
+                })
+            };
+            let deviation = draws.estimate(|weights| {
+                self.variances(gain, weights).map(|it| libm::sqrt(it.iter().sum()))
+            });
+            Moved {
+                gain: GAINS[gain],
+                nominal: parts(nominal)[gain],
+                mean: parts(self.plants.all)[gain],
+                deviation: deviation.map_or(0.0, |it| it.value),
+                between_plants: share(0),
+                between_flights: share(1),
+                within_flights: share(2),
+            }
+        };
+        [of(0), of(1), of(2)]
+    }
+
+    /// Variance of a gain between plants, between the flights of a plant, and within flights; each flight counts alike.
+    fn variances(&self, gain: usize, weights: &Weights) -> Option<[f64; 3]> {
+        let weight = |plant: usize| weights.plants.get(plant).copied().unwrap_or(0.0);
+        let mean_of = |plant: usize| self.plants.means.get(plant).map(|it| parts(*it)[gain]);
+        let (mut whole, mut sum) = (0.0, 0.0);
+        for (first, plant) in self.kept() {
+            whole += weight(plant);
+            sum += weight(plant) * first.moments[gain][0];
+        }
+        let mean = sum / whole;
+        let mut found = [0.0; 3];
+        for (first, plant) in self.kept() {
+            let of_plant = mean_of(plant)?;
+            let [of_flight, within] = first.moments[gain];
+            let square = |by: f64| by * by;
+            let parts = [square(of_plant - mean), square(of_flight - of_plant), within];
+            for (found, part) in found.iter_mut().zip(parts) {
+                *found += weight(plant) * part / whole;
+            }
+        }
+        (whole > 0.0).then_some(found)
+    }
+
+    fn following(&self, draws: &Draws) -> [Following; 3] {
+        let of = |gain: usize| {
+            let mean = |plant: usize| self.plants.means.get(plant).map(|it| parts(*it)[gain]);
+            let best = |plant: usize| self.best_of(plant).map(|it| parts(it)[gain]);
+            let effectiveness =
+                |plant: usize| self.of_first(plant, |it| it.effectiveness_1_s2).flatten();
+            let airspeed = |plant: usize| self.of_first(plant, |it| it.airspeed_m_s).flatten();
+            Following {
+                gain: GAINS[gain],
+                effectiveness: self.by(draws, effectiveness, mean),
+                best_by_effectiveness: self.by(draws, effectiveness, best),
+                airspeed: self.by(draws, airspeed, mean),
+                best: self.by(draws, best, mean),
+                amplitude: self.by_amplitude(draws, gain),
+            }
+        };
+        [of(0), of(1), of(2)]
+    }
+
+    /// How something of a plant follows something else, both in logarithms.
+    fn by(
+        &self,
+        draws: &Draws,
+        x: impl Fn(usize) -> Option<f64>,
+        y: impl Fn(usize) -> Option<f64>,
+    ) -> Option<Followed> {
+        let logarithm =
+            |value: Option<f64>| value.filter(|it| *it > 0.0 && it.is_finite()).map(libm::log);
+        let pairs: Vec<(f64, f64, usize)> = (0..self.plants.keys.len())
+            .filter_map(|plant| Some((logarithm(x(plant))?, logarithm(y(plant))?, plant)))
+            .collect();
+        followed(draws, &pairs)
+    }
+
+    /// How the mean gain of a flight follows the size of its command, beside the other flights of its plant.
+    fn by_amplitude(&self, draws: &Draws, gain: usize) -> Option<Followed> {
+        let logarithm = |first: &First| {
+            let mean = first.moments[gain][0];
+            (mean > 0.0).then(|| libm::log(mean))
+        };
+        let mut pairs = Vec::new();
+        for plant in 0..self.plants.keys.len() {
+            let mine = || self.kept().filter(|(_, of)| *of == plant).map(|(first, _)| first);
+            let logs: Option<Vec<f64>> = mine().map(logarithm).collect();
+            let (logs, count) = (logs?, mine().count() as f64);
+            let of_logs = logs.iter().sum::<f64>() / count;
+            let amplitude = mine().map(|it| it.amplitude_deg).sum::<f64>() / count;
+            pairs.extend(
+                mine()
+                    .zip(logs)
+                    .map(|(it, log)| (it.amplitude_deg - amplitude, log - of_logs, plant)),
+            );
+        }
+        followed(draws, &pairs)
+    }
+}
+
+/// Pairs with the number of their plant; three at least make a line that could be none.
+fn followed(draws: &Draws, pairs: &[(f64, f64, usize)]) -> Option<Followed> {
+    if pairs.len() < 3 {
+        return None;
+    }
+    let part = |which: usize| {
+        draws.estimate(|weights| {
+            let often = |plant: usize| weights.plants.get(plant).copied().unwrap_or(0.0);
+            let pairs = pairs.iter().map(|&(x, y, plant)| (x, y, often(plant)));
+            line(pairs).map(|found| found[which])
+        })
+    };
+    Some(Followed { correlation: part(0)?, slope: part(1)? })
+}

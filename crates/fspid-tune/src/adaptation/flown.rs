@@ -1,0 +1,371 @@
+//! Flights of the self-tuner, as it is and treated.
+
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use fspid_campaign::engine::{self, FlightResult, Judging, Memory, Stability};
+use fspid_campaign::rows;
+use fspid_core::{Fspid, Gains, Pid};
+use fspid_scenario::file::Study;
+use fspid_scenario::units::degrees;
+use fspid_sim::replay::{Replay, fly_replayed, fly_watching_inputs};
+use fspid_sim::{Controller, Instant, Outcome, Prepared, SimError, Surroundings, Weather};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng as _, SeedableRng as _};
+
+use super::treatment::{COUNT, Treatment};
+use crate::error::TuneError;
+use crate::flights::hex_digest;
+
+/// Error beyond which a flight is lost, deg: as in a contest.
+pub(super) const LOST_DEG: f64 = 90.0;
+
+/// Everybody is measured as it flew.
+const JUDGING: Judging = Judging { stability: Stability::AsFlown, loads: false };
+
+/// Who may stop the work, and how much of it is done.
+#[derive(Clone, Copy)]
+pub struct Watch<'a> {
+    /// Whether it shall stop; asked before each flight.
+    pub stops: &'a (dyn Fn() -> bool + Sync),
+    /// Flights flown so far.
+    pub flown: &'a AtomicUsize,
+}
+
+impl Watch<'_> {
+    pub(super) fn ask(&self, flights: usize) -> Result<(), TuneError> {
+        self.flown.fetch_add(flights, Ordering::Relaxed);
+        if (self.stops)() { Err(TuneError::Stopped) } else { Ok(()) }
+    }
+}
+
+/// What a flight came to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Value {
+    pub(super) iae_deg_s: f64,
+    pub(super) travel_deg: f64,
+    pub(super) lost: bool,
+    /// Whether it breaks a requirement; none where that was not asked.
+    pub(super) broken: Option<bool>,
+}
+
+impl Value {
+    const LOST: Self =
+        Self { iae_deg_s: f64::INFINITY, travel_deg: f64::INFINITY, lost: true, broken: None };
+
+    pub(super) fn of(flight: &FlightResult) -> Self {
+        let measured = |name| rows::measured(flight, name).unwrap_or(f64::INFINITY);
+        let (iae_deg_s, travel_deg) = (measured("iae_deg_s"), measured("elevator_travel_deg"));
+        // Written so that NaN is lost.
+        let near = degrees(flight.largest_error_rad) <= LOST_DEG;
+        let lost = flight.metrics.verdict.is_failure() || !near || !iae_deg_s.is_finite();
+        let broken = flight.judgements.iter().any(|judgement| !judgement.met);
+        Self { iae_deg_s, travel_deg, lost, broken: Some(broken) }
+    }
+}
+
+/// Adds up what a [`Value`] has, sample by sample.
+#[derive(Default)]
+struct Meter {
+    error_rad: f64,
+    travel_rad: f64,
+    elevator_rad: Option<f64>,
+    is_far: bool,
+}
+
+impl Meter {
+    fn take(&mut self, instant: &Instant) -> ControlFlow<()> {
+        let error_rad = (instant.setpoint_rad - instant.theta_rad).abs();
+        self.error_rad += error_rad;
+        let before = self.elevator_rad.replace(instant.elevator_rad);
+        self.travel_rad += before.map_or(0.0, |before| (instant.elevator_rad - before).abs());
+        self.is_far |= !(degrees(error_rad) <= LOST_DEG);
+        ControlFlow::Continue(())
+    }
+
+    fn value(&self, outcome: Outcome, dt_s: f64) -> Value {
+        if outcome != Outcome::Completed || self.is_far {
+            return Value::LOST;
+        }
+        let (iae_deg_s, travel_deg) = (degrees(self.error_rad * dt_s), degrees(self.travel_rad));
+        Value { iae_deg_s, travel_deg, lost: false, broken: None }
+    }
+}
+
+/// The self-tuner of a study that has one controller.
+pub(super) fn tuner(study: &Study) -> Option<&Fspid<f64>> {
+    match study.scenario.controllers.first().map(|named| &named.controller) {
+        Some(Controller::SelfTuning(fspid)) => Some(fspid),
+        _ => None,
+    }
+}
+
+/// What the supervisor did in a flight.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Record {
+    gains: Vec<Gains<f64>>,
+    inputs: Vec<[f64; 2]>,
+    lost: bool,
+}
+
+impl Record {
+    fn of(prepared: &Prepared, controller: &Fspid<f64>) -> Result<Self, SimError> {
+        let (mut record, mut meter) = (Self::default(), Meter::default());
+        let outcome = fly_watching_inputs(prepared, controller, |instant, inputs| {
+            record.gains.push(instant.step.gains);
+            record.inputs.push(inputs);
+            meter.take(&instant)
+        })?;
+        record.lost = meter.value(outcome, prepared.timing().dt_s()).lost;
+        Ok(record)
+    }
+
+    /// Mean and variance over time of each gain.
+    fn moments(&self) -> [[f64; 2]; 3] {
+        let of = |gain: fn(&Gains<f64>) -> f64| {
+            let count = self.gains.len().max(1) as f64;
+            let mean = self.gains.iter().map(gain).sum::<f64>() / count;
+            let square = |it: &Gains<f64>| (gain(it) - mean) * (gain(it) - mean);
+            [mean, self.gains.iter().map(square).sum::<f64>() / count]
+        };
+        [of(|it| it.kp), of(|it| it.ki), of(|it| it.kd)]
+    }
+}
+
+/// What is known of a flight before it is treated.
+#[derive(Clone, Debug)]
+pub(super) struct First {
+    /// The same for flights of the same plant.
+    pub(super) key: String,
+    /// Change of pitch acceleration with the elevator, 1/s².
+    pub(super) effectiveness_1_s2: Option<f64>,
+    pub(super) airspeed_m_s: Option<f64>,
+    /// Largest commanded pitch, deg.
+    pub(super) amplitude_deg: f64,
+    /// Mean and variance over time of kp, ki, kd.
+    pub(super) moments: [[f64; 2]; 3],
+    pub(super) lost: bool,
+    /// The same for flights with the same command, disturbances, air and sensors.
+    pub(super) signals: String,
+}
+
+/// Flies a study as it is; the gains of each sample beside what is known of it.
+pub(super) fn first(
+    study: &Study,
+    watch: Watch<'_>,
+) -> Result<(First, Vec<Gains<f64>>), TuneError> {
+    watch.ask(1)?;
+    let scenario = &study.scenario;
+    let prepared = scenario.prepare().map_err(|error| unflown(&error))?;
+    let tuner = tuner(study).ok_or_else(no_tuner)?;
+    let record = Record::of(&prepared, tuner).map_err(|error| unflown(&error))?;
+    let parts = (&scenario.plant, &scenario.plant_changes, &scenario.actuator);
+    let largest = prepared.setpoint_rad().iter().fold(0.0, |most: f64, it| most.max(it.abs()));
+    let first = First {
+        key: hex_digest(&format!("{parts:?}")),
+        effectiveness_1_s2: effectiveness_1_s2(study),
+        airspeed_m_s: study.airframes.first().and_then(|it| it.airspeed_m_s),
+        amplitude_deg: degrees(largest),
+        moments: record.moments(),
+        lost: record.lost,
+        signals: signals(study, &prepared),
+    };
+    Ok((first, record.gains))
+}
+
+/// Everything that enters a flight beside its plant; where it flies is the plant's.
+fn signals(study: &Study, prepared: &Prepared) -> String {
+    let scenario = &study.scenario;
+    let own = (prepared.setpoint_rad(), &scenario.disturbances, scenario.timing);
+    let Surroundings { weather, pitch_sensor, rate_sensor } = &scenario.surroundings;
+    let moves = |it: &&Weather| !it.winds.is_empty() || it.turbulence.is_some();
+    let air = weather.as_ref().filter(moves).map(|it| (&it.winds, &it.turbulence));
+    hex_digest(&format!(
+        "{own:?} {air:?} {pitch_sensor:?} {rate_sensor:?} {:?}",
+        scenario.autopilot
+    ))
+}
+
+/// Sums of the gains that flights with the same signals have at each sample.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Schedules(Vec<(String, Vec<[f64; 4]>)>);
+
+impl Schedules {
+    /// Takes in a flight that is not lost.
+    pub(super) fn add(&mut self, signals: &str, gains: &[Gains<f64>]) {
+        let place = self.0.iter().position(|(key, _)| key == signals).unwrap_or(self.0.len());
+        if place == self.0.len() {
+            self.0.push((signals.to_owned(), Vec::new()));
+        }
+        let Some((_, sums)) = self.0.get_mut(place) else { return };
+        sums.resize(sums.len().max(gains.len()), [0.0; 4]);
+        for (sum, Gains { kp, ki, kd }) in sums.iter_mut().zip(gains) {
+            *sum = [sum[0] + kp, sum[1] + ki, sum[2] + kd, sum[3] + 1.0];
+        }
+    }
+
+    /// Mean gains of the other flights with the same signals, sample by sample; none where there are none.
+    fn of_others(&self, signals: &str, own: &Record) -> Option<Vec<Gains<f64>>> {
+        let (_, sums) = self.0.iter().find(|(key, _)| key == signals)?;
+        let others = sums.iter().zip(&own.gains).map(|(&[kp, ki, kd, count], own)| {
+            let rest = count - 1.0;
+            let mean = |sum: f64, own: f64| (sum - own) / rest;
+            let gains = Gains { kp: mean(kp, own.kp), ki: mean(ki, own.ki), kd: mean(kd, own.kd) };
+            (rest > 0.5).then_some(gains)
+        });
+        others.collect()
+    }
+}
+
+/// How much the pitch acceleration changes with the elevator, 1/s²: the limit of $s^2 \theta / \delta_e$ for large $s$, of
+/// an aircraft by its linear model at the trim. None for plants whose pitch does not follow with two integrations.
+fn effectiveness_1_s2(study: &Study) -> Option<f64> {
+    let plant = &study.scenario.plant;
+    let trimmed = plant.aircraft().and_then(|aircraft| aircraft.linear().ok());
+    let linear = plant.linear().or(trimmed.as_ref())?.transfer_function();
+    let lead = |coefficients: &[f64]| coefficients.first().copied();
+    let numerator = lead(linear.numerator().coefficients())?;
+    let denominator = lead(linear.denominator().coefficients())?;
+    (linear.relative_degree() == 2).then_some((numerator / denominator).abs())
+}
+
+/// A flight in a study's words that cannot be flown.
+fn unflown(error: &SimError) -> TuneError {
+    TuneError::Engine { reason: error.to_string() }
+}
+
+fn no_tuner() -> TuneError {
+    TuneError::Engine { reason: "the controller has no supervisor in every case".to_owned() }
+}
+
+/// Values of each treatment, one for each seed.
+pub(super) type Values = [Vec<Value>; COUNT];
+
+/// Flies a study with its own gains and inputs at other moments, and with the gains that its flight has on other plants.
+pub(super) fn replayed(
+    study: &Study,
+    (number, schedules): (usize, &Schedules),
+    (seed, seeds): (u64, u64),
+    watch: Watch<'_>,
+) -> Result<Values, TuneError> {
+    let mut values = Values::default();
+    let prepared = study.scenario.prepare().map_err(|error| unflown(&error))?;
+    let tuner = tuner(study).ok_or_else(no_tuner)?;
+    let record = Record::of(&prepared, tuner).map_err(|error| unflown(&error))?;
+    let fly = |replay: Replay<'_>| flown(&prepared, tuner, replay).map_err(|error| unflown(&error));
+    let others = schedules.of_others(&signals(study, &prepared), &record);
+    if let Some(gains) = others.filter(|_| !record.lost) {
+        watch.ask(1)?;
+        values[Treatment::OtherPlants.place()].push(fly(Replay::Gains(&gains))?);
+    }
+    for seed in (0..seeds).map(|place| seed.wrapping_add(place)) {
+        watch.ask(Treatment::DRAWN.len())?;
+        let mut draw = Draw::of(seed, number);
+        let turned = turned(&record.gains, &mut draw);
+        let order = draw.order(record.gains.len());
+        let gains = shuffled(&record.gains, &order);
+        let inputs = shuffled(&record.inputs, &order);
+        let replays = [Replay::Gains(&turned), Replay::Gains(&gains), Replay::Inputs(&inputs)];
+        for (treatment, replay) in Treatment::DRAWN.into_iter().zip(replays) {
+            values[treatment.place()].push(fly(replay)?);
+        }
+    }
+    Ok(values)
+}
+
+fn flown(prepared: &Prepared, tuner: &Fspid<f64>, replay: Replay<'_>) -> Result<Value, SimError> {
+    let mut meter = Meter::default();
+    let outcome = fly_replayed(prepared, tuner, replay, |instant| meter.take(&instant))?;
+    Ok(meter.value(outcome, prepared.timing().dt_s()))
+}
+
+/// Random numbers of one flight with one seed.
+pub(super) struct Draw(ChaCha8Rng);
+
+impl Draw {
+    pub(super) fn of(seed: u64, stream: usize) -> Self {
+        let mut generator = ChaCha8Rng::seed_from_u64(seed);
+        generator.set_stream(stream as u64);
+        Self(generator)
+    }
+
+    /// In 0..`count`; 0 for a count of 0.
+    pub(super) fn below(&mut self, count: usize) -> usize {
+        let unit = (self.0.next_u64() >> 11) as f64 / 9_007_199_254_740_992.0;
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "not negative, and less than count"
+        )]
+        let index = (unit * count as f64) as usize;
+        index
+    }
+
+    /// Places in an order in which each is as likely as any other (Fisher and Yates).
+    fn order(&mut self, count: usize) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..count).collect();
+        for last in (1..count).rev() {
+            order.swap(last, self.below(last + 1));
+        }
+        order
+    }
+}
+
+/// Begun at another place, the first entries behind the last.
+fn turned<T: Copy>(entries: &[T], draw: &mut Draw) -> Vec<T> {
+    let mut turned = entries.to_vec();
+    // Not where they are.
+    let by = 1 + draw.below(entries.len().saturating_sub(1));
+    turned.rotate_left(by.min(entries.len()));
+    turned
+}
+
+fn shuffled<T: Copy>(entries: &[T], order: &[usize]) -> Vec<T> {
+    order.iter().filter_map(|&place| entries.get(place).copied()).collect()
+}
+
+/// The study with gains that stand still in place of the supervisor; none for gains that make no controller.
+pub(super) fn frozen(study: &Study, gains: Gains<f64>) -> Option<Study> {
+    let fixed = Pid::new(gains, tuner(study)?.config_at(gains)).ok()?;
+    let mut frozen = study.clone();
+    frozen.scenario.controllers.first_mut()?.controller = Controller::Fixed(fixed);
+    Some(frozen)
+}
+
+/// Judged flights of studies of one case, side by side where they can; none for a study that cannot be flown.
+pub(super) fn judged(
+    memory: &mut Memory,
+    studies: &[Study],
+    watch: Watch<'_>,
+) -> Result<Vec<Option<FlightResult>>, TuneError> {
+    watch.ask(studies.len())?;
+    let flown = engine::fly_judging(memory, studies, JUDGING);
+    Ok(flown.into_iter().map(|flights| flights.ok()?.into_iter().next()).collect())
+}
+
+/// Values of what flies with gains that stand still; of the flight as it is; and of the other controller.
+pub(super) fn stood(
+    memory: &mut Memory,
+    study: &Study,
+    other: Option<&Study>,
+    means: &[(Treatment, Gains<f64>)],
+    watch: Watch<'_>,
+) -> Result<(Values, Option<FlightResult>), TuneError> {
+    let mut values = Values::default();
+    let value = |flight: &Option<FlightResult>| flight.as_ref().map_or(Value::LOST, Value::of);
+    let as_it_is = judged(memory, std::slice::from_ref(study), watch)?.pop().flatten();
+    values[Treatment::AsItIs.place()] = vec![value(&as_it_is)];
+    if let Some(other) = other {
+        let flight = judged(memory, std::slice::from_ref(other), watch)?.pop().flatten();
+        values[Treatment::Against.place()] = vec![value(&flight)];
+    }
+    let frozen: Option<Vec<Study>> = means.iter().map(|(_, gains)| frozen(study, *gains)).collect();
+    let flights = match &frozen {
+        Some(studies) => judged(memory, studies, watch)?,
+        None => vec![None; means.len()],
+    };
+    for ((treatment, _), flight) in means.iter().zip(&flights) {
+        values[treatment.place()] = vec![value(flight)];
+    }
+    Ok((values, as_it_is))
+}

@@ -1,0 +1,103 @@
+//! The answer for programs.
+
+use fspid_core::Gains;
+use serde_json::{Value, json};
+
+use super::answer::{Answer, Followed, Following, Moved, PlantRow, Row, Step};
+use super::means::Estimate;
+
+impl Answer {
+    /// For programs, schema 1.
+    #[must_use]
+    pub fn json(&self) -> Value {
+        let (seeds, seed, budget) = self.effort;
+        json!({
+            "schema": 1,
+            "scenario": self.scenario,
+            "digest": self.digest,
+            "controller": self.controller,
+            "against": self.against,
+            "seeds": seeds,
+            "seed": seed,
+            "budget": budget,
+            "answer": self.headline(),
+            "flights": self.flights,
+            "kept": self.kept,
+            "win": { "iae_ratio": estimate(self.win), "travel_ratio": estimate(self.win_travel) },
+            "steps": self.steps.iter().map(|it| step(it, self.called(it).0)).collect::<Vec<_>>(),
+            "flown": self.rows.iter().map(row).collect::<Vec<_>>(),
+            "gains": self.moved.iter().map(moved).collect::<Vec<_>>(),
+            "follows": self.following.iter().map(following).collect::<Vec<_>>(),
+            "plants": self.plants.iter().map(plant).collect::<Vec<_>>(),
+        })
+    }
+}
+
+fn estimate(found: Option<Estimate>) -> Value {
+    found.map_or(Value::Null, |it| json!({ "value": it.value, "interval": it.interval }))
+}
+
+fn step(it: &Step, name: &str) -> Value {
+    json!({
+        "step": name,
+        "to": it.treatment.name(),
+        "iae_ratio": estimate(it.iae),
+        "travel_ratio": estimate(it.travel),
+        "share": estimate(it.share),
+    })
+}
+
+fn row(it: &Row) -> Value {
+    json!({
+        "flown": it.treatment.name(),
+        "iae_ratio": estimate(it.iae),
+        "travel_ratio": estimate(it.travel),
+        "lost": it.lost,
+        "flights": it.flights,
+        "breaks_a_requirement": it.broken,
+    })
+}
+
+fn moved(it: &Moved) -> Value {
+    json!({
+        "gain": it.gain,
+        "nominal": it.nominal,
+        "mean": it.mean,
+        "deviation": it.deviation,
+        "share_between_plants": estimate(it.between_plants),
+        "share_between_flights": estimate(it.between_flights),
+        "share_within_flights": estimate(it.within_flights),
+    })
+}
+
+fn followed(found: Option<Followed>) -> Value {
+    found.map_or(Value::Null, |it| {
+        json!({
+            "correlation": estimate(Some(it.correlation)),
+            "slope": estimate(Some(it.slope)),
+        })
+    })
+}
+
+fn following(it: &Following) -> Value {
+    json!({
+        "gain": it.gain,
+        "effectiveness": followed(it.effectiveness),
+        "best_by_effectiveness": followed(it.best_by_effectiveness),
+        "airspeed": followed(it.airspeed),
+        "best": followed(it.best),
+        "amplitude_per_deg": followed(it.amplitude),
+    })
+}
+
+fn plant(it: &PlantRow) -> Value {
+    let gains = |it: Gains<f64>| json!({ "kp": it.kp, "ki": it.ki, "kd": it.kd });
+    json!({
+        "first_case": it.name,
+        "flights": it.flights,
+        "effectiveness_1_s2": it.effectiveness_1_s2,
+        "airspeed_m_s": it.airspeed_m_s,
+        "mean_gains": gains(it.mean),
+        "best_gains": it.best.map(gains),
+    })
+}

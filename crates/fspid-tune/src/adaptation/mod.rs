@@ -1,0 +1,377 @@
+//! Does a self-tuner adapt, or does it only answer the moment? The same flights again, with something else in the place of
+//! the supervisor's gains.
+//!
+//! ```text
+//! flights as they are ─gains, inputs▶ means, shuffles ─the same flights▶ what each is worth ─▶ shares of the win
+//! ```
+//!
+//! # Shares
+//! From the controller that is compared with to the self-tuner as it is, one thing is put in after the other: its fixed
+//! numbers without a supervisor; the mean of its gains over all flights; at each moment the mean of the gains that the same
+//! flight has on other plants, which knows command, disturbance and time, but not the plant; and at last its own gains.
+//! Only what these still add is adaptation to the plant. The differences of the logarithms of the IAE add up to the whole
+//! win, so that each has a share of it. What is put in earlier takes what later things could have done as well; the order is
+//! that of how much has to be known.
+//!
+//! # How sure
+//! A plant is an aircraft at a condition with its actuator. Flights of one plant are not independent, least of all steps up
+//! and down of a linear one; so plants are drawn anew with all their flights, and with them the seeds of the shuffles, and
+//! intervals hold 95 % of the draws (Efron and Tibshirani, *An Introduction to the Bootstrap*, 1993, 13.3). With few
+//! plants such intervals are somewhat too short.
+
+mod answer;
+mod best;
+mod flown;
+mod json;
+mod means;
+mod page;
+mod text;
+mod treatment;
+
+use std::sync::atomic::AtomicUsize;
+
+use fspid_campaign::engine::{FlightResult, Judging, Memory, Stability};
+use fspid_core::Gains;
+use fspid_scenario::count::{BUDGET, RUNS, SEEDS};
+use fspid_scenario::file::{Study, known_words};
+use fspid_scenario::tuning::Case;
+use fspid_sim::Controller;
+use rayon::prelude::*;
+
+pub use answer::{Answer, Followed, Following, Moved, PlantRow, Row, Step};
+pub use flown::Watch;
+pub use means::Estimate;
+pub use treatment::Treatment;
+
+use crate::crew::Part;
+use crate::error::TuneError;
+use crate::flights::{Asked, Dispersed, Flights, FlownCase, each_once, flown_cases};
+use crate::source::Source;
+use crate::space::Space;
+use best::Best;
+use flown::{First, Schedules, Values};
+
+/// What can be chosen.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Options {
+    /// The self-tuner; the first one by default.
+    pub controller: Option<String>,
+    /// The controller that it is compared with; by default that of the contest, or the first with fixed gains.
+    pub against: Option<String>,
+    /// How often time is shuffled.
+    pub seeds: u64,
+    /// The first of the seeds, of all random numbers.
+    pub seed: u64,
+    /// Candidates of the search for the best gains of each plant.
+    pub budget: usize,
+    /// Draws of the dispersions in each case; by default as the contest or the tuning says.
+    pub runs: Option<u64>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { controller: None, against: None, seeds: 5, seed: 1, budget: 240, runs: None }
+    }
+}
+
+/// An experiment that can be made.
+#[derive(Clone, Debug)]
+pub struct Adaptation {
+    source: Source,
+    options: Options,
+    name: String,
+    digest: String,
+    controller: String,
+    against: Option<String>,
+    flights: Flights,
+    theirs: Option<Flights>,
+}
+
+/// Flights whose gains are in memory together.
+const AT_ONCE: usize = 256;
+
+/// What is known of all flights when they are treated.
+#[derive(Clone, Copy)]
+struct Known<'a> {
+    firsts: &'a [First],
+    plants: &'a Plants,
+    schedules: &'a Schedules,
+}
+
+/// A flight: its case and the number of its run.
+type Job<'a> = (&'a FlownCase, usize);
+
+impl Adaptation {
+    /// Reads and checks; nothing is flown. The flights are the cases of the contest, else those of the tuning, else the
+    /// scenario as it is written.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the scenario or a case; no self-tuner; counts beyond their limits.
+    pub fn new(source: &Source, options: &Options) -> Result<Self, TuneError> {
+        SEEDS.check(options.seeds)?;
+        BUDGET.check(options.budget)?;
+        options.runs.map_or(Ok(()), |runs| RUNS.check(runs))?;
+        let template = source.template()?;
+        let study = template.study();
+        let controller = self_tuner(study, options.controller.as_deref())?;
+        let against = compared_with(study, options.against.as_deref(), &controller)?;
+        let (cases, dispersed) = cases(study, options.runs);
+        let flights = |controller: &str| {
+            let cases = flown_cases(source, controller, cases, dispersed)?;
+            let judging = Judging { stability: Stability::AsFlown, loads: false };
+            let asked = Asked { controller: controller.to_owned(), part: Part::Judging, judging };
+            Ok::<_, TuneError>(Flights::new(asked, Space::new(Vec::new()), cases, Vec::new()))
+        };
+        Ok(Self {
+            flights: flights(&controller)?,
+            theirs: against.as_deref().map(flights).transpose()?,
+            source: source.clone(),
+            options: options.clone(),
+            name: study.scenario.name.clone(),
+            digest: study.digest.clone(),
+            controller,
+            against,
+        })
+    }
+
+    /// What is allowed in the scenario and its cases and probably not meant, each once.
+    #[must_use]
+    pub fn warnings(&self) -> Vec<String> {
+        each_once(self.flights.warnings())
+    }
+
+    /// About how many flights it takes.
+    #[must_use]
+    pub fn expected(&self) -> usize {
+        let drawn = Treatment::DRAWN.len() * usize::try_from(self.options.seeds).unwrap_or(0);
+        self.flights.count() * (8 + drawn + self.options.budget)
+    }
+
+    /// Makes it, on all threads of the pool that this is called in. The same bits on any number of them.
+    ///
+    /// # Errors
+    /// [`TuneError::Stopped`]; a case that cannot be flown.
+    pub fn measured(&self, watch: Watch<'_>) -> Result<Answer, TuneError> {
+        let jobs: Vec<Job<'_>> = self.flights.jobs().collect();
+        let (firsts, schedules) = self.firsts(&jobs, watch)?;
+        let plants = Plants::of(&firsts);
+        let known = Known { firsts: &firsts, plants: &plants, schedules: &schedules };
+        let treated: Vec<(Values, Option<FlightResult>)> = jobs
+            .par_iter()
+            .enumerate()
+            .map_init(Memory::default, |memory, (number, job)| {
+                self.treated(memory, (number, *job), known, watch)
+            })
+            .collect::<Result<_, _>>()?;
+        let best: Vec<Option<Best>> = (0..plants.keys.len())
+            .into_par_iter()
+            .map(|plant| self.best(plant, &jobs, &treated, &plants, watch))
+            .collect::<Result<_, _>>()?;
+        let mut values: Vec<Values> = treated.into_iter().map(|(values, _)| values).collect();
+        for (plant, best) in best.iter().enumerate() {
+            let mine = plants.flown(plant, &firsts);
+            for (place, value) in mine.zip(best.iter().flat_map(|best| &best.values)) {
+                values[place][Treatment::PlantTuned.place()] = vec![*value];
+            }
+        }
+        let named = jobs.iter().map(|(case, _)| case.name.clone()).collect();
+        Ok(answer::answer(self, named, &firsts, &plants, &values, &best))
+    }
+
+    /// All flights as they are, and what gains they have at each moment.
+    fn firsts(
+        &self,
+        jobs: &[Job<'_>],
+        watch: Watch<'_>,
+    ) -> Result<(Vec<First>, Schedules), TuneError> {
+        let (mut firsts, mut schedules) = (Vec::new(), Schedules::default());
+        for some in jobs.chunks(AT_ONCE) {
+            let flown = some.par_iter().map(|job| flown::first(&self.study(*job)?, watch));
+            for (first, gains) in flown.collect::<Result<Vec<_>, TuneError>>()? {
+                if !first.lost {
+                    schedules.add(&first.signals, &gains);
+                }
+                firsts.push(first);
+            }
+        }
+        Ok((firsts, schedules))
+    }
+
+    fn study(&self, (case, run): Job<'_>) -> Result<Study, TuneError> {
+        self.flights.study(&[], case, run).map_err(|reason| TuneError::Engine { reason })
+    }
+
+    fn treated(
+        &self,
+        memory: &mut Memory,
+        (number, job): (usize, Job<'_>),
+        Known { firsts, plants, schedules }: Known<'_>,
+        watch: Watch<'_>,
+    ) -> Result<(Values, Option<FlightResult>), TuneError> {
+        let study = self.study(job)?;
+        let other = self.theirs.as_ref().map(|theirs| {
+            let (case, run) = theirs.jobs().nth(number).ok_or("nobody flies".to_owned())?;
+            theirs.study(&[], case, run)
+        });
+        let other = other.transpose().map_err(|reason| TuneError::Engine { reason })?;
+        let nominal = flown::tuner(&study).map_or(Gains::ZERO, |it| it.tuner().nominal());
+        let plant = plants.of.get(number).copied().unwrap_or(0);
+        let means = [
+            (Treatment::Nominal, nominal),
+            (Treatment::ClassMean, plants.all),
+            (Treatment::PlantMean, plants.means.get(plant).copied().unwrap_or(nominal)),
+            (Treatment::FlightMean, firsts.get(number).map_or(nominal, First::mean)),
+        ];
+        let (mut values, as_it_is) = flown::stood(memory, &study, other.as_ref(), &means, watch)?;
+        let seeds = (self.options.seed, self.options.seeds);
+        let drawn = flown::replayed(&study, (number, schedules), seeds, watch)?;
+        for treatment in Treatment::DRAWN.into_iter().chain([Treatment::OtherPlants]) {
+            values[treatment.place()].clone_from(&drawn[treatment.place()]);
+        }
+        Ok((values, as_it_is))
+    }
+
+    fn best(
+        &self,
+        plant: usize,
+        jobs: &[Job<'_>],
+        treated: &[(Values, Option<FlightResult>)],
+        plants: &Plants,
+        watch: Watch<'_>,
+    ) -> Result<Option<Best>, TuneError> {
+        let mine = jobs.iter().zip(treated).zip(&plants.of).filter(|(_, of)| **of == plant);
+        let mut asked = Vec::new();
+        for ((job, (_, as_it_is)), _) in mine {
+            // What is lost as it is has nothing to be compared with; the places are those of `Plants::flown`.
+            if let Some(as_it_is) = as_it_is.clone().filter(|it| !flown::Value::of(it).lost) {
+                asked.push(best::Asked { study: self.study(*job)?, as_it_is });
+            }
+        }
+        let start = plants.means.get(plant).copied().unwrap_or(plants.all);
+        best::best(&asked, start, (self.options.budget, self.options.seed), watch)
+    }
+}
+
+impl First {
+    /// Mean gains of the flight.
+    fn mean(&self) -> Gains<f64> {
+        let [[kp, _], [ki, _], [kd, _]] = self.moments;
+        Gains { kp, ki, kd }
+    }
+}
+
+/// Which flights are of the same plant, and the mean gains of all and of each; lost flights have no part in means.
+#[derive(Clone, Debug)]
+struct Plants {
+    keys: Vec<String>,
+    /// The plant of each flight.
+    of: Vec<usize>,
+    all: Gains<f64>,
+    means: Vec<Gains<f64>>,
+}
+
+impl Plants {
+    fn of(firsts: &[First]) -> Self {
+        let mut keys: Vec<String> = Vec::new();
+        let mut of = Vec::new();
+        for first in firsts {
+            let place = keys.iter().position(|key| *key == first.key).unwrap_or(keys.len());
+            if place == keys.len() {
+                keys.push(first.key.clone());
+            }
+            of.push(place);
+        }
+        let kept = || firsts.iter().zip(&of).filter(|(first, _)| !first.lost);
+        let all = mean(kept().map(|(first, _)| first.mean())).unwrap_or(Gains::ZERO);
+        let of_plant = |plant: usize| {
+            mean(kept().filter(|(_, of)| **of == plant).map(|(first, _)| first.mean()))
+        };
+        let means = (0..keys.len()).map(|plant| of_plant(plant).unwrap_or(all)).collect();
+        Self { keys, all, means, of }
+    }
+
+    /// Places of the flights of a plant that are not lost as they are.
+    fn flown<'a>(&'a self, plant: usize, firsts: &'a [First]) -> impl Iterator<Item = usize> + 'a {
+        let mine = self.of.iter().zip(firsts).enumerate();
+        mine.filter(move |(_, (of, first))| **of == plant && !first.lost).map(|(place, _)| place)
+    }
+}
+
+fn mean(gains: impl Iterator<Item = Gains<f64>>) -> Option<Gains<f64>> {
+    let (mut sum, mut count) = ([0.0; 3], 0.0);
+    for Gains { kp, ki, kd } in gains {
+        sum = [sum[0] + kp, sum[1] + ki, sum[2] + kd];
+        count += 1.0;
+    }
+    let [kp, ki, kd] = sum.map(|it| it / count);
+    (count > 0.0).then_some(Gains { kp, ki, kd })
+}
+
+/// Whether a controller tunes itself.
+fn is_self_tuner(controller: &Controller) -> bool {
+    matches!(controller, Controller::SelfTuning(_))
+}
+
+fn self_tuner(study: &Study, named: Option<&str>) -> Result<String, TuneError> {
+    let all = study.scenario.controllers.iter();
+    let names: Vec<&str> =
+        all.filter(|it| is_self_tuner(&it.controller)).map(|it| it.name.as_str()).collect();
+    let found = match named {
+        None => names.first().copied(),
+        Some(name) => names.iter().copied().find(|it| *it == name),
+    };
+    found.map(str::to_owned).ok_or_else(|| TuneError::Value {
+        what: "the self-tuner",
+        found: named.map_or("none".to_owned(), |name| format!("\"{name}\"")),
+        allowed: match names.is_empty() {
+            true => "a controller of kind fspid, of which the scenario has none".to_owned(),
+            false => names.join(", "),
+        },
+    })
+}
+
+fn compared_with(
+    study: &Study,
+    named: Option<&str>,
+    controller: &str,
+) -> Result<Option<String>, TuneError> {
+    let names: Vec<&str> =
+        study.scenario.flyers().map(|flyer| flyer.name()).filter(|it| *it != controller).collect();
+    let of_contest = || study.contest.as_ref().and_then(|contest| contest.against.as_deref());
+    if let Some(name) = named {
+        return match names.contains(&name) {
+            true => Ok(Some(name.to_owned())),
+            false => Err(TuneError::Unknown {
+                what: "other controller",
+                found: name.to_owned(),
+                known: known_words(name, &names),
+            }),
+        };
+    }
+    let own = study.scenario.controllers.iter();
+    let fixed = own.filter(|it| !is_self_tuner(&it.controller)).map(|it| it.name.as_str());
+    let found = of_contest().filter(|name| names.contains(name)).or(fixed.into_iter().next());
+    Ok(found.map(str::to_owned))
+}
+
+/// The cases that are flown, and how often.
+fn cases(study: &Study, runs: Option<u64>) -> (&[Case], Dispersed) {
+    let key = "--runs";
+    if let Some(contest) = &study.contest {
+        let runs = runs.unwrap_or(contest.runs);
+        return (&contest.cases, Dispersed { key, runs, seed: contest.run_seed });
+    }
+    match &study.tuning {
+        Some(tuning) => {
+            let runs = runs.unwrap_or(tuning.runs);
+            (&tuning.cases, Dispersed { key, runs, seed: tuning.run_seed })
+        }
+        None => (&[], Dispersed { key, runs: runs.unwrap_or(0), seed: 1 }),
+    }
+}
+
+/// Counts flights that nobody waits for.
+#[must_use]
+pub fn uncounted() -> AtomicUsize {
+    AtomicUsize::new(0)
+}

@@ -1,0 +1,211 @@
+//! Whether a self-tuner adapts: what the experiment must say where the truth is known.
+
+#![allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")]
+
+use std::path::PathBuf;
+
+use fspid_tune::adaptation::{Adaptation, Answer, Options, Treatment, Watch, uncounted};
+use fspid_tune::{Source, TuneError};
+use rayon::ThreadPoolBuilder;
+
+/// Plants of different effectiveness under the same steps, up and down and of two sizes; `tuner` is the rest of the
+/// self-tuner, `cases` what each plant changes beside its plant.
+fn scenario(tuner: &str, of_plant: impl Fn(usize) -> String) -> String {
+    let mut text = format!(
+        r#"schema = 1
+name = "plants"
+
+[plant]
+numerator = [4.0, 4.0]
+denominator = [1.0, 2.0, 6.0, 0.5]
+elevator_sign = "nose-up-positive"
+
+[actuator]
+time_constant_s = 0.1
+position_limit_deg = 20.0
+
+[loop]
+sample_period_s = 0.02
+duration_s = 8.0
+
+[setpoint]
+kind = "step"
+amplitude_deg = 3.0
+at_s = 1.0
+
+[[controller]]
+name = "PID"
+kind = "pid"
+kp = 1.0
+ki = 0.8
+kd = 0.3
+
+[[controller]]
+name = "FSPID"
+kind = "fspid"
+nominal = {{ kp = 1.0, ki = 0.8, kd = 0.3 }}
+{tuner}
+
+[tuning]
+budget = 1
+
+[[tuning.objective]]
+measure = "iae_deg_s"
+
+[contest]
+against = "PID"
+seeds = 1
+"#
+    );
+    for plant in 0..6 {
+        let effectiveness = 2.0 * libm::pow(1.4, plant as f64);
+        for amplitude in [3.0, -1.0] {
+            text.push_str(&format!(
+                "\n[[contest.case]]\nname = \"{plant}, {amplitude} deg\"\ngroup = \"all\"\nset = [\"plant.numerator=[{effectiveness}, {effectiveness}]\", \"setpoint.amplitude_deg={amplitude}\"{}]\n",
+                of_plant(plant)
+            ));
+        }
+    }
+    text
+}
+
+const RULES: &str = r#"supervisor = { table = "mirrored", range = 5.0, error_scale = 1.0, change_scale = 0.2, output_scale = { kp = 0.1, ki = 0.05, kd = 0.02 } }"#;
+const NO_RULES: &str = r#"supervisor = { table = "mirrored", range = 5.0, output_scale = { kp = 0.0, ki = 0.0, kd = 0.0 } }"#;
+
+fn measured_on(text: &str, threads: usize, budget: usize) -> Result<Answer, TuneError> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path: PathBuf = folder.path().join("plants.toml");
+    std::fs::write(&path, text).expect("written");
+    let source = Source { path, overrides: Vec::new() };
+    let options = Options { seeds: 2, budget, ..Options::default() };
+    let asked = Adaptation::new(&source, &options)?;
+    let flown = uncounted();
+    let pool = ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+    pool.install(|| asked.measured(Watch { stops: &|| false, flown: &flown }))
+}
+
+fn measured(text: &str) -> Answer {
+    measured_on(text, 2, 24).expect("an answer")
+}
+
+fn row(answer: &Answer, treatment: Treatment) -> f64 {
+    let row = answer.rows.iter().find(|row| row.treatment == treatment).expect("it flew");
+    row.iae.expect("a mean").value
+}
+
+#[test]
+fn a_supervisor_that_says_nothing_explains_nothing_whatever_is_done_to_it() {
+    let answer = measured(&scenario(NO_RULES, |_| String::new()));
+    assert_eq!((answer.flights, answer.kept, answer.plants.len()), (12, 12, 6));
+    for treatment in Treatment::ALL {
+        if treatment == Treatment::PlantTuned {
+            // Frozen gains of its own plant are no worse than the nominal ones.
+            assert!(row(&answer, treatment) < 0.999, "{:?}", row(&answer, treatment));
+        } else {
+            // The PID has the same numbers; means are off by rounding.
+            assert!((row(&answer, treatment) - 1.0).abs() < 1e-12, "{treatment:?}");
+        }
+    }
+    assert!(answer.moved.iter().all(|it| it.deviation < 1e-12), "{:?}", answer.moved);
+    assert!(answer.text().contains("kp: it does not move from 1"), "{}", answer.text());
+    assert!(answer.steps.iter().all(|it| it.share.is_none_or(|share| share.value.abs() < 1e6)));
+    assert!(answer.headline().contains("not shown to help"), "{}", answer.headline());
+}
+
+#[test]
+fn steps_add_up_to_the_win_and_shares_to_one() {
+    let answer = measured(&scenario(RULES, |_| String::new()));
+    let whole = answer.win.expect("a win or a loss").value;
+    let product: f64 = answer.steps.iter().map(|it| it.iae.expect("a ratio").value).product();
+    assert!((product / whole - 1.0).abs() < 1e-12, "{product} {whole}");
+    // The nominal gains are the PID's, so that nothing comes of them.
+    assert!((answer.steps[0].iae.expect("a ratio").value - 1.0).abs() < 1e-12);
+    if whole < 1.0 {
+        let shares: f64 = answer.steps.iter().map(|it| it.share.expect("a share").value).sum();
+        assert!((shares - 1.0).abs() < 1e-9, "{shares}");
+    }
+    // Nobody who shuffles time knows the moment.
+    assert!((row(&answer, Treatment::Against) * whole - 1.0).abs() < 1e-12);
+    for moved in &answer.moved {
+        let parts = [moved.between_plants, moved.between_flights, moved.within_flights];
+        let sum: f64 = parts.iter().map(|it| it.expect("it moves").value).sum();
+        assert!((sum - 1.0).abs() < 1e-9, "{moved:?}");
+    }
+}
+
+/// Gains that are written for each plant are whole adaptation, and nothing else is in the win.
+#[test]
+fn gains_that_know_the_plant_are_found_to_be_adaptation() {
+    let of_plant = |plant: usize| {
+        let factor = 1.0 / libm::pow(1.4, plant as f64);
+        let [kp, ki, kd] = [2.4, 2.0, 0.6].map(|gain| gain * factor);
+        // With so much delay a gain that is right on one plant is too much, or too little, on another.
+        format!(
+            ", \"actuator.delay_samples=8\", \"controller.FSPID.nominal={{kp={kp}, ki={ki}, kd={kd}}}\""
+        )
+    };
+    let answer = measured(&scenario(NO_RULES, of_plant));
+    let step = |treatment| {
+        let step = answer.steps.iter().find(|it| it.treatment == treatment).expect("a step");
+        step.iae.expect("a ratio")
+    };
+    let plant = step(Treatment::AsItIs);
+    assert!(
+        plant.value < 0.95 && plant.interval.is_some_and(|[_, upper]| upper < 1.0),
+        "{plant:?}"
+    );
+    for it in &answer.following {
+        let followed = it.effectiveness.expect("it follows");
+        assert!((followed.slope.value + 1.0).abs() < 1e-9, "{followed:?}");
+        assert!((followed.correlation.value + 1.0).abs() < 1e-9, "{followed:?}");
+    }
+    for moved in &answer.moved {
+        assert!(moved.between_plants.is_some_and(|it| it.value > 1.0 - 1e-9), "{moved:?}");
+    }
+    assert!(answer.headline().contains("adapts to its plant;"), "{}", answer.headline());
+}
+
+#[test]
+fn threads_do_not_show_and_the_best_gains_take_no_more_travel() {
+    let text = scenario(RULES, |_| String::new());
+    let [one, three] = [1, 3].map(|threads| measured_on(&text, threads, 24).expect("an answer"));
+    assert_eq!(one.json(), three.json());
+    assert_eq!((one.text(), one.page()), (three.text(), three.page()));
+    let best = one.rows.iter().find(|row| row.treatment == Treatment::PlantTuned).expect("flown");
+    // On each plant the sum of the travel is bounded; the mean of ratios may be a little above.
+    assert!(best.travel.is_some_and(|it| it.value < 1.05) && best.lost == 0, "{best:?}");
+}
+
+#[test]
+fn what_cannot_be_asked_is_refused_by_name() {
+    let fixed = scenario(RULES, |_| String::new()).replace("kind = \"fspid\"", "kind = \"pid\"");
+    let only_pid: Vec<&str> = fixed.split("[[controller]]").collect();
+    let head = only_pid[0];
+    let pid = format!("{head}[[controller]]{}", only_pid[1]);
+    let error = measured_on(&pid, 1, 8).expect_err("there is no self-tuner").to_string();
+    assert!(error.contains("kind fspid, of which the scenario has none"), "{error}");
+    let text = scenario(RULES, |_| String::new());
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("plants.toml");
+    std::fs::write(&path, text).expect("written");
+    let source = Source { path, overrides: Vec::new() };
+    let options = Options { against: Some("PIDD".to_owned()), ..Options::default() };
+    let error = Adaptation::new(&source, &options).expect_err("no such").to_string();
+    assert!(error.contains("PIDD") && error.contains("PID"), "{error}");
+    let options = Options { seeds: 0, ..Options::default() };
+    assert!(Adaptation::new(&source, &options).is_err());
+}
+
+#[test]
+fn one_plant_is_told_to_be_too_few() {
+    let text = scenario(RULES, |_| String::new());
+    let one = text.split("\n[[contest.case]]").next().expect("a head");
+    let one = one.split("[contest]").next().expect("a head");
+    let answer = measured(one);
+    assert_eq!((answer.flights, answer.plants.len()), (1, 1));
+    assert!(answer.headline().contains("nothing is said for certain"), "{}", answer.headline());
+    assert!(answer.steps.iter().all(|it| it.treatment != Treatment::OtherPlants));
+    assert!(answer.text().contains("its gains of each moment"), "{}", answer.text());
+    assert!(!answer.text().contains("adaptation to the plant"), "{}", answer.text());
+    assert!(answer.win.is_some_and(|it| it.interval.is_none()));
+}
