@@ -172,6 +172,7 @@ impl Answer {
                 name: name.to_owned(),
                 style: SeriesStyle::Numbered(place),
                 points,
+                is_joined: false,
             };
             TradeFigure {
                 title: format!("{name} of each plant"),
