@@ -1,6 +1,6 @@
 //! Loadings and climbs of a scenario's aircraft.
 
-use crate::flying::{NAVION, apart, column, flown, refusal, study, trimmed};
+use crate::flying::{NAVION, apart, column, flown, refusal, trimmed};
 
 /// At sea level, over ground that is lower: a flight begins above it.
 const AT_THE_REFERENCE: [&str; 3] =
