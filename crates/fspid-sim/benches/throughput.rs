@@ -20,6 +20,7 @@ use fspid_core::{
     SelfTuner, TunerSettings,
 };
 use fspid_sim::batch::{BatchRow, Entrant, InstructionSet, fly_group_by};
+use fspid_sim::gradient::{Weights, differentiate, differentiate_by};
 use fspid_sim::signal::{Profile, Shape};
 use fspid_sim::{
     Actuator, Controller, ElevatorSign, LinearPlant, NamedController, Prepared, Scenario,
@@ -54,6 +55,15 @@ fn main() {
             batched::<8>(name, set, &entrants, single);
             batched::<16>(name, set, &entrants, single);
         }
+        let [first, ..] = entrants.as_slice() else { continue };
+        // Rules that conclude labels have no numbers to learn.
+        if differentiate::<1>(&[*first], &[WEIGHTS]).is_ok() {
+            for set in InstructionSet::available() {
+                report(&format!("{name}, gradients, 8 lanes, {set}"), 5.0, 8, |first| {
+                    gradient_sums(set, &entrants[first..first + 8])
+                });
+            }
+        }
     }
 }
 
@@ -61,6 +71,15 @@ fn batched<const W: usize>(name: &str, set: InstructionSet, flights: &[Entrant<'
     let what = format!("{name}, {W} lanes, {set}");
     let sum = report(&what, 25.0, W, |first| group_sums::<W>(set, &flights[first..first + W]));
     assert_eq!(sum.to_bits(), single.to_bits(), "flights side by side gave another answer");
+}
+
+/// What gradients are asked of.
+const WEIGHTS: Weights = Weights { iae_rad_s: 1.0, ise_rad2_s: 0.0, travel_rad: 0.05 };
+
+/// A number of the gradient of each flight with respect to every number of its controller.
+fn gradient_sums(set: InstructionSet, flights: &[Entrant<'_>]) -> Vec<f64> {
+    let found = differentiate_by::<8>(set, flights, &[WEIGHTS; 8]).expect("differentiable");
+    found.iter().map(|it| it.as_ref().map_or(0.0, |it| it.gradient.iter().sum())).collect()
 }
 
 fn single_sum(prepared: &Prepared, controller: &Controller) -> f64 {

@@ -29,6 +29,7 @@ pub mod external_plant;
 pub mod flight_stack;
 pub mod flown;
 mod generator;
+pub mod gradient;
 mod gust_entry;
 mod gust_response;
 mod in_flight;

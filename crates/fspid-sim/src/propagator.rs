@@ -146,6 +146,22 @@ impl Propagator {
         self.order
     }
 
+    pub(crate) fn dt_s(&self) -> f64 {
+        self.dt_s
+    }
+
+    /// The rows of a sample of which the rate limit holds the servo for so long, and those of its rest, if it has one.
+    pub(crate) fn rate_limited_rows(
+        &self,
+        duration_s: f64,
+    ) -> Result<(Vec<f64>, Option<Vec<f64>>), SimError> {
+        if duration_s >= self.dt_s {
+            return Ok((self.ramp.step.clone(), None));
+        }
+        let rest = self.free.step_over(self.dt_s - duration_s)?;
+        Ok((self.ramp.step_over(duration_s)?, Some(rest)))
+    }
+
     /// From the plant's states to pitch rate.
     pub(crate) fn rate_output(&self) -> &[f64] {
         &self.rate_row[..self.order]

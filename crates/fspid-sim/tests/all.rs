@@ -5,6 +5,7 @@ mod batch;
 mod closed_loop;
 mod describing;
 mod empirical;
+mod gradient;
 mod in_flight;
 mod moving_air;
 mod reference;
