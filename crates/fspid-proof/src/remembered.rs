@@ -1,11 +1,11 @@
 //! What gains that remember make of the part of the command that stands still.
 //!
 //! With a set-point weight b other than 1 the command that holds a set-point r has a part $h(k_p) = k_p (b - 1) r$, and
-//! off rest it is off by $c \, d$, with $d = k_p - k_0$ counted from the gain at rest and a bounded c. Under the
+//! off rest it is off by $c d$, with $d = k_p - k_0$ counted from the gain at rest and a bounded c. Under the
 //! accumulating law d has a memory of its own,
 //!
 //! $$ d^+ = \theta \big( (1 - \lambda T) d + T s (\Delta k_p(x) - \Delta k_p(0)) \big), \quad
-//! \Delta k_p(x) - \Delta k_p(0) = g \cdot x, \quad z^+ = M(k) z + b_u c \, d^+ $$
+//! \Delta k_p(x) - \Delta k_p(0) = g \cdot x, \quad z^+ = M(k) z + b_u c \ d^+ $$
 //!
 //! with the supervisor's inputs x, g within the slopes of its surface, and $0 \le \theta \le 1$ where a limit of the
 //! gain cuts off: it only ever brings the gain nearer to rest, which is within the limits. So d is one more state of

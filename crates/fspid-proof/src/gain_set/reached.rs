@@ -10,7 +10,7 @@
 //! $v > u$, and $\alpha v' = u - (1 - \alpha) k$ has a solution $u \le v' \le v$. So every gain that the law comes to
 //! is a mean of the nominal ones and of such $v'$, and lies within the limits:
 //!
-//! $$ k \in \operatorname{conv} \Big( \{k'\} \cup \bigcup_{\text{cells}} V' \Big) \cap L $$
+//! $$ k \in \operatorname{conv} \Big( \lbrace k' \rbrace \cup \bigcup_{\text{cells}} V' \Big) \cap L $$
 //!
 //! with a box $V'$ for each cell of the supervisor's inputs. The convex hull is bounded from outside by planes, whose
 //! normals are small whole numbers once the gains are counted in halves of their bounds: which three planes meet in a

@@ -12,7 +12,7 @@ const BEYOND: f64 = 0.025;
 /// Random stream of the draws, behind those of the flights.
 const STREAM: usize = 1 << 40;
 
-/// A number with its interval, which is told for [`FEWEST`] plants and more.
+/// A number with its interval, which is told for five plants and more.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     /// The estimate.
