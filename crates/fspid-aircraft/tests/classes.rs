@@ -2,14 +2,14 @@
 
 use fspid_aircraft::data::Laws;
 use fspid_aircraft::{
-    Aircraft, AircraftMode, Environment, ModeName, Trim, TrimTarget, Validity, VelocityForm,
+    Aircraft, AircraftMode, Environment, Trim, TrimTarget, Validity, VelocityForm,
     longitudinal_modes,
 };
 
 use crate::support;
 
 use fspid_aircraft::aerodynamics::derivatives::DerivativeModel;
-use support::{DEG_RAD, WITH_DERIVATIVES, derivative_data};
+use support::{DEG_RAD, derivative_data, short_period_and_phugoid, with_derivatives};
 
 fn trimmed(name: &str, airspeed_m_s: f64) -> (Aircraft<DerivativeModel>, Trim) {
     let data = derivative_data(name);
@@ -28,7 +28,7 @@ fn modes(name: &str) -> Vec<AircraftMode> {
 
 #[test]
 fn every_aircraft_is_trimmed_at_its_reference_without_moving_a_control() {
-    for name in WITH_DERIVATIVES {
+    for name in with_derivatives() {
         let (_, trim) = trimmed(name, derivative_data(name).reference.airspeed_m_s);
         let moved = [trim.point.alpha_rad, trim.point.elevator_rad, trim.point.throttle - 1.0];
         assert!(moved.iter().all(|value| value.abs() < 1e-12), "{name}: {moved:?}");
@@ -42,7 +42,7 @@ fn every_aircraft_flies_level_at_its_lowest_and_at_its_highest_speed() {
     let mut refused = Vec::new();
     // Two of the 747 have ranges that are wider than their angles of attack and Mach numbers.
     let narrower = |name: &&str| !["b747-approach", "b747-cruise-low"].contains(name);
-    for name in WITH_DERIVATIVES.into_iter().filter(narrower) {
+    for name in with_derivatives().filter(narrower) {
         let data = derivative_data(name);
         let aircraft = data.aircraft(Laws::default(), Environment::STANDARD).expect("an aircraft");
         let Validity { airspeed_m_s, mach, altitude_m, .. } = data.validity;
@@ -63,7 +63,7 @@ fn every_aircraft_flies_level_at_its_lowest_and_at_its_highest_speed() {
 /// radius of gyration in pitch of half a chord to two: what a slip of a sign or of a unit would break.
 #[test]
 fn every_aircraft_has_the_stability_the_elevator_and_the_inertia_of_an_aircraft() {
-    for name in WITH_DERIVATIVES {
+    for name in with_derivatives() {
         let data = derivative_data(name);
         let (lift, pitch) = (data.longitudinal.lift, data.longitudinal.pitch);
         let margin = -pitch.alpha / lift.alpha;
@@ -121,15 +121,7 @@ const PRINTED: [Printed; 4] = [
 #[test]
 fn modes_are_those_that_the_sources_print() {
     for Printed { name, modes: printed, within } in PRINTED {
-        let modes = modes(name);
-        assert_eq!([modes[0].name, modes[1].name], [ModeName::ShortPeriod, ModeName::Phugoid]);
-        let [short, long] = [0, 1].map(|index: usize| modes[index].mode().expect("a mode"));
-        let found = [
-            short.natural_frequency_rad_s,
-            short.damping_ratio,
-            long.natural_frequency_rad_s,
-            long.damping_ratio,
-        ];
+        let found = short_period_and_phugoid(&modes(name));
         for ((found, printed), within) in found.iter().zip(printed).zip(within) {
             assert!((found / printed - 1.0).abs() < within, "{name}: {found} is not {printed}");
         }

@@ -9,7 +9,7 @@ use fspid_aircraft::linearise::VelocityForm;
 use fspid_aircraft::modes::longitudinal_modes;
 use fspid_aircraft::{AircraftError, Controls, Environment, Flow, ForceModel, TrimTarget, Vector3};
 use proptest::prelude::*;
-use support::{DEG_RAD, FOOT_M, POUND_FORCE_N, WITH_DERIVATIVES, derivative_data};
+use support::{DEG_RAD, FOOT_M, POUND_FORCE_N, derivative_data, with_derivatives};
 
 /// Mass of a pound of weight by the gravity of the books, 32.2 ft/s².
 const POUND_KG: f64 = POUND_FORCE_N / (32.2 * FOOT_M);
@@ -72,7 +72,7 @@ fn without_a_loading_nothing_moves() {
 /// gravity at the neutral point.
 #[test]
 fn at_the_neutral_point_there_is_no_static_stability() {
-    for name in WITH_DERIVATIVES {
+    for name in with_derivatives() {
         let data = derivative_data(name);
         let known = data.longitudinal;
         let margin = -known.pitch.alpha / known.lift.alpha;

@@ -138,27 +138,24 @@ fn simulate_tells_the_shares_on_request() {
     assert!(json(&output)["limit"]["controllers"][0]["of_possible_pct"].is_f64());
 }
 
-#[test]
-fn a_contest_tells_how_near_its_designs_come() {
+/// A small contest of the template, with these words beside.
+fn contest<'a>(budget: &'a str, seeds: &'a str, out: &'a str, beside: &[&'a str]) -> Vec<&'a str> {
+    let mut words = vec!["contest", "c.toml", "--budget", budget, "--seeds", seeds, "--quiet"];
+    words.extend(["--out", out, "--set", "loop.sample_period_s=0.05", "--format", "json"]);
+    words.extend(beside);
+    words
+}
+
+fn folder_with_contest() -> tempfile::TempDir {
     let folder = folder();
     assert_eq!(code(&fspid(&["init", "--template", "contest", "c.toml"], folder.path())), 0);
-    let words = [
-        "contest",
-        "c.toml",
-        "--budget",
-        "4",
-        "--seeds",
-        "1",
-        "--quiet",
-        "--out",
-        "who",
-        "--limit",
-        "--set",
-        "loop.sample_period_s=0.05",
-        "--format",
-        "json",
-    ];
-    let output = fspid(&words, folder.path());
+    folder
+}
+
+#[test]
+fn a_contest_tells_how_near_its_designs_come() {
+    let folder = folder_with_contest();
+    let output = fspid(&contest("4", "1", "who", &["--limit"]), folder.path());
     assert_eq!(code(&output), 0, "{}", text(&output.stderr));
     let limit = &json(&output)["limit"];
     assert!(limit["cases_of_mean"].as_u64().is_some_and(|count| count > 0), "{limit}");
@@ -171,25 +168,8 @@ fn a_contest_tells_how_near_its_designs_come() {
 
 #[test]
 fn a_front_holds_a_contest_at_every_effort_and_tells_of_all() {
-    let folder = folder();
-    assert_eq!(code(&fspid(&["init", "--template", "contest", "c.toml"], folder.path())), 0);
-    let words = [
-        "contest",
-        "c.toml",
-        "--front",
-        "travel=12,24",
-        "--budget",
-        "12",
-        "--seeds",
-        "2",
-        "--quiet",
-        "--out",
-        "front",
-        "--set",
-        "loop.sample_period_s=0.05",
-        "--format",
-        "json",
-    ];
+    let folder = folder_with_contest();
+    let words = contest("12", "2", "front", &["--front", "travel=12,24"]);
     let output = fspid(&words, folder.path());
     assert_eq!(code(&output), 0, "{}", text(&output.stderr));
     let answer = json(&output);

@@ -19,6 +19,7 @@ mod bits;
 pub mod contest;
 mod crew;
 pub mod design;
+mod draw;
 mod error;
 mod flights;
 pub mod front;

@@ -9,7 +9,7 @@ use fspid_aircraft::data::{
     AircraftData, DerivativeData, Inertia, LinearData, LinearElevator, LinearState, Loading,
     ModelData, Reference, Variations,
 };
-use fspid_aircraft::{Range, Travel, Validity};
+use fspid_aircraft::{AircraftMode, ModeName, Range, Travel, Validity};
 use fspid_lti::Matrix;
 use toml::{Table, Value};
 
@@ -72,30 +72,11 @@ const FILES: [(&str, &str); 23] = files![
     "mini-mutt",
 ];
 
-/// Files with stability derivatives.
-pub(crate) const WITH_DERIVATIVES: [&str; 21] = [
-    "navion",
-    "b747-approach",
-    "b747-cruise-low",
-    "b747-cruise-high",
-    "cessna-172",
-    "cessna-310",
-    "beech-99",
-    "beaver",
-    "twin-otter",
-    "dc-8-approach",
-    "dc-8-cruise",
-    "jetstar",
-    "learjet-24",
-    "citation-500",
-    "convair-880",
-    "aerosonde",
-    "zagi",
-    "skywalker-x8",
-    "ultra-stick-25e",
-    "anaconda",
-    "mini-mutt",
-];
+/// Aircraft with stability derivatives: those whose file is of no other kind.
+pub(crate) fn with_derivatives() -> impl Iterator<Item = &'static str> {
+    let kinds = FILES.iter().map(|(name, text)| (*name, text.contains("kind = \"derivatives\"")));
+    kinds.filter_map(|(name, is_one)| is_one.then_some(name))
+}
 
 pub(crate) fn names() -> impl Iterator<Item = &'static str> {
     FILES.iter().map(|(name, _)| *name)
@@ -115,6 +96,18 @@ pub(crate) fn aircraft(name: &str) -> AircraftData {
 
 pub(crate) fn derivative_data(name: &str) -> DerivativeData {
     *aircraft(name).derivatives().expect("an aircraft with derivatives")
+}
+
+/// Frequency, rad/s, and damping ratio of the short period and of the phugoid, which come first.
+pub(crate) fn short_period_and_phugoid(modes: &[AircraftMode]) -> [f64; 4] {
+    assert_eq!([modes[0].name, modes[1].name], [ModeName::ShortPeriod, ModeName::Phugoid]);
+    let [short, long] = [0, 1].map(|index: usize| modes[index].mode().expect("a mode"));
+    [
+        short.natural_frequency_rad_s,
+        short.damping_ratio,
+        long.natural_frequency_rad_s,
+        long.damping_ratio,
+    ]
 }
 
 fn derivatives(file: &Table) -> DerivativeData {

@@ -14,7 +14,8 @@ const FURTHEST: i32 = 300;
 ///
 /// # Source
 /// As [`fspid_numeric::matrix::balance`], with sums for norms: intervals ask for no more.
-pub(super) fn balance(mut magnitudes: Vec<f64>, size: usize) -> Vec<i32> {
+#[must_use]
+pub fn balance(mut magnitudes: Vec<f64>, size: usize) -> Vec<i32> {
     let mut exponents: Vec<i32> = vec![0; size];
     sweep(size, SWEEPS, |i| {
         let change = worthwhile(&magnitudes, size, i);

@@ -23,6 +23,7 @@ mod plant;
 mod product;
 mod rounding;
 
+pub use balance::balance;
 pub use definite::prove_positive_definite;
 pub use error::NotProved;
 pub use exponential::{exponential, held};

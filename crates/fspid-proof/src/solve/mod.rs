@@ -30,7 +30,7 @@ pub use lyapunov::{
 pub use parameter_dependent::{
     MovingForm, MovingProblem, MovingVerdict, moving_form, moving_form_over,
 };
-pub(crate) use stein::summed;
+pub use stein::summed;
 
 /// How much work a search may do.
 #[derive(Debug, Clone, Copy)]

@@ -32,8 +32,9 @@ pub(super) fn stable_sum(a: &Dense, w: &Dense) -> Option<Dense> {
     None
 }
 
-/// As [`stable_sum`], of matrices.
-pub(crate) fn summed(a: &Matrix, w: &Matrix) -> Option<Matrix> {
+/// $\sum_k (A^T)^k W A^k$ in floats; `None` where the sum has no end.
+#[must_use]
+pub fn summed(a: &Matrix, w: &Matrix) -> Option<Matrix> {
     stable_sum(&Dense::from(a), &Dense::from(w))?.to_matrix()
 }
 

@@ -10,10 +10,9 @@ use fspid_scenario::file::Study;
 use fspid_scenario::units::degrees;
 use fspid_sim::replay::{Replay, fly_replayed, fly_watching_inputs};
 use fspid_sim::{Controller, Instant, Outcome, Prepared, SimError, Surroundings, Weather};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng as _, SeedableRng as _};
 
 use super::treatment::{COUNT, Treatment};
+use crate::draw::Draw;
 use crate::error::TuneError;
 use crate::flights::hex_digest;
 
@@ -277,38 +276,6 @@ fn flown(prepared: &Prepared, tuner: &Fspid<f64>, replay: Replay<'_>) -> Result<
     let mut meter = Meter::default();
     let outcome = fly_replayed(prepared, tuner, replay, |instant| meter.take(&instant))?;
     Ok(meter.value(outcome, prepared.timing().dt_s()))
-}
-
-/// Random numbers of one flight with one seed.
-pub(super) struct Draw(ChaCha8Rng);
-
-impl Draw {
-    pub(super) fn of(seed: u64, stream: usize) -> Self {
-        let mut generator = ChaCha8Rng::seed_from_u64(seed);
-        generator.set_stream(stream as u64);
-        Self(generator)
-    }
-
-    /// In 0..`count`; 0 for a count of 0.
-    pub(super) fn below(&mut self, count: usize) -> usize {
-        let unit = (self.0.next_u64() >> 11) as f64 / 9_007_199_254_740_992.0;
-        #[allow(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "not negative, and less than count"
-        )]
-        let index = (unit * count as f64) as usize;
-        index
-    }
-
-    /// Places in an order in which each is as likely as any other (Fisher and Yates).
-    fn order(&mut self, count: usize) -> Vec<usize> {
-        let mut order: Vec<usize> = (0..count).collect();
-        for last in (1..count).rev() {
-            order.swap(last, self.below(last + 1));
-        }
-        order
-    }
 }
 
 /// Begun at another place, the first entries behind the last.

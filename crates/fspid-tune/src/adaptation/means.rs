@@ -1,7 +1,8 @@
 //! Means over flights, and how sure they are: plants are drawn anew, and with them their flights.
 
-use super::flown::{Draw, Value, Values};
+use super::flown::{Value, Values};
 use super::treatment::{COUNT, Treatment};
+use crate::draw::Draw;
 
 /// How often plants and seeds are drawn anew.
 pub(super) const DRAWS: usize = 2000;

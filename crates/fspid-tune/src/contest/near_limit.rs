@@ -14,12 +14,10 @@ use serde_json::{Value, json};
 use super::words::cut;
 use super::{Contest, Judged, Outcome};
 use crate::error::TuneError;
-use crate::limit::assumed;
+use crate::limit::{assumed, unrounded};
 
 /// Travels within this factor share a programme.
 const NEAR: f64 = 1.1;
-/// What is flown is rounded: the limit is asked for so much more travel, as a share and in rad.
-const ROUNDING: [f64; 2] = [1e-9, 1e-12];
 
 /// How near a contest's best designs come to the limit.
 #[derive(Clone, Debug, PartialEq)]
@@ -124,7 +122,7 @@ impl Asker<'_> {
             (&trace.command_rad, &trace.elevator_rad),
             self.question.dt_s(),
         );
-        let travel_rad = way * (1.0 + ROUNDING[0]) + ROUNDING[1];
+        let travel_rad = unrounded(way);
         let is_near = |at: f64| at / travel_rad < NEAR && travel_rad / at < NEAR;
         if !self.solved.iter().any(|(at, _)| is_near(*at)) {
             match Programme::new(self.question, asked.0).solve(travel_rad, self.stop) {

@@ -19,6 +19,7 @@
 
 use super::Rung;
 use super::curves::{Curve, of_case};
+use crate::draw::Draw;
 
 /// Places along a front.
 pub(super) const PLACES: usize = 9;
@@ -126,7 +127,7 @@ pub(super) fn all(rungs: &[Rung]) -> Vec<Band> {
         if cases.is_empty() {
             return band;
         }
-        band.middle = mean(&cases, &Draw::as_it_is(&cases)).to_vec();
+        band.middle = mean(&cases, &Redrawn::as_it_is(&cases)).to_vec();
         if cases.len() >= FEWEST_CASES && seeds > 1 {
             band.ends = ends(&cases, &band.middle, comparisons);
             band.dominance = dominance(&band);
@@ -156,18 +157,18 @@ fn along(own: &[Curve], other: &[Curve]) -> Option<Along> {
 }
 
 /// Which cases, and which seeds of each of the two.
-struct Draw {
+struct Redrawn {
     cases: Vec<usize>,
     seeds: [Vec<usize>; 2],
 }
 
-impl Draw {
+impl Redrawn {
     fn as_it_is(cases: &[(f64, Along)]) -> Self {
         let seeds = [0, 1].map(|who| (0..seeds(cases, who)).collect());
         Self { cases: (0..cases.len()).collect(), seeds }
     }
 
-    fn new(cases: &[(f64, Along)], random: &mut Random) -> Self {
+    fn new(cases: &[(f64, Along)], random: &mut Draw) -> Self {
         let mut drawn = |of: usize| (0..of).map(|_| random.below(of)).collect::<Vec<usize>>();
         let own = drawn(cases.len());
         Self { cases: own, seeds: [0, 1].map(|who| drawn(seeds(cases, who))) }
@@ -179,7 +180,7 @@ fn seeds(cases: &[(f64, Along)], who: usize) -> usize {
 }
 
 /// The mean difference along the front.
-fn mean(cases: &[(f64, Along)], draw: &Draw) -> [f64; PLACES] {
+fn mean(cases: &[(f64, Along)], draw: &Redrawn) -> [f64; PLACES] {
     let mut sum = [0.0; PLACES];
     let mut weights = 0.0;
     for &case in &draw.cases {
@@ -197,9 +198,9 @@ fn mean(cases: &[(f64, Along)], draw: &Draw) -> [f64; PLACES] {
 
 /// Lower and upper ends of the band.
 fn ends(cases: &[(f64, Along)], middle: &[f64], comparisons: usize) -> [Vec<f64>; 2] {
-    let mut random = Random(SEED);
+    let mut random = Draw::of(SEED, 0);
     let drawn: Vec<[f64; PLACES]> =
-        (0..DRAWS).map(|_| mean(cases, &Draw::new(cases, &mut random))).collect();
+        (0..DRAWS).map(|_| mean(cases, &Redrawn::new(cases, &mut random))).collect();
     let deviation = |place: usize| {
         let squares =
             drawn.iter().map(|it| (it[place] - middle[place]) * (it[place] - middle[place]));
@@ -244,29 +245,12 @@ fn dominance(band: &Band) -> Dominance {
     }
 }
 
-/// Steele, Lea and Flood's SplitMix64: the same draws everywhere.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, most: usize) -> usize {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^= z >> 31;
-        // The high half of the product: a whole number below `most`, even to 2⁻⁶⁴ of it.
-        #[allow(clippy::cast_possible_truncation, reason = "it is below `most`")]
-        let place = ((u128::from(z) * most as u128) >> 64) as usize;
-        place
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     /// Cases whose difference is `shift` plus noise of cases and seeds.
-    fn cases(shift: impl Fn(usize) -> f64, random: &mut Random, count: usize) -> Vec<(f64, Along)> {
+    fn cases(shift: impl Fn(usize) -> f64, random: &mut Draw, count: usize) -> Vec<(f64, Along)> {
         let mut noise = |size: f64| size * (random.below(2001) as f64 / 1000.0 - 1.0);
         let designs: [Vec<f64>; 2] = [0, 1].map(|_| (0..3).map(|_| noise(0.03)).collect());
         (0..count)
@@ -288,7 +272,7 @@ mod tests {
     }
 
     fn stands(cases: &[(f64, Along)]) -> Dominance {
-        let middle = mean(cases, &Draw::as_it_is(cases)).to_vec();
+        let middle = mean(cases, &Redrawn::as_it_is(cases)).to_vec();
         let ends = ends(cases, &middle, 1);
         let (name, dominance) = (String::new(), Dominance::NotTold);
         let band =
@@ -298,7 +282,7 @@ mod tests {
 
     #[test]
     fn who_is_no_better_is_seldom_called_better() {
-        let mut random = Random(7);
+        let mut random = Draw::of(7, 0);
         let told = (0..120).filter(|_| stands(&cases(|_| 0.0, &mut random, 12)) != Dominance::Open);
         // Of 120 some 6 would be told wrongly, on either side and anywhere.
         let count = told.count();
@@ -307,7 +291,7 @@ mod tests {
 
     #[test]
     fn a_front_that_is_better_everywhere_dominates_and_one_that_crosses_does_not() {
-        let mut random = Random(8);
+        let mut random = Draw::of(8, 0);
         assert_eq!(stands(&cases(|_| -0.3, &mut random, 12)), Dominance::Dominates);
         assert_eq!(stands(&cases(|_| 0.3, &mut random, 12)), Dominance::Dominated);
         let crossing = cases(|place| 0.1 * (place as f64 - 4.0), &mut random, 12);

@@ -23,8 +23,12 @@ const ENDS: [f64; 2] = [0.5, 2.0];
 /// Commands of actuators without limits are taken to be within these, deg, or within as many times twice that as a
 /// controller needs.
 const WITHIN_DEG: f64 = 90.0;
-/// What is flown is rounded; the limit at a controller's travel is asked for so much more, as a share and in rad.
-const ROUNDING: [f64; 2] = [1e-9, 1e-12];
+
+/// The travel at which the limit is asked beside a flight of this travel, rad: what is flown is rounded, and this is
+/// certainly not less.
+pub(crate) fn unrounded(travel_rad: f64) -> f64 {
+    travel_rad * (1.0 + 1e-9) + 1e-12
+}
 
 /// At which travels the limit is asked beside those of the controllers.
 #[derive(Clone, Debug, PartialEq)]
@@ -144,7 +148,7 @@ impl Answer {
         let mut controllers = Vec::with_capacity(flown.len());
         for (place, (name, flown)) in flown.into_iter().enumerate() {
             told(&format!("limit {} of {whole}", count + place + 1));
-            let way = flown.as_ref().ok().map(|(_, way)| way * (1.0 + ROUNDING[0]) + ROUNDING[1]);
+            let way = flown.as_ref().ok().map(|(_, way)| unrounded(*way));
             let rung = way.map(|way| asker.rung(way)).transpose()?;
             controllers.push(Standing { name, flown, rung });
         }

@@ -61,11 +61,14 @@ pub(super) fn share(limit: &Limit, measure: f64) -> Option<String> {
     if !(measure > 0.0) {
         return None;
     }
-    let of = |limit: f64| libm::floor(100.0 * limit / measure + 0.5);
-    let (least, most) = (of(limit.proved), of(limit.reached.measure.min(measure)));
-    Some(match most - least < 2.0 {
-        true => format!("{:.0} %", libm::floor(100.0 * limit.proved / measure)),
-        false => format!("{least:.0} to {most:.0} %"),
+    let percent = |limit: f64| 100.0 * limit / measure;
+    let least = libm::floor(percent(limit.proved));
+    let most = libm::ceil(percent(limit.reached.measure.min(measure)));
+    // Two apart is what rounding outwards makes of numbers that differ by little more than one.
+    Some(if most - least <= 2.0 {
+        format!("{least:.0} %")
+    } else {
+        format!("{least:.0} to {most:.0} %")
     })
 }
 

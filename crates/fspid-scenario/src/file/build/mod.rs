@@ -105,7 +105,6 @@ pub(crate) fn scenario(
     timing::check_memory(report, section, timing);
     let names = names(section);
     let requirements = requirements(report, files, section.sections(keys::REQUIREMENT), &names);
-    let dispersions = dispersions(report, section.sections(keys::DISPERSION));
     let tuning = section.get(keys::TUNING).and_then(|part| tuning(report, part, &names));
     let contest = section.get(keys::CONTEST).and_then(|part| contest(report, part, &names));
     let airframes = airframe::airframes(files, section, flown.as_ref());
@@ -128,7 +127,7 @@ pub(crate) fn scenario(
         scenario,
         requirements,
         airframes,
-        dispersions,
+        dispersions: dispersions(report, section.sections(keys::DISPERSION)),
         derived_gains,
         tuning,
         contest,
