@@ -17,6 +17,7 @@ pub mod atmosphere;
 mod controls;
 pub mod data;
 pub mod derivation;
+pub mod enclosure;
 mod engine;
 pub mod envelope;
 mod error;

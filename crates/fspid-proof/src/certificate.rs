@@ -3,6 +3,7 @@
 use fspid_lti::Matrix;
 
 use crate::description::LoopDescription;
+use crate::family::Family;
 use crate::limits;
 use crate::recheck::Rechecked;
 use crate::scope::{LeftOut, Range, Scope};
@@ -29,6 +30,8 @@ pub struct Certificate {
     pub level: Option<f64>,
     /// Steps from rest whose flights may meet limits, where such are claimed.
     pub steps: Option<Steps>,
+    /// Plants and actuators beside the one of the description, of which the return to rest is claimed.
+    pub family: Option<Family>,
 }
 
 /// What is claimed.

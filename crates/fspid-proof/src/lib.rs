@@ -14,6 +14,7 @@ mod bearing;
 mod certificate;
 pub mod check;
 mod description;
+mod family;
 pub mod gain_set;
 mod limits;
 mod prove;
@@ -29,6 +30,10 @@ pub use asked::left_out_of;
 pub use bearing::Bearing;
 pub use certificate::{BoundedRate, Certificate, Claim};
 pub use description::{LoopDescription, NotProvable};
+pub use family::{
+    CheckedFamily, Family, FamilyError, FamilyVerdict, MOST_PARAMETERS, MOST_PARTS, Parameter,
+    Part as FamilyPart, Uncertain, prove_family,
+};
 pub use limits::{AtLimit, pitch_within};
 pub use prove::{Effort, Largest, Outcome, Verdict, certify, is_proved};
 pub use recheck::{Kept, RecheckError, Rechecked, Remains};

@@ -14,6 +14,7 @@ use fspid_sim::loop_model::{LoopModel, SampledPlant};
 use crate::certificate::{BoundedRate, Certificate, Claim};
 use crate::description::LoopDescription;
 use crate::gain_set::MOST_CORNERS;
+use crate::scope::Range;
 
 /// Most states of a loop.
 pub const MOST_STATES: usize = 128;
@@ -122,14 +123,19 @@ pub(crate) fn check(certificate: &Certificate) -> Result<(), WrongSizes> {
         wrong.within(("steps.loads", "parts of the loads"), steps.loads, [1, MOST_LOADS]);
         wrong.of_form("steps.near_rest.form", &steps.terminal.form, states);
     }
-    let inequalities = most_inequalities(certificate);
+    let family = certificate.family.iter().flat_map(|family| &family.parts);
+    let claims = family.map(|part| (&part.claim, Range::REST));
+    let inequalities = claims
+        .chain([(&certificate.claim, certificate.range)])
+        .map(|(claim, range)| most_inequalities(certificate, claim, range))
+        .fold(0, u64::saturating_add);
     let work = inequalities.saturating_mul((states as u64).saturating_pow(3));
     wrong.push(("claim", "products of the re-check"), work, [0, MOST_WORK]);
     if wrong.found.is_empty() { Ok(()) } else { Err(WrongSizes(wrong.found)) }
 }
 
-/// No fewer inequalities, or products of matrices, than the re-check looks at.
-fn most_inequalities(certificate: &Certificate) -> u64 {
+/// No fewer inequalities, or products of matrices, than the re-check of a claim looks at.
+fn most_inequalities(certificate: &Certificate, claim: &Claim, range: Range) -> u64 {
     let divisions = certificate.divisions as u64;
     let cells = match &certificate.description.controller {
         Controller::Fixed(_) => 1,
@@ -146,9 +152,9 @@ fn most_inequalities(certificate: &Certificate) -> u64 {
         }
     };
     // Eight of a box, each with what is held either way.
-    let remembered = certificate.description.remembered_states(certificate.range) > 0;
+    let remembered = certificate.description.remembered_states(range) > 0;
     let corners = cells.saturating_mul(if remembered { 72 } else { 16 });
-    match &certificate.claim {
+    match claim {
         Claim::CommonQuadratic { .. } => corners,
         Claim::SProcedure { multipliers, .. } => {
             corners.saturating_mul(1 + multipliers.len() as u64)

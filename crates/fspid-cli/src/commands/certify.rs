@@ -10,7 +10,7 @@ use super::progress::{Telling, alive, tell};
 use super::{Format, json_text};
 use crate::argument::{Folder, InFile};
 use crate::exit::{Failure, note, print};
-use fspid_scenario::file::{self, Study};
+use fspid_scenario::file::{self, Template};
 use fspid_sim::SimError;
 use fspid_study::certify::{self, Answer, Certification, CheckedFile, Effort};
 use fspid_study::output;
@@ -41,6 +41,9 @@ pub(crate) struct Arguments {
     /// Certify only the controller with this name.
     #[arg(long, value_name = "NAME")]
     controller: Option<String>,
+    /// Certify as well, at once, all plants and actuators that the scenario's dispersions can draw.
+    #[arg(long, conflicts_with = "check")]
+    family: bool,
     /// Write the certificates into this folder.
     #[arg(long, value_name = "DIR")]
     out: Option<Folder>,
@@ -58,7 +61,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn prove(path: &Path, arguments: &Arguments) -> Result<(), Failure> {
-    let study = file::load(path, &arguments.overrides).map_err(Failure::input)?;
+    let template = Template::load(path, &arguments.overrides).map_err(Failure::input)?;
+    let study = template.study();
     for warning in &study.warnings {
         note(format_args!("warning: {warning}"));
     }
@@ -71,7 +75,7 @@ fn prove(path: &Path, arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::input(format_args!("there is no controller `{name}`{known}")));
     }
     let telling = Telling::for_standard_error();
-    let certification = watched(&study, only, telling);
+    let certification = watched(&template, (only, arguments.family), telling);
     // The answer begins on an empty line.
     if telling == Telling::Line {
         tell(telling, "");
@@ -99,18 +103,30 @@ fn prove(path: &Path, arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Certifies, and tells whom and for how long.
-fn watched(study: &Study, only: Option<&str>, telling: Telling) -> Result<Certification, SimError> {
+fn watched(
+    template: &Template,
+    (only, family): (Option<&str>, bool),
+    telling: Telling,
+) -> Result<Certification, SimError> {
     let whom = Mutex::new(String::new());
     let what = || {
         let whom = whom.lock().map_or(String::new(), |name| name.clone());
         format!("certifying {whom}; a self-tuning controller can take half a minute")
     };
     alive(telling, &what, || {
-        Certification::watched(study, only, &Effort::default(), &mut |name| {
+        let effort = Effort::default();
+        let mut tell = |name: &str| {
             if let Ok(mut whom) = whom.lock() {
                 name.clone_into(&mut whom);
             }
-        })
+        };
+        let certification = Certification::watched(template.study(), only, &effort, &mut tell)?;
+        match family {
+            true => certification.with_families(template, &effort, &mut |name| {
+                tell(&format!("all that can be drawn of {name}"));
+            }),
+            false => Ok(certification),
+        }
     })
 }
 
@@ -145,8 +161,8 @@ fn check(path: &Path, arguments: &Arguments) -> Result<(), Failure> {
     }
     let mut checked = read(path)?;
     if let Some(scenario) = scenario {
-        let study = file::load(scenario, &arguments.overrides).map_err(Failure::input)?;
-        checked.compare(&study).map_err(Failure::input)?;
+        let template = Template::load(scenario, &arguments.overrides).map_err(Failure::input)?;
+        checked.compare_family(&template).map_err(Failure::input)?;
     }
     match arguments.format {
         Format::Text => print(&checked.text())?,

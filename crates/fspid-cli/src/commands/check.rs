@@ -9,7 +9,7 @@ use super::Format;
 use crate::argument::InFile;
 use crate::exit::{Failure, note};
 use fspid_diagnostics::digits::counted;
-use fspid_scenario::file::{self, Study, Template};
+use fspid_scenario::file::{self, Template};
 use fspid_scenario::fuzzy_system;
 use fspid_study::certify::CheckedFile;
 use fspid_study::json::with_null_reasons;
@@ -44,22 +44,20 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.overrides.is_empty() && fuzzy_system::is_system(&arguments.file) {
         return system(&arguments.file, arguments.format);
     }
-    let study = file::load(&arguments.file, &arguments.overrides).map_err(Failure::load)?;
+    let template = Template::load(&arguments.file, &arguments.overrides).map_err(Failure::load)?;
+    let study = template.study();
     for warning in &study.warnings {
         note(format_args!("warning: {warning}"));
     }
     if !study.dispersions.is_empty() {
-        Template::load(&arguments.file, &arguments.overrides)
-            .map_err(Failure::load)?
-            .check_dispersions()
-            .map_err(Failure::input)?;
+        template.check_dispersions().map_err(Failure::input)?;
     }
     for gains in &study.derived_gains {
         note(format_args!("gains of {gains}"));
     }
     let scenario = &study.scenario;
     let (file, timing) = (arguments.file.display(), scenario.timing);
-    let certificate = beside(&arguments.file, &study)?;
+    let certificate = beside(&arguments.file, &template)?;
     let text = || {
         let mut text = format!(
             "{file}: good; {} with {}, {} samples of {} s, digest {}\n",
@@ -89,13 +87,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// The certificate beside a scenario, verified and compared with what flies, if there is one.
-fn beside(scenario: &Path, study: &Study) -> Result<Option<(PathBuf, CheckedFile)>, Failure> {
+fn beside(scenario: &Path, template: &Template) -> Result<Option<(PathBuf, CheckedFile)>, Failure> {
     let path = scenario.with_extension("certificate.json");
     if !path.is_file() {
         return Ok(None);
     }
     let mut checked = super::certify::read(&path)?;
-    checked.compare(study).map_err(Failure::input)?;
+    checked.compare_family(template).map_err(Failure::input)?;
     Ok(Some((path, checked)))
 }
 

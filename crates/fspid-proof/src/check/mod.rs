@@ -34,4 +34,4 @@ pub use lyapunov::{
 pub use matrix::IntervalMatrix;
 pub use moving::{Ends, Moving, MovingProof, NotProvedAt, falls_while_moving};
 pub(crate) use plant::Passed;
-pub use plant::{ActuatorLag, PrintedPlant, printed};
+pub use plant::{ActuatorLag, EnclosedLag, EnclosedPlant, PrintedPlant, printed};

@@ -46,6 +46,34 @@ pub struct PrintedPlant<'a> {
     pub dt_s: f64,
 }
 
+/// A plant in continuous time and its actuator, every number between bounds.
+///
+/// $$ \dot x = A x + b \delta, \qquad \theta = x_1, \qquad \dot\theta = r^T x + r_\delta \delta $$
+///
+/// with the elevator $\delta$ counted as the command is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EnclosedPlant {
+    /// A row by row; the pitch angle is the first state.
+    pub by_states: Vec<Vec<Interval>>,
+    /// b.
+    pub by_elevator: Vec<Interval>,
+    /// r, and behind it $r_\delta$.
+    pub pitch_rate: Vec<Interval>,
+    /// The actuator.
+    pub lag: EnclosedLag,
+}
+
+/// [`ActuatorLag`] with every number between bounds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum EnclosedLag {
+    /// At once.
+    None,
+    /// τ, s.
+    First(Interval),
+    /// $\omega_n$, rad/s, and ζ.
+    Second(Interval, Interval),
+}
+
 /// A plant over a time, see [`PrintedPlant::over`].
 #[derive(Clone, Debug)]
 pub(crate) struct Passed {
@@ -75,24 +103,16 @@ impl PrintedPlant<'_> {
     /// for a plant that grows beyond the range of floats within a sample.
     pub fn sampled(&self) -> Result<SampledPlant<Interval>, NotProved> {
         LinearPlant::new(self.numerator, self.denominator, self.elevator_sign)?;
-        let dt_s = printed(positive("sample period, s", self.dt_s)?);
-        let alpha = self.monic_denominator();
-        let sign = Interval::point(self.elevator_sign.per_nose_up());
-        let by_elevator: Vec<Interval> =
-            self.markov_parameters(&alpha).into_iter().map(|h| sign * h).collect();
-        let a = companion(&alpha);
-        let rate = self.rate_row(&a, &by_elevator);
-        let (a, b) = self.with_actuator(a, &by_elevator)?;
-        let (phi, gamma) =
-            held(&IntervalMatrix::from_rows(&a)?, &IntervalMatrix::from_rows(&b)?, dt_s)?;
-        let (states, mut rows) = (rate.len(), side_by_side(&phi, &gamma));
-        if self.lag == ActuatorLag::None {
-            // The remembered deflection is the command.
-            let by_command = rows.len() - 1;
-            rows[by_command - states..].fill(Interval::ZERO);
-            rows[by_command] = Interval::ONE;
-        }
-        Ok(SampledPlant { states, rows, rate })
+        self.enclosed()?.sampled(self.dt_s)
+    }
+
+    /// The plant in continuous time, in the observability form.
+    fn enclosed(&self) -> Result<EnclosedPlant, NotProved> {
+        let enclose = |values: &[f64]| values.iter().map(|&value| printed(value)).collect();
+        let (numerator, denominator): (Vec<_>, Vec<_>) =
+            (enclose(self.numerator), enclose(self.denominator));
+        let lag = EnclosedLag::printed(self.lag)?;
+        Ok(EnclosedPlant::of_transfer_function(&numerator, &denominator, self.elevator_sign, lag))
     }
 
     /// $e^{A t} B$ over the plant's own states, for every time t from 0 to one sample: what an impulse of the elevator, in
@@ -103,11 +123,9 @@ impl PrintedPlant<'_> {
     pub fn impulse_within_sample(&self) -> Result<Vec<Interval>, NotProved> {
         LinearPlant::new(self.numerator, self.denominator, self.elevator_sign)?;
         let dt_s = printed(positive("sample period, s", self.dt_s)?);
-        let alpha = self.monic_denominator();
-        let sign = Interval::point(self.elevator_sign.per_nose_up());
-        let markov = self.markov_parameters(&alpha);
-        let column: Vec<[Interval; 1]> = markov.into_iter().map(|h| [sign * h]).collect();
-        let a = IntervalMatrix::from_rows(&companion(&alpha))?;
+        let EnclosedPlant { by_states, by_elevator, .. } = self.enclosed()?;
+        let column: Vec<[Interval; 1]> = by_elevator.into_iter().map(|h| [h]).collect();
+        let a = IntervalMatrix::from_rows(&by_states)?;
         let motion = exponential(&a.scaled(Interval::ZERO.hull(dt_s)))?;
         Ok(motion.product(&IntervalMatrix::from_rows(&column)?)?.entries().collect())
     }
@@ -122,11 +140,7 @@ impl PrintedPlant<'_> {
             let what = "order of the lag";
             return Err(NotProved::Number { what, found: 0.0, allowed: "1" });
         };
-        let alpha = self.monic_denominator();
-        let sign = Interval::point(self.elevator_sign.per_nose_up());
-        let by_elevator: Vec<Interval> =
-            self.markov_parameters(&alpha).into_iter().map(|h| sign * h).collect();
-        let (a, b) = self.with_actuator(companion(&alpha), &by_elevator)?;
+        let (a, b) = self.enclosed()?.with_actuator();
         let (follow, by_command) =
             held(&IntervalMatrix::from_rows(&a)?, &IntervalMatrix::from_rows(&b)?, time_s)?;
         // The deflection is what it was and the held rate makes of it.
@@ -144,61 +158,101 @@ impl PrintedPlant<'_> {
         let column = |matrix: &IntervalMatrix| matrix.entries().collect();
         Ok(Passed { by_command: column(&by_command), ramp: column(&ramp), follow })
     }
+}
 
-    /// $a_{n-1} \dots a_0$ of the monic denominator.
-    fn monic_denominator(&self) -> Vec<Interval> {
-        let mut coefficients = self.denominator.iter().map(|&value| printed(value));
-        let leading = coefficients.next().unwrap_or(Interval::ZERO);
-        coefficients.map(|value| value / leading).collect()
-    }
-
-    /// $h_1 \dots h_n$, with $h_0 = 0$ and
-    ///
-    /// $$ h_k = \beta_k - \sum_{i=1}^{k-1} \alpha_i h_{k-i} $$
-    fn markov_parameters(&self, alpha: &[Interval]) -> Vec<Interval> {
-        let leading = printed(self.denominator.first().copied().unwrap_or(0.0));
-        let offset = self.denominator.len() - self.numerator.len();
-        let mut markov: Vec<Interval> = Vec::with_capacity(alpha.len());
-        for k in 1..=alpha.len() {
-            let given = k.checked_sub(offset).and_then(|i| self.numerator.get(i));
-            let beta = given.map_or(Interval::ZERO, |&value| printed(value) / leading);
-            let past = alpha.iter().zip(markov.iter().rev());
-            markov.push(past.fold(beta, |rest, (&alpha, &h)| rest - alpha * h));
-        }
-        markov
-    }
-
-    /// Row from states to pitch rate: θ' is the second state and what the elevator adds to it at once;
-    /// of a plant of order 1 it is its only equation.
-    fn rate_row(&self, a: &[Vec<Interval>], by_elevator: &[Interval]) -> Vec<Interval> {
-        let order = a.len();
-        let mut rate = vec![Interval::ZERO; order];
-        match rate.get_mut(1) {
+impl EnclosedPlant {
+    /// The observability form of a transfer function, coefficients with the highest power of s first: pitch angle and its
+    /// derivatives, less what the elevator adds to them at once.
+    #[must_use]
+    pub fn of_transfer_function(
+        numerator: &[Interval],
+        denominator: &[Interval],
+        elevator_sign: ElevatorSign,
+        lag: EnclosedLag,
+    ) -> Self {
+        let leading = denominator.first().copied().unwrap_or(Interval::ZERO);
+        let alpha: Vec<Interval> = denominator.iter().skip(1).map(|&it| it / leading).collect();
+        let sign = Interval::point(elevator_sign.per_nose_up());
+        let markov = markov_parameters(numerator, leading, &alpha);
+        let by_elevator: Vec<Interval> = markov.into_iter().map(|h| sign * h).collect();
+        let by_states = companion(&alpha);
+        // θ' is the second state and what the elevator adds to it; of a plant of order 1 it is its only equation.
+        let mut pitch_rate = vec![Interval::ZERO; alpha.len()];
+        match pitch_rate.get_mut(1) {
             Some(second) => *second = Interval::ONE,
-            None => rate.clone_from_slice(&a[0]),
+            None => pitch_rate.clone_from_slice(&by_states[0]),
         }
-        rate.push(by_elevator[0]);
-        if matches!(self.lag, ActuatorLag::Second { .. }) {
-            rate.push(Interval::ZERO);
+        pitch_rate.push(by_elevator[0]);
+        Self { by_states, by_elevator, pitch_rate, lag }
+    }
+
+    /// True if every plant of another is one of these.
+    #[must_use]
+    pub fn encloses(&self, other: &Self) -> bool {
+        let all = |own: &[Interval], other: &[Interval]| {
+            let each = own.iter().zip(other);
+            own.len() == other.len() && each.into_iter().all(|(own, other)| own.encloses(*other))
+        };
+        let rows = self.by_states.iter().zip(&other.by_states);
+        let lag = match (self.lag, other.lag) {
+            (EnclosedLag::None, EnclosedLag::None) => true,
+            (EnclosedLag::First(own), EnclosedLag::First(other)) => own.encloses(other),
+            (EnclosedLag::Second(own, damping), EnclosedLag::Second(other, its)) => {
+                own.encloses(other) && damping.encloses(its)
+            }
+            _ => false,
+        };
+        lag && self.by_states.len() == other.by_states.len()
+            && rows.into_iter().all(|(own, other)| all(own, other))
+            && all(&self.by_elevator, &other.by_elevator)
+            && all(&self.pitch_rate, &other.pitch_rate)
+    }
+
+    /// True if its matrices fit together.
+    #[must_use]
+    pub fn is_square(&self) -> bool {
+        let states = self.by_states.len();
+        states > 0
+            && self.by_states.iter().all(|row| row.len() == states)
+            && self.by_elevator.len() == states
+            && self.pitch_rate.len() == states + 1
+    }
+
+    /// The plant over one sample, its command held: own states, then the deflection, then its rate where the lag is of
+    /// second order.
+    ///
+    /// # Errors
+    /// [`NotProved::Number`] for a period that is not finite and positive, [`NotProved::Unbounded`] for a plant that may
+    /// grow beyond the range of floats within a sample.
+    pub fn sampled(&self, dt_s: f64) -> Result<SampledPlant<Interval>, NotProved> {
+        let dt_s = printed(positive("sample period, s", dt_s)?);
+        let (a, b) = self.with_actuator();
+        let (phi, gamma) =
+            held(&IntervalMatrix::from_rows(&a)?, &IntervalMatrix::from_rows(&b)?, dt_s)?;
+        let mut rate = self.pitch_rate.clone();
+        rate.resize(a.len(), Interval::ZERO);
+        let (states, mut rows) = (a.len(), side_by_side(&phi, &gamma));
+        if self.lag == EnclosedLag::None {
+            // The remembered deflection is the command.
+            let by_command = rows.len() - 1;
+            rows[by_command - states..].fill(Interval::ZERO);
+            rows[by_command] = Interval::ONE;
         }
-        rate
+        Ok(SampledPlant { states, rows, rate })
     }
 
     /// Rows of state matrix and input of plant and actuator. Without a lag the elevator is the command,
     /// and the deflection does not move by itself.
-    fn with_actuator(
-        &self,
-        mut a: Rows,
-        by_elevator: &[Interval],
-    ) -> Result<(Rows, Rows), NotProved> {
+    fn with_actuator(&self) -> (Rows, Rows) {
+        let mut a = self.by_states.clone();
         let order = a.len();
-        let (own, by_command) = self.lag.rows()?;
+        let (own, by_command) = self.lag.rows();
         let states = order + own.len();
         let mut b = vec![vec![Interval::ZERO]; states];
         b[states - 1] = vec![by_command];
-        for ((row, b), &h) in a.iter_mut().zip(&mut b).zip(by_elevator) {
+        for ((row, b), &h) in a.iter_mut().zip(&mut b).zip(&self.by_elevator) {
             row.resize(states, Interval::ZERO);
-            if self.lag == ActuatorLag::None {
+            if self.lag == EnclosedLag::None {
                 *b = vec![h];
             } else {
                 row[order] = h;
@@ -209,8 +263,27 @@ impl PrintedPlant<'_> {
             row[order..].copy_from_slice(&by_own);
             a.push(row);
         }
-        Ok((a, b))
+        (a, b)
     }
+}
+
+/// $h_1 \dots h_n$ of a monic denominator, with $h_0 = 0$ and
+///
+/// $$ h_k = \beta_k - \sum_{i=1}^{k-1} \alpha_i h_{k-i} $$
+fn markov_parameters(
+    numerator: &[Interval],
+    leading: Interval,
+    alpha: &[Interval],
+) -> Vec<Interval> {
+    let offset = (alpha.len() + 1).saturating_sub(numerator.len());
+    let mut markov: Vec<Interval> = Vec::with_capacity(alpha.len());
+    for k in 1..=alpha.len() {
+        let given = k.checked_sub(offset).and_then(|i| numerator.get(i));
+        let beta = given.map_or(Interval::ZERO, |&value| value / leading);
+        let past = alpha.iter().zip(markov.iter().rev());
+        markov.push(past.fold(beta, |rest, (&alpha, &h)| rest - alpha * h));
+    }
+    markov
 }
 
 impl From<Lag> for ActuatorLag {
@@ -225,23 +298,38 @@ impl From<Lag> for ActuatorLag {
     }
 }
 
-impl ActuatorLag {
-    /// Derivatives of the actuator's states by these states, and of the last of them by the command.
-    fn rows(self) -> Result<(Rows, Interval), NotProved> {
-        match self {
-            Self::None => Ok((vec![vec![Interval::ZERO]], Interval::ZERO)),
-            Self::First { time_constant_s } => {
-                let time_s = printed(positive("time constant, s", time_constant_s)?);
-                let by_command = Interval::ONE / time_s;
-                Ok((vec![vec![-by_command]], by_command))
+impl EnclosedLag {
+    /// The lag as it is printed.
+    ///
+    /// # Errors
+    /// [`NotProved::Number`] for a constant that is not finite and positive.
+    pub fn printed(lag: ActuatorLag) -> Result<Self, NotProved> {
+        let enclosed = |what, value| positive(what, value).map(printed);
+        Ok(match lag {
+            ActuatorLag::None => Self::None,
+            ActuatorLag::First { time_constant_s } => {
+                Self::First(enclosed("time constant, s", time_constant_s)?)
             }
-            Self::Second { natural_frequency_rad_s, damping } => {
-                let wn = printed(positive("natural frequency, rad/s", natural_frequency_rad_s)?);
-                let damping = printed(positive("damping ratio", damping)?);
+            ActuatorLag::Second { natural_frequency_rad_s, damping } => Self::Second(
+                enclosed("natural frequency, rad/s", natural_frequency_rad_s)?,
+                enclosed("damping ratio", damping)?,
+            ),
+        })
+    }
+
+    /// Derivatives of the actuator's states by these states, and of the last of them by the command.
+    fn rows(self) -> (Rows, Interval) {
+        match self {
+            Self::None => (vec![vec![Interval::ZERO]], Interval::ZERO),
+            Self::First(time_s) => {
+                let by_command = Interval::ONE / time_s;
+                (vec![vec![-by_command]], by_command)
+            }
+            Self::Second(wn, damping) => {
                 let stiffness = wn * wn;
                 let by_rate = -(Interval::point(2.0) * damping * wn);
                 let deflection = vec![Interval::ZERO, Interval::ONE];
-                Ok((vec![deflection, vec![-stiffness, by_rate]], stiffness))
+                (vec![deflection, vec![-stiffness, by_rate]], stiffness)
             }
         }
     }

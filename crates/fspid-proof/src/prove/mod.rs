@@ -159,7 +159,8 @@ const SHARES: u32 = 4;
 /// that some room is left for motions.
 const SHARES_AT_REST: u32 = 8;
 
-struct Prover<'a> {
+/// What is known of a loop, and how hard to try.
+pub(crate) struct Prover<'a> {
     description: &'a LoopDescription,
     asked: &'a Asked,
     effort: &'a Effort,
@@ -176,7 +177,7 @@ struct Prover<'a> {
 }
 
 impl<'a> Prover<'a> {
-    fn new(
+    pub(crate) fn new(
         description: &'a LoopDescription,
         asked: &'a Asked,
         effort: &'a Effort,
@@ -208,7 +209,7 @@ impl<'a> Prover<'a> {
         })
     }
 
-    fn set(&self, factor: f64) -> GainSet {
+    pub(crate) fn set(&self, factor: f64) -> GainSet {
         match &self.increments {
             Some(increments) => increments.gains(factor),
             None => GainSet::fixed(self.description.controller.nominal()),
@@ -256,7 +257,7 @@ impl<'a> Prover<'a> {
     }
 
     /// A proof for the range, if there is one.
-    fn stable(&self, set: &GainSet) -> Option<(Certificate, Rechecked)> {
+    pub(crate) fn stable(&self, set: &GainSet) -> Option<(Certificate, Rechecked)> {
         if let Some(found) = self.proved(set, 1.0, true) {
             return Some(found);
         }
@@ -362,6 +363,15 @@ impl<'a> Prover<'a> {
         }
     }
 
+    /// The prover of the same controller around another plant.
+    pub(crate) fn of(&self, enclosed: LoopModel<Interval>) -> Self {
+        Self { model: enclosed.midpoint(), enclosed, ..self.within(self.range) }
+    }
+
+    pub(crate) const fn description(&self) -> &LoopDescription {
+        self.description
+    }
+
     /// Rest for the range of set-points and loads.
     fn rest(&self, set: &GainSet) -> Result<Rest, NoRest> {
         Rest::of(self.description, set, self.range)
@@ -410,7 +420,7 @@ impl<'a> Prover<'a> {
         limits::not_covered(self.description).is_none()
     }
 
-    fn rechecked(
+    pub(crate) fn rechecked(
         &self,
         claim: Claim,
         factor: f64,
@@ -428,6 +438,7 @@ impl<'a> Prover<'a> {
             claim,
             level,
             steps: None,
+            family: None,
         };
         let set = self.set(factor);
         let recheck = Recheck::with(&certificate, self.enclosed.clone(), set, &self.slopes).ok()?;

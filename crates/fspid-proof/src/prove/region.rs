@@ -48,6 +48,7 @@ impl<'a> Region<'a> {
             left_out: prover.asked.left_out.clone(),
             claim: Claim::BoundedRate(claim.clone()),
             steps: None,
+            family: None,
             level: None,
         };
         let recheck =

@@ -16,7 +16,7 @@ type Frozen = ([f64; 2], f64, Matrix);
 impl Prover<'_> {
     /// Gains that the loop really has, standing still, under which it grows: those at rest if they do, which
     /// says most, as it is the flown loop's own growth.
-    pub(super) fn frozen_growth(&self) -> Option<Verdict> {
+    pub(crate) fn frozen_growth(&self) -> Option<Verdict> {
         let worst = || self.frozen().into_iter().max_by(|one, other| one.1.total_cmp(&other.1));
         let at_rest = self.frozen_at([0.0; 2]).and_then(|found| self.growth_of(found));
         at_rest.or_else(|| self.growth_of(worst()?))

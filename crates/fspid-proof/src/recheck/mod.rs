@@ -12,6 +12,7 @@ use fspid_sim::loop_model::LoopModel;
 use crate::certificate::{Certificate, Claim};
 use crate::check::{IntervalMatrix, NotProved, Relaxation, decreases, is_positive, prove_growth};
 use crate::description::NotProvable;
+use crate::family::{CheckedFamily, FamilyError};
 use crate::gain_set::{Cone, GainSet, HeldGains, IncrementMap, KnownSlopes, NoSlopes, producible};
 use crate::limits;
 use crate::rest::{NoRest, Rest};
@@ -47,6 +48,8 @@ pub struct Rechecked {
     pub remains_rad: f64,
     /// Steps from rest that were flown in sets; none where none are claimed.
     pub stepped: Option<Stepped>,
+    /// Members of a family; none where none is claimed.
+    pub family: Option<CheckedFamily>,
 }
 
 /// Where a law keeps its gains to a rate.
@@ -104,6 +107,9 @@ pub enum RecheckError {
         /// Which.
         gains: Gains<f64>,
     },
+    /// The family is not proved.
+    #[error(transparent)]
+    Family(#[from] FamilyError),
     /// The certificate does not fit together.
     #[error("{what}")]
     Malformed {
@@ -235,6 +241,12 @@ impl<'a> Recheck<'a> {
         }
         let Proved { inequalities, kept, pitch_within_rad, remains_rad } = self.proved()?;
         let stepped = self.stepped()?;
+        let family = self
+            .certificate
+            .family
+            .as_ref()
+            .map(|family| family.check(self.certificate, &self.set, self.stops));
+        let family = family.transpose()?;
         let bounds = self.set.bounds();
         Ok(Rechecked {
             cells: self.set.cells.len(),
@@ -247,6 +259,7 @@ impl<'a> Recheck<'a> {
             rest_error_rad: self.rest.error_rad,
             remains_rad,
             stepped,
+            family,
         })
     }
 

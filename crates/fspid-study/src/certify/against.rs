@@ -1,16 +1,16 @@
 //! What is certified beside what a scenario flies, field by field.
 
 use super::comparison::{Comparison, Difference};
-use fspid_proof::{Asked, LoopDescription};
+use fspid_proof::{Asked, LeftOut, LoopDescription};
 use fspid_sim::SimError;
 use serde_json::{Value, json};
 
-use super::asked;
 use super::checked::CheckedFile;
 use super::controller_file::ControllerFile;
 use super::loop_file::LoopFile;
+use super::{asked, family};
 use crate::analysis::lasting_plants;
-use fspid_scenario::file::Study;
+use fspid_scenario::file::{Study, Template};
 
 /// What stands in for something that is not there.
 const NOTHING: &str = "nothing";
@@ -55,6 +55,39 @@ impl CheckedFile {
 }
 
 impl CheckedFile {
+    /// As [`compare`](Self::compare) with a scenario that can be built with what its dispersions draw, so that a certified
+    /// family is compared as well.
+    ///
+    /// # Errors
+    /// As [`compare`](Self::compare).
+    pub fn compare_family(&mut self, template: &Template) -> Result<(), SimError> {
+        let study = template.study();
+        self.compare(study)?;
+        let (Some(family), Some(against)) = (&self.certificate.family, &mut self.against) else {
+            return Ok(());
+        };
+        let scenario = &study.scenario;
+        let own = &self.certificate.description;
+        let named = scenario.controllers.iter().find(|it| it.name == self.origin.controller);
+        let plants = lasting_plants(scenario)?;
+        let loops = plants.iter().filter_map(|(_, plant)| {
+            let described = LoopDescription::of(scenario, plant, &named?.controller).ok()?;
+            (described == *own).then_some(plant)
+        });
+        let differs = |plant| family::differs(family, template, (own, plant));
+        let flown = loops.map(differs).next();
+        let dispersions = format!("\"{}\"", LeftOut::Dispersions.name());
+        // What the family is about is left out of nothing.
+        against.differences.retain(|it| it.flown != dispersions);
+        let Some(flown) = flown.unwrap_or_else(|| Some("another loop".to_owned())) else {
+            return Ok(());
+        };
+        let path = "family".to_owned();
+        let certified = family::box_in_words(&family.parameters);
+        against.differences.push(Difference { path, certified, flown });
+        Ok(())
+    }
+
     /// What a scenario has that the claim does not cover and does not say that it leaves out.
     fn beyond(&self, differences: &mut Vec<Difference>, asked: &Asked) {
         let Ok(rechecked) = &self.result else { return };

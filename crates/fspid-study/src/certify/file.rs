@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 
 use super::controller_file::ControllerFile;
 use super::digest::digest;
+use super::family_file::FamilyFile;
 use super::json_text;
 use super::loop_file::LoopFile;
 use super::no_certificate::NoCertificate;
@@ -58,6 +59,8 @@ struct CertificateFile {
     level: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     steps: Option<StepsFile>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    family: Option<FamilyFile>,
 }
 
 /// What becomes of limits.
@@ -94,7 +97,7 @@ pub(super) type Rows = Vec<Vec<f64>>;
 
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
-enum ClaimFile {
+pub(super) enum ClaimFile {
     StableAtAnySpeed {
         rate: f64,
         form: Rows,
@@ -168,9 +171,10 @@ pub fn to_text(certificate: &Certificate, origin: &Origin) -> String {
         },
         not_in_this_claim: certificate.left_out.iter().map(|one| one.name().to_owned()).collect(),
         limits: limits_of(certificate),
-        claim: claim_file(&certificate.claim),
+        claim: ClaimFile::of(&certificate.claim),
         level: certificate.level,
         steps: certificate.steps.as_ref().map(StepsFile::of),
+        family: certificate.family.as_ref().map(FamilyFile::of),
     };
     file.content_digest = Some(file.content());
     let value = serde_json::to_value(&file).unwrap_or_else(|error| json!(error.to_string()));
@@ -253,8 +257,9 @@ impl CertificateFile {
         let left_out = kept(&mut problems, "not_in_this_claim", left_out);
         let steps = self.steps.as_ref().map(StepsFile::build).transpose();
         let steps = kept(&mut problems, "steps", steps);
-        let parts = description.zip(claim).zip(left_out).zip(steps);
-        let Some((((description, claim), left_out), steps)) = parts else {
+        let family = kept(&mut problems, "family", self.family.map(FamilyFile::build).transpose());
+        let parts = description.zip(claim).zip(left_out).zip(steps).zip(family);
+        let Some(((((description, claim), left_out), steps), family)) = parts else {
             return Err(NoCertificate { problems });
         };
         let certificate = Certificate {
@@ -266,6 +271,7 @@ impl CertificateFile {
             claim,
             level: self.level,
             steps,
+            family,
         };
         let stated = limits_of(&certificate);
         if self.limits != stated {
@@ -304,46 +310,46 @@ pub(super) fn matrix(rows: &Rows) -> Result<Matrix, String> {
     Matrix::from_rows(rows).map_err(|error| error.to_string())
 }
 
-fn claim_file(claim: &Claim) -> ClaimFile {
-    match claim {
-        Claim::CommonQuadratic { form, rate } => {
-            ClaimFile::StableAtAnySpeed { rate: *rate, form: rows(form) }
-        }
-        Claim::SProcedure { form, rate, multipliers } => ClaimFile::StableAsTiedToTheError {
-            rate: *rate,
-            form: rows(form),
-            multipliers: multipliers.clone(),
-        },
-        Claim::BoundedRate(BoundedRate { ends, changes, forms, rate, inputs }) => {
-            ClaimFile::StableAtBoundedRate {
+impl ClaimFile {
+    pub(super) fn of(claim: &Claim) -> Self {
+        match claim {
+            Claim::CommonQuadratic { form, rate } => {
+                ClaimFile::StableAtAnySpeed { rate: *rate, form: rows(form) }
+            }
+            Claim::SProcedure { form, rate, multipliers } => ClaimFile::StableAsTiedToTheError {
                 rate: *rate,
-                ends: *ends,
-                changes: *changes,
-                forms: forms.each_ref().map(rows),
-                inputs: *inputs,
-            }
-        }
-        Claim::FrozenGrowth { input, factor, form, direction } => {
-            ClaimFile::UnstableWithFrozenGains {
-                input: *input,
-                factor: *factor,
                 form: rows(form),
-                direction: direction.clone(),
+                multipliers: multipliers.clone(),
+            },
+            Claim::BoundedRate(BoundedRate { ends, changes, forms, rate, inputs }) => {
+                ClaimFile::StableAtBoundedRate {
+                    rate: *rate,
+                    ends: *ends,
+                    changes: *changes,
+                    forms: forms.each_ref().map(rows),
+                    inputs: *inputs,
+                }
             }
-        }
-        Claim::SequenceGrowth { inputs, factor, form, direction } => {
-            ClaimFile::UnstableWithASequenceOfGains {
-                inputs: inputs.clone(),
-                factor: *factor,
-                form: rows(form),
-                direction: direction.clone(),
+            Claim::FrozenGrowth { input, factor, form, direction } => {
+                ClaimFile::UnstableWithFrozenGains {
+                    input: *input,
+                    factor: *factor,
+                    form: rows(form),
+                    direction: direction.clone(),
+                }
+            }
+            Claim::SequenceGrowth { inputs, factor, form, direction } => {
+                ClaimFile::UnstableWithASequenceOfGains {
+                    inputs: inputs.clone(),
+                    factor: *factor,
+                    form: rows(form),
+                    direction: direction.clone(),
+                }
             }
         }
     }
-}
 
-impl ClaimFile {
-    fn build(self) -> Result<Claim, String> {
+    pub(super) fn build(self) -> Result<Claim, String> {
         Ok(match self {
             Self::StableAtAnySpeed { rate, form } => {
                 Claim::CommonQuadratic { form: matrix(&form)?, rate }

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::scope::{Told, told_deg};
 use super::text::found;
-use super::{Certification, Certified, CheckedFile, Comparison, NotProvable, Seal};
+use super::{Certification, Certified, CheckedFile, Comparison, NotProvable, Seal, family};
 use crate::json::{merged, present, with_null_reasons};
 
 /// Version of the answer's shape.
@@ -46,7 +46,9 @@ fn result(certified: &Certified) -> Value {
     let of = json!({ "name": certified.controller, "plant_from_s": certified.from_s });
     let refused =
         |reason: &NotProvable| json!({ "verdict": "not provable", "reason": reason.to_string() });
-    merged([of, certified.outcome.as_ref().map_or_else(refused, outcome)])
+    let family = certified.family.as_ref().map(family::in_json);
+    let family = present(json!({ "family": family }));
+    merged([of, certified.outcome.as_ref().map_or_else(refused, outcome), family])
 }
 
 fn outcome(outcome: &Outcome) -> Value {

@@ -10,6 +10,8 @@ mod comparison;
 mod controller_file;
 mod coverage;
 mod digest;
+mod family;
+mod family_file;
 mod file;
 mod json;
 mod json_text;
@@ -29,13 +31,14 @@ use fspid_sim::{LinearPlant, SimError};
 
 use crate::analysis::lasting_plants;
 use crate::output::{Names, Place};
-use fspid_scenario::file::Study;
+use fspid_scenario::file::{Study, Template};
 
 pub use fspid_proof::Effort;
 
 pub use checked::{Answer, CheckedFile, check_text};
 pub use comparison::{Comparison, Difference};
 pub use coverage::{COVERAGE, KeyCoverage, Treatment, coverage_table};
+pub use family::{FamilyAnswer, NoFamily};
 pub use file::{Origin, SCHEMA, Seal, from_text, to_text};
 pub use no_certificate::NoCertificate;
 pub use scope::in_short as scope_in_short;
@@ -50,15 +53,19 @@ pub struct Certified {
     pub from_s: f64,
     /// The answer, or why there can be none.
     pub outcome: Result<Outcome, NotProvable>,
+    /// What came of all that the dispersions can draw, where that was asked.
+    pub family: Option<FamilyAnswer>,
     /// Where its certificates come from.
     pub origin: Origin,
 }
 
 impl Certified {
-    /// True if stability is proved.
+    /// True if stability is proved, of the whole family where that was asked.
     #[must_use]
     pub fn is_proved(&self) -> bool {
-        matches!(&self.outcome, Ok(outcome) if matches!(outcome.verdict, Verdict::Proved(..)))
+        let itself =
+            matches!(&self.outcome, Ok(outcome) if matches!(outcome.verdict, Verdict::Proved(..)));
+        itself && self.family.as_ref().is_none_or(FamilyAnswer::is_proved)
     }
 
     /// The certificate of the verdict: of stability, or of growth; where the answer is neither for what the
@@ -125,6 +132,7 @@ impl Certification {
                     from_s: *from_s,
                     outcome: described
                         .and_then(|loop_| certify(&loop_, &asked(study, plant, &loop_), effort)),
+                    family: None,
                     origin: Origin {
                         program: env!("CARGO_PKG_VERSION").to_owned(),
                         scenario: scenario.name.clone(),
@@ -140,6 +148,37 @@ impl Certification {
         let subjects = scenario.controllers.iter().flat_map(|named| each(&named.name));
         let files = Names::with_endings(Place::PlainFile, subjects);
         Ok(Self { scenario: scenario.name.clone(), results, files })
+    }
+
+    /// Certifies all that the dispersions of the scenario can draw, with each of its loops that is proved; `template` is the
+    /// scenario that was certified. Tells the name of each controller before.
+    ///
+    /// # Errors
+    /// [`SimError`] where a plant has no linear model; where the effort was stopped, the loop has no answer.
+    pub fn with_families(
+        mut self,
+        template: &Template,
+        effort: &Effort,
+        tell: &mut dyn FnMut(&str),
+    ) -> Result<Self, SimError> {
+        let scenario = &template.study().scenario;
+        let plants = lasting_plants(scenario)?;
+        for certified in &mut self.results {
+            let Ok(outcome) = &mut certified.outcome else { continue };
+            let named = scenario.controllers.iter().find(|it| it.name == certified.controller);
+            let plant = plants.iter().find(|(at, _)| at.total_cmp(&certified.from_s).is_eq());
+            let (Some(named), Some((_, plant))) = (named, plant) else { continue };
+            tell(&certified.controller);
+            let described = LoopDescription::of(scenario, plant, &named.controller);
+            let answer = described.and_then(|description| {
+                family::certified(template, (&description, plant), outcome, effort)
+            });
+            match answer {
+                Ok(answer) => certified.family = Some(answer),
+                Err(stopped) => certified.outcome = Err(stopped),
+            }
+        }
+        Ok(self)
     }
 
     /// A file name for a certificate, which no other controller of the scenario has.

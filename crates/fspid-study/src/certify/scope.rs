@@ -4,6 +4,7 @@
 use fspid_proof::{Certificate, LeftOut, Range, Rechecked, Scope, Stepped};
 use serde_json::{Value, json};
 
+use super::family;
 use crate::json::merged;
 use crate::metrics::short;
 use fspid_scenario::units::degrees;
@@ -13,6 +14,7 @@ pub(super) struct Told {
     /// None for a claim of growth, which is about no range.
     stable: Option<Scope>,
     left_out: Vec<LeftOut>,
+    family: Vec<String>,
 }
 
 impl Told {
@@ -20,7 +22,9 @@ impl Told {
         let scope = certificate.scope(rechecked);
         let left_out = scope.left_out.clone();
         let stable = certificate.claim.is_of_stability().then_some(scope);
-        Self { stable, left_out }
+        let family = certificate.family.as_ref().zip(rechecked.family);
+        let family = family.map_or_else(Vec::new, |(family, it)| family::sentences(family, it));
+        Self { stable, left_out, family }
     }
 
     /// Sentences, each with what it is about.
@@ -35,6 +39,7 @@ impl Told {
             sentences.push(("limits", limits(scope)));
             sentences.extend(scope.stepped.map(|stepped| ("steps", steps(&stepped))));
         }
+        sentences.extend(self.family.iter().map(|sentence| ("family", sentence.clone())));
         let left_out = self.left_out.iter().enumerate();
         sentences.extend(left_out.map(|(place, one)| {
             (if place == 0 { "not in this claim" } else { "" }, one.to_string())

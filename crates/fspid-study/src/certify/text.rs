@@ -31,6 +31,10 @@ fn push(out: &mut String, certified: &Certified) {
         Ok(outcome) => {
             out.push_str(&format!("\n{name}\n  {}\n", headline(outcome)));
             push_outcome(out, certified, outcome);
+            // A proved one is among what the certificate says.
+            if let Some(family) = certified.family.as_ref().filter(|it| !it.is_proved()) {
+                out.push_str(&format!("  family             {}\n", family.text()));
+            }
         }
     }
 }

@@ -7,8 +7,10 @@ use fspid_proof::sizes::{
     MOST_CONES, MOST_DIVISIONS, MOST_LOADS, MOST_PIECES, MOST_SAMPLES, MOST_STATES,
 };
 
+use fspid_proof::{MOST_PARAMETERS, MOST_PARTS};
+
 use super::{Key, Shape, key, optional};
-use Shape::{Digest, Kinds, List, Number, Object, OrNull, Positive, Text, Whole, Word};
+use Shape::{Digest, Kinds, List, Number, Object, OrNull, Positive, Text, Truth, Whole, Word};
 
 /// A whole certificate, but for the first two keys, which are asked before.
 pub(in super::super) const CERTIFICATE: Shape = Object(&[
@@ -26,6 +28,7 @@ pub(in super::super) const CERTIFICATE: Shape = Object(&[
     key("claim", CLAIM),
     optional("level", Positive(LARGE)),
     optional("steps", STEPS),
+    optional("family", FAMILY),
 ]);
 
 /// Boxes of set-points, and parts of the loads.
@@ -39,6 +42,42 @@ const STEPS: Shape = Object(&[
         Object(&[key("rate", RATE), key("form", FORM), key("level", Positive(LARGE))]),
     ),
 ]);
+
+/// What differs, claims, and parts with their plants.
+const FAMILY: Shape = Object(&[
+    key("parameters", List(&PARAMETER, [1, MOST_PARAMETERS])),
+    key("claims", List(&CLAIM, [1, MOST_PARTS])),
+    key("parts", List(&PART, [1, MOST_PARTS])),
+]);
+
+const PARAMETER: Shape = Object(&[
+    key("name", Text(NAME)),
+    key("paths", List(&Text(NAME), [1, COEFFICIENTS])),
+    key("relative", Truth),
+    key("ends", BOTH_ENDS),
+]);
+
+/// Ends of a number of a plant.
+const BOTH_ENDS: Shape = List(&REAL, [2, 2]);
+const ROW: Shape = List(&BOTH_ENDS, [1, COEFFICIENTS]);
+
+const PART: Shape = Object(&[
+    key("ends", List(&BOTH_ENDS, [1, MOST_PARAMETERS])),
+    key("by_states", List(&ROW, [1, COEFFICIENTS])),
+    key("by_elevator", ROW),
+    key("pitch_rate", ROW),
+    key("lag", ENCLOSED_LAG),
+    key("claim", Whole(0, MOST_PARTS as u64)),
+]);
+
+const ENCLOSED_LAG: Shape = Kinds(
+    "order",
+    &[
+        ("none", &[]),
+        ("first", &[key("time_constant_s", BOTH_ENDS)]),
+        ("second", &[key("natural_frequency_rad_s", BOTH_ENDS), key("damping", BOTH_ENDS)]),
+    ],
+);
 
 /// Longest names.
 const NAME: usize = 1000;

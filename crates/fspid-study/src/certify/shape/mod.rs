@@ -29,6 +29,8 @@ pub(super) enum Shape {
     Text(usize),
     /// A SHA-256 in hexadecimal digits, not all of them 0.
     Digest,
+    /// `true` or `false`.
+    Truth,
     /// The shape, or `null`.
     OrNull(&'static Shape),
     /// A list of so many.
@@ -131,6 +133,7 @@ impl Walk {
             | Shape::Whole(..)
             | Shape::Word(_)
             | Shape::Text(_)
+            | Shape::Truth
             | Shape::Digest => self.expect(is_single(shape, value), value, || allowed(shape)),
         }
     }
@@ -205,6 +208,7 @@ fn is_single(shape: &Shape, value: &Value) -> bool {
             (1..=*most).contains(&text.chars().count()) && !text.chars().any(char::is_control)
         }),
         Shape::Digest => value.as_str().is_some_and(is_digest),
+        Shape::Truth => value.is_boolean(),
         Shape::OrNull(_) | Shape::List(..) | Shape::Object(_) | Shape::Kinds(..) => false,
     }
 }
@@ -225,6 +229,7 @@ fn allowed(shape: &Shape) -> String {
         Shape::Word(words) => quoted(words),
         Shape::Text(most) => format!("texts of 1 to {most} characters without line breaks"),
         Shape::Digest => "64 hexadecimal digits in lower case, not all of them 0".to_owned(),
+        Shape::Truth => "true and false".to_owned(),
         Shape::OrNull(shape) => allowed(shape),
         Shape::List(..) => "lists".to_owned(),
         Shape::Object(_) | Shape::Kinds(..) => "keys with values".to_owned(),

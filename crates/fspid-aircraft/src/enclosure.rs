@@ -1,0 +1,391 @@
+//! The linear model of pitch over a whole range of masses, speeds, altitudes and derivatives: every entry between bounds.
+//!
+//! Straight flight with wings level has closed forms: the elevator follows from the moments, the thrust from the forces
+//! along the flight path, and the angle of attack is the root of one equation, which Newton's method encloses in interval
+//! arithmetic. The derivatives of the equations of motion are written out, not differenced. For aircraft of derivatives to
+//! which nothing is added (no configurations, Mach rows, ground or engine of their own).
+
+use fspid_numeric::scalar::{Interval, Scalar};
+
+use crate::aerodynamics::derivatives::{
+    DragLaw, Geometry, Longitudinal, LongitudinalCoefficient, ThrustLaw,
+};
+use crate::atmosphere::Environment;
+use crate::data::{DerivativeData, Laws, Moment};
+use crate::trim::TrimTarget;
+
+/// Rounding of the standard atmosphere's powers, as a share.
+const AIR_ROUNDING: f64 = 1e-12;
+/// Place of the airspeed in rows.
+const SPEED: usize = 2;
+/// Most steps of Newton's method.
+const MOST_STEPS: usize = 40;
+
+/// One longitudinal coefficient, see [`LongitudinalCoefficient`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EnclosedCoefficient {
+    /// At the reference.
+    pub reference: Interval,
+    /// By angle of attack.
+    pub alpha: Interval,
+    /// By its rate.
+    pub alpha_rate: Interval,
+    /// By pitch rate.
+    pub pitch_rate: Interval,
+    /// By relative change of speed.
+    pub speed: Interval,
+    /// By elevator.
+    pub elevator: Interval,
+}
+
+/// A straight flight of an aircraft of derivatives, every number between bounds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EnclosedFlight {
+    /// Mass.
+    pub mass_kg: Interval,
+    /// How the moment of inertia in pitch is known.
+    pub inertia: EnclosedMoment,
+    /// How far the centre of gravity is behind that of the derivatives, in chords.
+    pub aft_chords: Interval,
+    /// True airspeed.
+    pub airspeed_m_s: Interval,
+    /// Geopotential altitude.
+    pub altitude_m: Interval,
+    /// Climb angle.
+    pub flight_path_rad: Interval,
+    /// Lift about the centre of gravity of the derivatives.
+    pub lift: EnclosedCoefficient,
+    /// Drag.
+    pub drag: EnclosedCoefficient,
+    /// Pitching moment.
+    pub pitch: EnclosedCoefficient,
+    /// Thrust by relative change of speed.
+    pub thrust_speed: Interval,
+    geometry: Geometry,
+    reference_airspeed_m_s: f64,
+    alpha_rad: Interval,
+    laws: Laws,
+    environment: Environment,
+}
+
+/// [`Moment`] between bounds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum EnclosedMoment {
+    /// Itself, kg m².
+    Inertia(Interval),
+    /// By the radius of gyration, m.
+    Gyration(Interval),
+}
+
+/// The linear model of pitch: rates of θ, q, V and α by these and by the elevator (SI, elevator as the derivatives count it).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EnclosedModel {
+    /// State matrix, row by row.
+    pub by_states: [[Interval; 4]; 4],
+    /// By elevator.
+    pub by_elevator: [Interval; 4],
+}
+
+/// What holds a straight flight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EnclosedTrim {
+    /// Angle of attack from the reference's, rad.
+    pub alpha_rad: Interval,
+    /// Elevator, rad.
+    pub elevator_rad: Interval,
+    /// Thrust, N.
+    pub thrust_n: Interval,
+}
+
+fn point(value: f64) -> Interval {
+    Interval::point(value)
+}
+
+impl EnclosedCoefficient {
+    fn of(row: &LongitudinalCoefficient) -> Self {
+        let LongitudinalCoefficient { reference, alpha, alpha_rate, pitch_rate, speed, elevator } =
+            *row;
+        Self {
+            reference: point(reference),
+            alpha: point(alpha),
+            alpha_rate: point(alpha_rate),
+            pitch_rate: point(pitch_rate),
+            speed: point(speed),
+            elevator: point(elevator),
+        }
+    }
+
+    /// This one and a part of another.
+    fn and(&self, part: Interval, other: &Self) -> Self {
+        Self {
+            reference: self.reference + part * other.reference,
+            alpha: self.alpha + part * other.alpha,
+            alpha_rate: self.alpha_rate + part * other.alpha_rate,
+            pitch_rate: self.pitch_rate + part * other.pitch_rate,
+            speed: self.speed + part * other.speed,
+            elevator: self.elevator + part * other.elevator,
+        }
+    }
+
+    /// Seen from a place that lags behind in angle of attack, see [`Longitudinal::moved`].
+    fn lagging(self, aft_chords: Interval) -> Self {
+        let pitch_rate = self.pitch_rate - point(2.0) * aft_chords * self.alpha;
+        Self { pitch_rate, ..self }
+    }
+}
+
+impl EnclosedFlight {
+    /// The flight of an aircraft at a target, each number as it is.
+    #[must_use]
+    pub fn of(
+        data: &DerivativeData,
+        laws: Laws,
+        environment: Environment,
+        target: TrimTarget,
+    ) -> Self {
+        // About the derivatives' own centre of gravity, with the lift that carries the weight of the reference.
+        let own = DerivativeData { loading: crate::data::Loading::default(), ..*data };
+        let Longitudinal { lift, drag, pitch, thrust_speed } = own.force_model(laws).longitudinal;
+        let inertia = match data.loading.pitch {
+            Some(Moment::Gyration(radius_m)) => EnclosedMoment::Gyration(point(radius_m)),
+            Some(Moment::Inertia(value)) => EnclosedMoment::Inertia(point(value)),
+            None => EnclosedMoment::Inertia(point(data.inertia.iy_kg_m2)),
+        };
+        let alpha = data.validity.alpha_rad;
+        Self {
+            mass_kg: point(data.mass_kg()),
+            inertia,
+            aft_chords: point(data.cg_aft_chords()),
+            airspeed_m_s: point(target.airspeed_m_s),
+            altitude_m: point(target.altitude_m),
+            flight_path_rad: point(target.flight_path_rad),
+            lift: EnclosedCoefficient::of(&lift),
+            drag: EnclosedCoefficient::of(&drag),
+            pitch: EnclosedCoefficient::of(&pitch),
+            thrust_speed: point(thrust_speed),
+            geometry: data.geometry,
+            reference_airspeed_m_s: data.reference.airspeed_m_s,
+            alpha_rad: Interval::between(alpha.min.max(-0.8), alpha.max.min(0.8)),
+            laws,
+            environment,
+        }
+    }
+
+    /// Density of the air: it falls with altitude.
+    fn density_kg_m3(&self) -> Interval {
+        let at = |altitude_m| self.environment.air_at(altitude_m).density_kg_m3;
+        let (least, most) = (at(self.altitude_m.upper()), at(self.altitude_m.lower()));
+        Interval::between(least * (1.0 - AIR_ROUNDING), most * (1.0 + AIR_ROUNDING))
+    }
+
+    /// Relative change of speed from the reference.
+    fn relative_speed(&self) -> Interval {
+        let reference = point(self.reference_airspeed_m_s);
+        (self.airspeed_m_s - reference) / reference
+    }
+
+    /// The coefficients about the centre of gravity that flies.
+    fn coefficients(&self) -> [EnclosedCoefficient; 3] {
+        let aft = self.aft_chords;
+        let turned = self.pitch.and(aft, &self.lift);
+        [self.lift, self.drag, turned].map(|row| row.lagging(aft))
+    }
+
+    /// $\bar q S$, N.
+    fn scale_n(&self) -> Interval {
+        let half = point(0.5) * self.density_kg_m3() * point(self.geometry.area_m2);
+        half * self.airspeed_m_s.square()
+    }
+
+    /// Angle of attack, elevator and thrust of every straight flight within; none where they are not found, or not only
+    /// one.
+    ///
+    /// With $\delta = -(C_{m_1} + C_{m_\alpha} \alpha + C_{m_u} \hat u) / C_{m_\delta}$ and
+    /// $T \cos\alpha = \bar q S C_D + m g \sin\gamma$ the forces across the flight path leave
+    ///
+    /// $$ f(\alpha) = \bar q S\, C_L + (\bar q S\, C_D + m g \sin\gamma) \tan\alpha - m g \cos\gamma = 0 $$
+    #[must_use]
+    pub fn trim(&self) -> Option<EnclosedTrim> {
+        let [lift, drag, pitch] = self.coefficients();
+        let (scale, speed) = (self.scale_n(), self.relative_speed());
+        let weight = self.mass_kg * point(self.environment.gravity_m_s2);
+        let (along, across) =
+            (weight * self.flight_path_rad.sin(), weight * self.flight_path_rad.cos());
+        // What the elevator that balances the moments makes of lift and drag.
+        let per_moment = |row: &EnclosedCoefficient| row.elevator / pitch.elevator;
+        let still = pitch.reference + pitch.speed * speed;
+        let balanced = |row: &EnclosedCoefficient| {
+            let share = per_moment(row);
+            [row.reference + row.speed * speed - share * still, row.alpha - share * pitch.alpha]
+        };
+        let [lift_at_0, lift_slope] = balanced(&lift);
+        let [drag_at_0, drag_slope] = balanced(&drag);
+        let bend = self.polar_bend();
+        let drag_of = |alpha: Interval| drag_at_0 + drag_slope * alpha + bend * alpha.square();
+        let value = |alpha: Interval| {
+            let drag = scale * drag_of(alpha) + along;
+            scale * (lift_at_0 + lift_slope * alpha) + drag * alpha.tan() - across
+        };
+        let slope = |alpha: Interval| {
+            let drag = scale * drag_of(alpha) + along;
+            let bent = drag_slope + point(2.0) * bend * alpha;
+            scale * lift_slope + scale * bent * alpha.tan() + drag / alpha.cos().square()
+        };
+        let alpha = enclosed_root(self.alpha_rad, value, slope)?;
+        let elevator = -(still + pitch.alpha * alpha) / pitch.elevator;
+        let thrust = (scale * drag_of(alpha) + along) / alpha.cos();
+        Some(EnclosedTrim { alpha_rad: alpha, elevator_rad: elevator, thrust_n: thrust })
+    }
+
+    /// k of the parabola of drag over the angle of attack beyond its tangent; 0 along the tangent.
+    fn polar_bend(&self) -> Interval {
+        match self.laws.drag {
+            DragLaw::Linear => Interval::ZERO,
+            DragLaw::Polar => {
+                point(0.5) * self.drag.alpha / self.lift.reference * self.lift.alpha
+            }
+        }
+    }
+
+    /// Slope of the thrust over speed, N s/m, at a thrust.
+    fn thrust_by_speed(&self, thrust_n: Interval) -> Interval {
+        match self.laws.thrust {
+            ThrustLaw::Constant => Interval::ZERO,
+            ThrustLaw::WithSpeed => {
+                let coefficient = self.drag.reference + self.thrust_speed * self.relative_speed();
+                let share = self.thrust_speed / point(self.reference_airspeed_m_s) / coefficient;
+                thrust_n * (point(2.0) / self.airspeed_m_s + share)
+            }
+        }
+    }
+
+    /// The linear model around the trim of every flight within; none where there is no trim, or none is found.
+    ///
+    /// $$ m \dot V = -\bar q S C_D + T \cos\alpha - m g \sin(\theta - \alpha), \quad
+    ///    m V (\dot\alpha - q) = -\bar q S C_L - T \sin\alpha + m g \cos(\theta - \alpha), \quad
+    ///    I_y \dot q = \bar q S \bar c\, C_m $$
+    ///
+    /// differentiated at $\dot V = \dot\alpha = q = 0$.
+    #[must_use]
+    pub fn model(&self) -> Option<EnclosedModel> {
+        let trim = self.trim()?;
+        let [lift, drag, pitch] = self.coefficients();
+        let half_chord_s = point(0.5) * point(self.geometry.chord_m) / self.airspeed_m_s;
+        let alpha_rate = self.alpha_rate_row(&trim, &lift);
+        // What a coefficient has of the angle of attack's rate, which follows from the other rows.
+        let with_rate = |row: [Interval; 5], by_rate: Interval| -> [Interval; 5] {
+            core::array::from_fn(|at| row[at] + half_chord_s * by_rate * alpha_rate[at])
+        };
+        let mut moments = self.slopes(&trim, &pitch, Interval::ZERO);
+        // The moment is 0 at the trim, whatever the pressure.
+        moments[SPEED] = pitch.speed / point(self.reference_airspeed_m_s);
+        let moments = with_rate(moments, pitch.alpha_rate);
+        let drags = with_rate(self.slopes(&trim, &drag, self.polar_bend()), drag.alpha_rate);
+        let per_inertia = self.scale_n() * point(self.geometry.chord_m) / self.inertia_kg_m2();
+        let theta_rate =
+            [Interval::ZERO, Interval::ONE, Interval::ZERO, Interval::ZERO, Interval::ZERO];
+        let rows = [
+            theta_rate,
+            moments.map(|it| per_inertia * it),
+            self.speed_rate_row(&trim, drags),
+            alpha_rate,
+        ];
+        let bounded = rows.iter().flatten().all(|it| it.is_bounded());
+        bounded.then(|| EnclosedModel {
+            by_states: rows.map(|[theta, q, speed, alpha, _]| [theta, q, speed, alpha]),
+            by_elevator: rows.map(|row| row[4]),
+        })
+    }
+
+    fn inertia_kg_m2(&self) -> Interval {
+        match self.inertia {
+            EnclosedMoment::Inertia(inertia) => inertia,
+            EnclosedMoment::Gyration(radius) => self.mass_kg * radius.square(),
+        }
+    }
+
+    /// A coefficient times the share of the dynamic pressure by θ, q, V, α and elevator, without the angle of attack's rate.
+    fn slopes(
+        &self,
+        trim: &EnclosedTrim,
+        row: &EnclosedCoefficient,
+        bend: Interval,
+    ) -> [Interval; 5] {
+        let alpha = trim.alpha_rad;
+        let at_trim = row.reference
+            + row.alpha * alpha
+            + row.speed * self.relative_speed()
+            + row.elevator * trim.elevator_rad
+            + bend * alpha.square();
+        let pressure = point(2.0) / self.airspeed_m_s;
+        [
+            Interval::ZERO,
+            point(0.5) * point(self.geometry.chord_m) / self.airspeed_m_s * row.pitch_rate,
+            row.speed / point(self.reference_airspeed_m_s) + pressure * at_trim,
+            row.alpha + point(2.0) * bend * alpha,
+            row.elevator,
+        ]
+    }
+
+    /// Rate of the angle of attack by θ, q, V, α and elevator.
+    ///
+    /// $(\bar q S C_L + T \sin\alpha) / (m V)$ holds the weight at the trim, $(g / V) \cos\gamma$: what both lose with 1/V
+    /// cancels.
+    fn alpha_rate_row(&self, trim: &EnclosedTrim, lift: &EnclosedCoefficient) -> [Interval; 5] {
+        let (sin, cos) = (trim.alpha_rad.sin(), trim.alpha_rad.cos());
+        let momentum = self.mass_kg * self.airspeed_m_s;
+        let across = self.scale_n() / momentum;
+        let gravity = point(self.environment.gravity_m_s2);
+        let turning = gravity / self.airspeed_m_s * self.flight_path_rad.sin();
+        let own = [
+            -turning,
+            Interval::ONE,
+            -(self.thrust_by_speed(trim.thrust_n) * sin / momentum),
+            turning - trim.thrust_n * cos / momentum,
+            Interval::ZERO,
+        ];
+        let lifts = self.slopes(trim, lift, Interval::ZERO);
+        let half_chord_s = point(0.5) * point(self.geometry.chord_m) / self.airspeed_m_s;
+        let rest = Interval::ONE + across * half_chord_s * lift.alpha_rate;
+        core::array::from_fn(|at| (own[at] - across * lifts[at]) / rest)
+    }
+
+    /// Rate of the airspeed by θ, q, V, α and elevator, with what the drag has of each.
+    fn speed_rate_row(&self, trim: &EnclosedTrim, drags: [Interval; 5]) -> [Interval; 5] {
+        let (sin, cos) = (trim.alpha_rad.sin(), trim.alpha_rad.cos());
+        let falling = point(self.environment.gravity_m_s2) * self.flight_path_rad.cos();
+        let own = [
+            -falling,
+            Interval::ZERO,
+            self.thrust_by_speed(trim.thrust_n) * cos / self.mass_kg,
+            falling - trim.thrust_n * sin / self.mass_kg,
+            Interval::ZERO,
+        ];
+        let per_mass = self.scale_n() / self.mass_kg;
+        core::array::from_fn(|at| own[at] - per_mass * drags[at])
+    }
+}
+
+/// The only root of a function within, by Newton's method: $N(X) = m - f(m) / f'(X)$.
+fn enclosed_root(
+    within: Interval,
+    value: impl Fn(Interval) -> Interval,
+    slope: impl Fn(Interval) -> Interval,
+) -> Option<Interval> {
+    let (mut root, mut exists) = (within, false);
+    for _ in 0..MOST_STEPS {
+        let slopes = slope(root);
+        if slopes.contains(0.0) || !slopes.is_bounded() {
+            return None;
+        }
+        let middle = point(root.midpoint());
+        let next = middle - value(middle) / slopes;
+        exists |= root.encloses(next);
+        let narrowed = next.intersection(root)?;
+        if narrowed == root {
+            break;
+        }
+        root = narrowed;
+    }
+    exists.then_some(root)
+}

@@ -1,0 +1,92 @@
+//! Whether boxes leave nothing of a box out.
+
+/// Ends of each side.
+type Ends = [[f64; 2]];
+
+/// True if every point of `whole` lies in one of `parts`; ends belong to both sides of them.
+///
+/// The whole is cut along a face of a part that goes through its inside, and both halves are asked in turn; each cut takes
+/// a face away, so that it ends. Parts that were made by cutting ask for as many cuts as they were made by.
+pub(super) fn covers(whole: &Ends, parts: &[&Ends]) -> bool {
+    let inside = |part: &&&Ends| part.iter().zip(whole).all(meets);
+    let near: Vec<&Ends> = parts.iter().filter(inside).copied().collect();
+    let Some(first) = near.first() else { return false };
+    if near.iter().any(|part| part.iter().zip(whole).all(|(part, whole)| holds(part, whole))) {
+        return true;
+    }
+    let Some((side, at)) = face_within(first, whole) else { return false };
+    [[whole[side][0], at], [at, whole[side][1]]].into_iter().all(|half| {
+        let mut ends = whole.to_vec();
+        ends[side] = half;
+        covers(&ends, &near)
+    })
+}
+
+fn holds(part: &[f64; 2], whole: &[f64; 2]) -> bool {
+    part[0] <= whole[0] && whole[1] <= part[1]
+}
+
+/// More than a face in common, or all of a side without width.
+fn meets((part, whole): (&[f64; 2], &[f64; 2])) -> bool {
+    let (from, to) = (part[0].max(whole[0]), part[1].min(whole[1]));
+    from < to || (from <= to && whole[0] >= whole[1])
+}
+
+/// A face of a part that cuts the whole in two.
+fn face_within(part: &Ends, whole: &Ends) -> Option<(usize, f64)> {
+    let sides = part.iter().zip(whole).enumerate();
+    let mut faces = sides.flat_map(|(side, (part, whole))| part.map(|at| (side, at, *whole)));
+    faces.find(|(_, at, whole)| whole[0] < *at && *at < whole[1]).map(|(side, at, _)| (side, at))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn covered(whole: &[[f64; 2]], parts: &[Vec<[f64; 2]>]) -> bool {
+        let parts: Vec<&Ends> = parts.iter().map(Vec::as_slice).collect();
+        covers(whole, &parts)
+    }
+
+    #[test]
+    fn parts_made_by_cutting_cover_and_without_one_of_them_they_do_not() {
+        let whole = [[0.0, 1.0], [2.0, 4.0]];
+        let parts = vec![
+            vec![[0.0, 0.5], [2.0, 4.0]],
+            vec![[0.5, 1.0], [2.0, 3.0]],
+            vec![[0.5, 0.75], [3.0, 4.0]],
+            vec![[0.75, 1.0], [3.0, 4.0]],
+        ];
+        assert!(covered(&whole, &parts));
+        for left_out in 0..parts.len() {
+            let mut fewer = parts.clone();
+            fewer.remove(left_out);
+            assert!(!covered(&whole, &fewer), "without {left_out}");
+        }
+    }
+
+    #[test]
+    fn a_pinwheel_that_no_single_cut_divides_is_covered_and_without_its_middle_not() {
+        let whole = [[0.0, 3.0], [0.0, 3.0]];
+        let middle = vec![[1.0, 2.0], [1.0, 2.0]];
+        let mut parts = vec![
+            vec![[0.0, 2.0], [0.0, 1.0]],
+            vec![[2.0, 3.0], [0.0, 2.0]],
+            vec![[1.0, 3.0], [2.0, 3.0]],
+            vec![[0.0, 1.0], [1.0, 3.0]],
+        ];
+        assert!(!covered(&whole, &parts));
+        parts.push(middle);
+        assert!(covered(&whole, &parts));
+    }
+
+    #[test]
+    fn a_gap_of_one_float_is_seen_and_a_side_without_width_is_no_gap() {
+        let below = 0.5_f64.next_down();
+        let gap = [vec![[0.0, below]], vec![[0.5, 1.0]]];
+        assert!(!covered(&[[0.0, 1.0]], &gap));
+        assert!(covered(&[[3.0, 3.0]], &[vec![[2.0, 3.0]]]));
+        assert!(covered(&[[0.0, 1.0], [7.0, 7.0]], &[vec![[0.0, 1.0], [7.0, 7.0]]]));
+        assert!(!covered(&[[0.0, 1.0]], &[]));
+    }
+}

@@ -1,0 +1,101 @@
+//! A family in sentences and for programs.
+
+use fspid_proof::{CheckedFamily, Family, FamilyVerdict, Parameter};
+use serde_json::{Value, json};
+
+use super::FamilyAnswer;
+use crate::metrics::short;
+
+/// A number between two ends, in the words of the scenario.
+fn between(parameter: &Parameter, [from, to]: [f64; 2]) -> String {
+    let Parameter { name, paths, relative, .. } = parameter;
+    let place = paths.join(", ");
+    let times = if *relative { " times as large" } else { "" };
+    format!("{name} ({place}) from {} to {}{times}", short(from), short(to))
+}
+
+fn all_between(parameters: &[Parameter], ends: impl Iterator<Item = [f64; 2]>) -> String {
+    let each = parameters.iter().zip(ends).map(|(parameter, ends)| between(parameter, ends));
+    each.collect::<Vec<_>>().join("; ")
+}
+
+/// The whole box.
+pub(in super::super) fn box_in_words(parameters: &[Parameter]) -> String {
+    all_between(parameters, parameters.iter().map(|one| one.ends))
+}
+
+/// What a proved family says.
+fn proved(parameters: &[Parameter], parts: usize) -> String {
+    let parts = if parts == 1 { "one form".to_owned() } else { format!("{parts} forms") };
+    format!(
+        "every plant in all of this returns to rest around its trim, each standing still, as long as no limit acts ({parts}); all else here is about the loop as it is: {}",
+        box_in_words(parameters)
+    )
+}
+
+/// Sentences about a family whose certificate is there.
+pub(in super::super) fn sentences(family: &Family, checked: CheckedFamily) -> Vec<String> {
+    vec![proved(&family.parameters, checked.parts)]
+}
+
+impl FamilyAnswer {
+    /// The answer in capitals, and why.
+    pub(in super::super) fn text(&self) -> String {
+        match self {
+            Self::NominalNotProved => {
+                "OPEN: the loop as it is is not proved, so nothing is said of others".to_owned()
+            }
+            Self::None(reason) => format!("OPEN: {reason}"),
+            Self::Verdict { parameters, verdict } => match &**verdict {
+                FamilyVerdict::Proved(family) => {
+                    format!("PROVED: {}", proved(parameters, family.parts.len()))
+                }
+                FamilyVerdict::Refuted { at, .. } => {
+                    let set = at.iter().zip(parameters).map(|(at, one)| setting(one, *at));
+                    format!(
+                        "REFUTED: with gains that the controller has, standing still, the loop grows at {}",
+                        set.collect::<Vec<_>>().join("; ")
+                    )
+                }
+                FamilyVerdict::Open { ends, because } => format!(
+                    "OPEN: not proved at {}: {because}",
+                    all_between(parameters, ends.iter().copied())
+                ),
+            },
+        }
+    }
+}
+
+/// A member's number.
+fn setting(parameter: &Parameter, value: f64) -> String {
+    let times = if parameter.relative { " times as large" } else { "" };
+    format!("{} ({}) {}{times}", parameter.name, parameter.paths.join(", "), short(value))
+}
+
+/// The answer for programs.
+pub(in super::super) fn in_json(answer: &FamilyAnswer) -> Value {
+    let places = |parameters: &[Parameter], ends: &mut dyn Iterator<Item = Value>| -> Value {
+        let each = parameters.iter().zip(ends).map(|(one, at)| {
+            json!({ "name": one.name, "paths": one.paths, "relative": one.relative, "at": at })
+        });
+        each.collect()
+    };
+    let (verdict, at, parts) = match answer {
+        FamilyAnswer::NominalNotProved | FamilyAnswer::None(_) => ("open", Value::Null, None),
+        FamilyAnswer::Verdict { parameters, verdict } => match &**verdict {
+            FamilyVerdict::Proved(family) => {
+                let mut ends = parameters.iter().map(|one| json!(one.ends));
+                ("proved", places(parameters, &mut ends), Some(family.parts.len()))
+            }
+            FamilyVerdict::Refuted { at, .. } => {
+                let mut at = at.iter().map(|at| json!(at));
+                ("refuted", places(parameters, &mut at), None)
+            }
+            FamilyVerdict::Open { ends, .. } => {
+                let mut ends = ends.iter().map(|ends| json!(ends));
+                ("open", places(parameters, &mut ends), None)
+            }
+        },
+    };
+    json!({ "verdict": verdict, "at": at, "parts": parts, "in_words": answer.text() })
+}

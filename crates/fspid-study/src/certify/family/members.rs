@@ -1,0 +1,241 @@
+//! The members of a family: what the dispersions draw, the numbers of the loop that it changes, and the plants that come of
+//! it.
+
+use fspid_numeric::scalar::Interval;
+use fspid_proof::check::{EnclosedPlant, NotProved};
+use fspid_proof::{LoopDescription, MOST_PARAMETERS, NotProvable, Parameter};
+use fspid_scenario::dispersion::{Dispersion, Distribution};
+use fspid_scenario::file::{NewValue, SettingPath, Study, Template};
+use fspid_sim::LinearPlant;
+
+use super::loop_number::LoopNumber;
+use super::source::Source;
+use crate::analysis::lasting_plants;
+
+/// Why no question can be asked of a family.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NoFamily {
+    /// No dispersion changes the loop.
+    #[error("no [[dispersion]] changes the loop, so that there is nothing but the loop as it is")]
+    NothingDiffers,
+    /// A dispersion that draws what no interval holds.
+    #[error("`{path}`: {why}")]
+    NotBounded {
+        /// Where.
+        path: String,
+        /// Why not, and what would do.
+        why: &'static str,
+    },
+    /// Too many of them.
+    #[error("{0} numbers of the loop differ; allowed are up to {MOST_PARAMETERS}")]
+    TooMany(usize),
+    /// The scenario with a value is none.
+    #[error("`{path}` = {value}: {why}")]
+    NoMember {
+        /// Where.
+        path: String,
+        /// What was set.
+        value: String,
+        /// What is wrong then.
+        why: String,
+    },
+}
+
+/// A drawn number with the numbers of the loop that follow it.
+struct Drawn {
+    parameter: Parameter,
+    /// Each with the number that stands there, where draws are factors of it.
+    numbers: Vec<(LoopNumber, Option<f64>)>,
+}
+
+/// All members of a loop.
+pub(super) struct Members {
+    drawn: Vec<Drawn>,
+    parameters: Vec<Parameter>,
+    source: Source,
+}
+
+impl Members {
+    /// Those that a scenario's dispersions can draw of one of its loops.
+    pub(super) fn of(
+        template: &Template,
+        (description, plant): (&LoopDescription, &LinearPlant),
+    ) -> Result<Self, NoFamily> {
+        let mut drawn = Vec::new();
+        let asking = Asking { template, description, plant };
+        for dispersion in &template.study().dispersions {
+            drawn.extend(asking.drawn(dispersion)?);
+        }
+        if drawn.is_empty() {
+            return Err(NoFamily::NothingDiffers);
+        }
+        if drawn.len() > MOST_PARAMETERS {
+            return Err(NoFamily::TooMany(drawn.len()));
+        }
+        let parameters = drawn.iter().map(|one| one.parameter.clone()).collect();
+        let source = Source::of(description);
+        Ok(Self { drawn, parameters, source })
+    }
+
+    pub(super) fn parameters(&self) -> &[Parameter] {
+        &self.parameters
+    }
+
+    /// A plant that holds those of all members with parameters in these intervals.
+    pub(super) fn plant(&self, at: &[Interval]) -> Result<EnclosedPlant, NotProved> {
+        let mut source = self.source.clone();
+        for (drawn, value) in self.drawn.iter().zip(at) {
+            for (number, factor_of) in &drawn.numbers {
+                // As a scenario does it: the factor times what stands there, rounded once.
+                let value = factor_of.map_or(*value, |nominal| Interval::point(nominal) * *value);
+                source.put(*number, value);
+            }
+        }
+        source.plant()
+    }
+}
+
+struct Asking<'a> {
+    template: &'a Template,
+    description: &'a LoopDescription,
+    plant: &'a LinearPlant,
+}
+
+impl Asking<'_> {
+    /// The numbers of the loop that a dispersion draws; none where the loop does not depend on it.
+    fn drawn(&self, dispersion: &Dispersion) -> Result<Vec<Drawn>, NoFamily> {
+        let ends = ends(dispersion);
+        let mut found = Vec::new();
+        for (target, ends) in
+            dispersion.targets.iter().zip(ends.into_iter().chain(std::iter::repeat(None)))
+        {
+            let first = target.paths.first().map_or("", SettingPath::text);
+            let numbers: Option<Vec<_>> = target.paths.iter().map(LoopNumber::at).collect();
+            let Some(numbers) = numbers else {
+                if target.paths.iter().all(is_outside_of_the_loop) {
+                    continue;
+                }
+                let why = "families know coefficients of a [plant], and time constant, natural frequency and damping of the [actuator]; certify its values one by one with --set";
+                return Err(NoFamily::NotBounded { path: first.to_owned(), why });
+            };
+            let why = "what it draws has no ends; allowed are lower and upper of a normal distribution, or a uniform one";
+            let ends = ends.ok_or(NoFamily::NotBounded { path: first.to_owned(), why })?;
+            let parameter = Parameter {
+                name: target.name.clone(),
+                paths: target.paths.iter().map(|path| path.text().to_owned()).collect(),
+                relative: dispersion.relative,
+                ends,
+            };
+            let nominal = |path: &SettingPath| {
+                dispersion.relative.then(|| self.template.number_at(path)).flatten()
+            };
+            let numbers = numbers.into_iter().zip(&target.paths);
+            let numbers: Vec<_> = numbers.map(|(number, path)| (number, nominal(path))).collect();
+            let drawn = Drawn { parameter, numbers };
+            self.follows(&drawn, &target.paths)?;
+            found.push(drawn);
+        }
+        Ok(found)
+    }
+
+    /// Holds a drawn number against the scenario itself: at both ends the loop is the one that follows from the number, and
+    /// nothing else of it has changed.
+    fn follows(&self, drawn: &Drawn, paths: &[SettingPath]) -> Result<(), NoFamily> {
+        for end in drawn.parameter.ends {
+            let values: Vec<(&SettingPath, NewValue)> = paths
+                .iter()
+                .zip(&drawn.numbers)
+                .map(|(path, (_, nominal))| {
+                    (path, NewValue::Number(nominal.map_or(end, |nominal| nominal * end)))
+                })
+                .collect();
+            let flown = self.described(&values, paths)?;
+            let mut source = Source::of(self.description);
+            for (number, nominal) in &drawn.numbers {
+                source.put(*number, Interval::point(nominal.map_or(end, |it| it * end)));
+            }
+            if !source.is_of(&flown, self.description) {
+                return Err(NoFamily::NotBounded {
+                    path: drawn.parameter.paths.join(", "),
+                    why: "it changes more of the loop than this number, such as gains that are designed from it; allowed is a number that stands alone",
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// The same controller's loop with other numbers.
+    fn described(
+        &self,
+        values: &[(&SettingPath, NewValue)],
+        paths: &[SettingPath],
+    ) -> Result<LoopDescription, NoFamily> {
+        let no_member = |why: String| {
+            let path = paths.iter().map(SettingPath::text).collect::<Vec<_>>().join(", ");
+            let value = values.first().map_or(String::new(), |(_, value)| value.to_string());
+            NoFamily::NoMember { path, value, why }
+        };
+        let study: Study =
+            self.template.with(values).map_err(|problems| no_member(problems.first_in_a_line()))?;
+        let known = self.template.study().scenario.controllers.iter();
+        let place = known.clone().position(|it| it.controller == self.description.controller);
+        let plants =
+            lasting_plants(&study.scenario).map_err(|error| no_member(error.to_string()))?;
+        let ours = lasting_plants(&self.template.study().scenario)
+            .map_err(|error| no_member(error.to_string()))?;
+        let which = ours.iter().position(|(_, plant)| plant == self.plant).unwrap_or(0);
+        let named = place.and_then(|place| study.scenario.controllers.get(place));
+        let (Some(named), Some((_, plant))) = (named, plants.get(which)) else {
+            return Err(no_member("its controllers are others".to_owned()));
+        };
+        LoopDescription::of(&study.scenario, plant, &named.controller)
+            .map_err(|refused: NotProvable| no_member(refused.to_string()))
+    }
+}
+
+/// True for places that have no way into the loop: what it is asked to do, what disturbs it, and noise.
+fn is_outside_of_the_loop(path: &SettingPath) -> bool {
+    let text = path.text();
+    let table = text.split(['.', '[']).next().unwrap_or(text);
+    let is_noise = || ["noise", "drift", "seed"].iter().any(|word| text.contains(word));
+    match table {
+        "setpoint" | "disturbance" | "wind" | "gust" | "turbulence" => true,
+        "sensor" => is_noise(),
+        _ => false,
+    }
+}
+
+/// Between what a dispersion's numbers lie, one by one; none where there is an open end.
+fn ends(dispersion: &Dispersion) -> Vec<Option<[f64; 2]>> {
+    match &dispersion.distribution {
+        Distribution::Normal(normal) => {
+            vec![normal.lower().zip(normal.upper()).map(|(lower, upper)| [lower, upper])]
+        }
+        Distribution::Uniform(uniform) => vec![Some([uniform.lower(), uniform.upper()])],
+        Distribution::LogUniform(uniform) => vec![Some([uniform.lower(), uniform.upper()])],
+        Distribution::Correlated(correlated) => {
+            let normals = correlated.entries().iter();
+            normals
+                .map(|normal| {
+                    normal.lower().zip(normal.upper()).map(|(lower, upper)| [lower, upper])
+                })
+                .collect()
+        }
+        Distribution::Choice(_) => vec![chosen(dispersion)],
+        Distribution::Seed => vec![None],
+    }
+}
+
+/// The least and the most of numbers to choose from: everything between them holds them all.
+fn chosen(dispersion: &Dispersion) -> Option<[f64; 2]> {
+    let number = |value: &NewValue| match value {
+        NewValue::Number(number) => Some(*number),
+        NewValue::Integer(whole) => Some(*whole as f64),
+        NewValue::Text(_) | NewValue::Boolean(_) | NewValue::Rows(_) => None,
+    };
+    let numbers: Option<Vec<f64>> = dispersion.choices.iter().map(number).collect();
+    let numbers = numbers.filter(|numbers| !numbers.is_empty())?;
+    let least = numbers.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    Some([least, most])
+}

@@ -1,0 +1,98 @@
+//! All that the dispersions of a scenario can draw, certified at once: which numbers of a loop they change, and between
+//! what they lie.
+
+mod answer;
+mod loop_number;
+mod members;
+mod source;
+
+pub(super) use answer::{box_in_words, in_json, sentences};
+pub use members::NoFamily;
+
+use fspid_numeric::scalar::Interval;
+use fspid_proof::{
+    Certificate, Effort, Family, FamilyVerdict, LeftOut, LoopDescription, NotProvable, Outcome,
+    Rechecked, Verdict, prove_family,
+};
+use fspid_scenario::file::Template;
+use fspid_sim::LinearPlant;
+
+use members::Members;
+
+/// What came of a family.
+#[derive(Clone, Debug)]
+pub enum FamilyAnswer {
+    /// Proved, refuted or open, with the numbers that differ.
+    Verdict {
+        /// What differs in the loop.
+        parameters: Vec<fspid_proof::Parameter>,
+        /// The answer.
+        verdict: Box<FamilyVerdict>,
+    },
+    /// No question can be asked.
+    None(NoFamily),
+    /// The loop as it is is not proved, so that its family is not either.
+    NominalNotProved,
+}
+
+impl FamilyAnswer {
+    /// True if every member is proved stable.
+    #[must_use]
+    pub fn is_proved(&self) -> bool {
+        match self {
+            Self::Verdict { verdict, .. } => matches!(**verdict, FamilyVerdict::Proved(_)),
+            Self::None(_) | Self::NominalNotProved => false,
+        }
+    }
+}
+
+/// Certifies the family of a loop beside its own verdict, whose certificate then speaks of both.
+///
+/// # Errors
+/// [`NotProvable`] where the effort was stopped.
+pub(super) fn certified(
+    template: &Template,
+    (description, plant): (&LoopDescription, &LinearPlant),
+    outcome: &mut Outcome,
+    effort: &Effort,
+) -> Result<FamilyAnswer, NotProvable> {
+    let Verdict::Proved(certificate, rechecked) = &outcome.verdict else {
+        return Ok(FamilyAnswer::NominalNotProved);
+    };
+    let members = match Members::of(template, (description, plant)) {
+        Ok(members) => members,
+        Err(none) => return Ok(FamilyAnswer::None(none)),
+    };
+    let enclose = |at: &[Interval]| members.plant(at);
+    let parameters = members.parameters().to_vec();
+    let verdict = prove_family(description, &parameters, effort, &enclose)?;
+    if let FamilyVerdict::Proved(family) = &verdict {
+        let mut whole = Certificate { family: Some(family.clone()), ..certificate.clone() };
+        whole.left_out.retain(|one| *one != LeftOut::Dispersions);
+        let rechecked = Rechecked { family: Some(family.checked()), ..rechecked.clone() };
+        outcome.verdict = Verdict::Proved(whole, rechecked);
+    }
+    Ok(FamilyAnswer::Verdict { parameters, verdict: Box::new(verdict) })
+}
+
+/// What of a certified family is not what a scenario's dispersions draw of a loop, in words; none where it is.
+pub(super) fn differs(
+    family: &Family,
+    template: &Template,
+    of: (&LoopDescription, &LinearPlant),
+) -> Option<String> {
+    let members = match Members::of(template, of) {
+        Ok(members) => members,
+        Err(none) => return Some(none.to_string()),
+    };
+    if members.parameters() != family.parameters {
+        return Some(box_in_words(members.parameters()));
+    }
+    let encloses = |part: &fspid_proof::FamilyPart| {
+        let at: Vec<Interval> =
+            part.ends.iter().map(|&[from, to]| Interval::between(from, to)).collect();
+        members.plant(&at).is_ok_and(|plant| part.plant.encloses(&plant))
+    };
+    let place = family.parts.iter().position(|part| !encloses(part))?;
+    Some(format!("other plants in part {place}"))
+}
