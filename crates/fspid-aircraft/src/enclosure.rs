@@ -241,9 +241,7 @@ impl EnclosedFlight {
     fn polar_bend(&self) -> Interval {
         match self.laws.drag {
             DragLaw::Linear => Interval::ZERO,
-            DragLaw::Polar => {
-                point(0.5) * self.drag.alpha / self.lift.reference * self.lift.alpha
-            }
+            DragLaw::Polar => point(0.5) * self.drag.alpha / self.lift.reference * self.lift.alpha,
         }
     }
 

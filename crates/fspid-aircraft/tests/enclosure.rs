@@ -40,7 +40,10 @@ fn holds(model: &EnclosedModel, rows: &[[f64; 5]; 4], what: &str) {
         for (column, (own, value)) in own.zip(row).enumerate() {
             let off = (own.lower() - value).max(value - own.upper());
             let off = off / largest;
-            assert!(off < DIFFERENCED, "{what}, row {place}, column {column}: {value} not in {own:?}");
+            assert!(
+                off < DIFFERENCED,
+                "{what}, row {place}, column {column}: {value} not in {own:?}"
+            );
         }
     }
 }
@@ -78,18 +81,13 @@ fn every_flight_in_a_box_lies_in_the_enclosure_of_the_box() {
     let ranges = |centre: f64, part: f64| [centre * (1.0 - part), centre * (1.0 + part)];
     for name in ["navion", "b747-cruise-low", "aerosonde"] {
         let data = derivative_data(name);
-        let [mass, speed] = [
-            ranges(data.mass_kg(), 0.04),
-            ranges(1.02 * data.reference.airspeed_m_s, 0.02),
-        ];
+        let [mass, speed] =
+            [ranges(data.mass_kg(), 0.04), ranges(1.02 * data.reference.airspeed_m_s, 0.02)];
         let altitude = [data.reference.altitude_m, data.reference.altitude_m + 300.0];
         let radius = ranges(libm::sqrt(data.inertia.iy_kg_m2 / data.mass_kg()), 0.03);
         let slope = ranges(data.longitudinal.pitch.alpha, -0.03);
-        let target = TrimTarget {
-            airspeed_m_s: speed[0],
-            altitude_m: altitude[0],
-            flight_path_rad: 0.0,
-        };
+        let target =
+            TrimTarget { airspeed_m_s: speed[0], altitude_m: altitude[0], flight_path_rad: 0.0 };
         let mut enclosed = EnclosedFlight::of(&data, LAWS[1], Environment::STANDARD, target);
         let between = |[from, to]: [f64; 2]| Interval::between(from, to);
         enclosed.mass_kg = between(mass);
@@ -100,9 +98,8 @@ fn every_flight_in_a_box_lies_in_the_enclosure_of_the_box() {
         enclosed.aft_chords = Interval::between(-0.02, 0.01);
         let model = enclosed.model().expect("a trim");
         for number in 0..40 {
-            let at = |[from, to]: [f64; 2], which: u32| {
-                from + (to - from) * share(7 * number + which)
-            };
+            let at =
+                |[from, to]: [f64; 2], which: u32| from + (to - from) * share(7 * number + which);
             let mut member = data;
             member.reference.cg_mac = Some(0.25);
             member.longitudinal.pitch.alpha = at(slope, 1);

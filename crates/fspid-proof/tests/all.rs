@@ -7,6 +7,7 @@ mod check_growth;
 mod check_lyapunov;
 mod check_matrix;
 mod check_plant;
+mod family;
 mod flown_proofs;
 mod gain_set;
 mod gain_set_common;

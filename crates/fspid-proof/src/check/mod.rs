@@ -20,6 +20,7 @@ mod matrix;
 mod moving;
 mod packed;
 mod plant;
+mod plant_set;
 mod product;
 mod rounding;
 
@@ -34,4 +35,5 @@ pub use lyapunov::{
 pub use matrix::IntervalMatrix;
 pub use moving::{Ends, Moving, MovingProof, NotProvedAt, falls_while_moving};
 pub(crate) use plant::Passed;
-pub use plant::{ActuatorLag, EnclosedLag, EnclosedPlant, PrintedPlant, printed};
+pub use plant::{ActuatorLag, ContinuousPlant, LagOf, PrintedPlant, printed};
+pub use plant_set::{MOST_PARAMETERS, PlantSet, Sloped};

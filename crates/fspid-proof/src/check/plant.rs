@@ -1,6 +1,6 @@
 //! The sampled plant from printed coefficients, with proof.
 
-use fspid_numeric::scalar::Interval;
+use fspid_numeric::scalar::{Interval, Scalar};
 use fspid_sim::actuator::Lag;
 use fspid_sim::loop_model::SampledPlant;
 use fspid_sim::{ElevatorSign, LinearPlant};
@@ -10,7 +10,7 @@ use super::exponential::{exponential, held};
 use super::matrix::IntervalMatrix;
 
 /// A matrix row by row.
-type Rows = Vec<Vec<Interval>>;
+type Rows<T> = Vec<Vec<T>>;
 
 /// How an actuator follows its command.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,32 +46,32 @@ pub struct PrintedPlant<'a> {
     pub dt_s: f64,
 }
 
-/// A plant in continuous time and its actuator, every number between bounds.
+/// A plant in continuous time and its actuator, in numbers of any kind: intervals, or intervals with slopes.
 ///
 /// $$ \dot x = A x + b \delta, \qquad \theta = x_1, \qquad \dot\theta = r^T x + r_\delta \delta $$
 ///
 /// with the elevator $\delta$ counted as the command is.
 #[derive(Clone, Debug, PartialEq)]
-pub struct EnclosedPlant {
+pub struct ContinuousPlant<T> {
     /// A row by row; the pitch angle is the first state.
-    pub by_states: Vec<Vec<Interval>>,
+    pub by_states: Vec<Vec<T>>,
     /// b.
-    pub by_elevator: Vec<Interval>,
+    pub by_elevator: Vec<T>,
     /// r, and behind it $r_\delta$.
-    pub pitch_rate: Vec<Interval>,
+    pub pitch_rate: Vec<T>,
     /// The actuator.
-    pub lag: EnclosedLag,
+    pub lag: LagOf<T>,
 }
 
-/// [`ActuatorLag`] with every number between bounds.
+/// [`ActuatorLag`] in numbers of any kind.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum EnclosedLag {
+pub enum LagOf<T> {
     /// At once.
     None,
-    /// τ, s.
-    First(Interval),
+    /// $1 / \tau$, 1/s: plants are nearly linear in it.
+    First(T),
     /// $\omega_n$, rad/s, and ζ.
-    Second(Interval, Interval),
+    Second(T, T),
 }
 
 /// A plant over a time, see [`PrintedPlant::over`].
@@ -107,12 +107,12 @@ impl PrintedPlant<'_> {
     }
 
     /// The plant in continuous time, in the observability form.
-    fn enclosed(&self) -> Result<EnclosedPlant, NotProved> {
+    fn enclosed(&self) -> Result<ContinuousPlant<Interval>, NotProved> {
         let enclose = |values: &[f64]| values.iter().map(|&value| printed(value)).collect();
         let (numerator, denominator): (Vec<_>, Vec<_>) =
             (enclose(self.numerator), enclose(self.denominator));
-        let lag = EnclosedLag::printed(self.lag)?;
-        Ok(EnclosedPlant::of_transfer_function(&numerator, &denominator, self.elevator_sign, lag))
+        let lag = LagOf::printed(self.lag)?;
+        Ok(ContinuousPlant::of_transfer_function(&numerator, &denominator, self.elevator_sign, lag))
     }
 
     /// $e^{A t} B$ over the plant's own states, for every time t from 0 to one sample: what an impulse of the elevator, in
@@ -123,7 +123,7 @@ impl PrintedPlant<'_> {
     pub fn impulse_within_sample(&self) -> Result<Vec<Interval>, NotProved> {
         LinearPlant::new(self.numerator, self.denominator, self.elevator_sign)?;
         let dt_s = printed(positive("sample period, s", self.dt_s)?);
-        let EnclosedPlant { by_states, by_elevator, .. } = self.enclosed()?;
+        let ContinuousPlant { by_states, by_elevator, .. } = self.enclosed()?;
         let column: Vec<[Interval; 1]> = by_elevator.into_iter().map(|h| [h]).collect();
         let a = IntervalMatrix::from_rows(&by_states)?;
         let motion = exponential(&a.scaled(Interval::ZERO.hull(dt_s)))?;
@@ -160,64 +160,123 @@ impl PrintedPlant<'_> {
     }
 }
 
-impl EnclosedPlant {
+impl<T: Scalar> ContinuousPlant<T> {
     /// The observability form of a transfer function, coefficients with the highest power of s first: pitch angle and its
     /// derivatives, less what the elevator adds to them at once.
     #[must_use]
     pub fn of_transfer_function(
-        numerator: &[Interval],
-        denominator: &[Interval],
+        numerator: &[T],
+        denominator: &[T],
         elevator_sign: ElevatorSign,
-        lag: EnclosedLag,
+        lag: LagOf<T>,
     ) -> Self {
-        let leading = denominator.first().copied().unwrap_or(Interval::ZERO);
-        let alpha: Vec<Interval> = denominator.iter().skip(1).map(|&it| it / leading).collect();
-        let sign = Interval::point(elevator_sign.per_nose_up());
+        let leading = denominator.first().copied().unwrap_or(T::zero());
+        let alpha: Vec<T> = denominator.iter().skip(1).map(|&it| it / leading).collect();
+        let sign = T::constant(elevator_sign.per_nose_up());
         let markov = markov_parameters(numerator, leading, &alpha);
-        let by_elevator: Vec<Interval> = markov.into_iter().map(|h| sign * h).collect();
+        let by_elevator: Vec<T> = markov.into_iter().map(|h| sign * h).collect();
         let by_states = companion(&alpha);
         // θ' is the second state and what the elevator adds to it; of a plant of order 1 it is its only equation.
-        let mut pitch_rate = vec![Interval::ZERO; alpha.len()];
+        let mut pitch_rate = vec![T::zero(); alpha.len()];
         match pitch_rate.get_mut(1) {
-            Some(second) => *second = Interval::ONE,
+            Some(second) => *second = T::one(),
             None => pitch_rate.clone_from_slice(&by_states[0]),
         }
         pitch_rate.push(by_elevator[0]);
         Self { by_states, by_elevator, pitch_rate, lag }
     }
 
-    /// True if every plant of another is one of these.
+    /// The normal form of a transfer function $b (s^m + r_{m-1} s^{m-1} + \dots + r_0) / (s^n + \dots + \alpha_0)$,
+    /// coefficients with the highest power of s first: pitch angle and its derivatives below the $(n - m)$th, then w with its
+    /// derivatives below the mth, where
+    ///
+    /// $$ w^{(m)} + r_{m-1} w^{(m-1)} + \dots + r_0 w = \theta, \qquad
+    ///    w^{(n)} + \alpha_{n-1} w^{(n-1)} + \dots + \alpha_0 w = b \delta $$
+    ///
+    /// b and each α enter once and linearly; in the observability form they enter as products, which a family pays for.
+    /// `None` for a numerator whose first coefficient may be 0, as `may_vanish` says, or that is none.
+    ///
+    /// # Source
+    /// A. Isidori, *Nonlinear Control Systems*, 3rd edition, section 4.3, for linear systems.
     #[must_use]
-    pub fn encloses(&self, other: &Self) -> bool {
-        let all = |own: &[Interval], other: &[Interval]| {
-            let each = own.iter().zip(other);
-            own.len() == other.len() && each.into_iter().all(|(own, other)| own.encloses(*other))
+    pub fn in_normal_form(
+        numerator: &[T],
+        denominator: &[T],
+        (elevator_sign, lag): (ElevatorSign, LagOf<T>),
+        may_vanish: impl Fn(&T) -> bool,
+    ) -> Option<Self> {
+        let (&leading, alpha) = denominator.split_first()?;
+        let (&effect, zeros) = numerator.split_first()?;
+        let (order, inner) = (alpha.len(), zeros.len());
+        if may_vanish(&leading) || may_vanish(&effect) || inner >= order {
+            return None;
+        }
+        let outer = order - inner;
+        // Lowest power first.
+        let alpha: Vec<T> = alpha.iter().rev().map(|&it| it / leading).collect();
+        let zeros: Vec<T> = zeros.iter().rev().map(|&it| it / effect).collect();
+        let unit = |place: usize| -> Vec<T> {
+            (0..order).map(|at| if at == place { T::one() } else { T::zero() }).collect()
         };
-        let rows = self.by_states.iter().zip(&other.by_states);
-        let lag = match (self.lag, other.lag) {
-            (EnclosedLag::None, EnclosedLag::None) => true,
-            (EnclosedLag::First(own), EnclosedLag::First(other)) => own.encloses(other),
-            (EnclosedLag::Second(own, damping), EnclosedLag::Second(other, its)) => {
-                own.encloses(other) && damping.encloses(its)
+        let less = |row: &mut Vec<T>, factor: T, other: &[T]| {
+            row.iter_mut().zip(other).for_each(|(it, other)| *it = *it - factor * *other);
+        };
+        // Derivatives of w over the states.
+        let mut w: Vec<Vec<T>> = (0..inner).map(|power| unit(outer + power)).collect();
+        for power in inner..order {
+            let mut row = unit(power - inner);
+            for (index, &zero) in zeros.iter().enumerate() {
+                less(&mut row, zero, &w[index + power - inner].clone());
             }
-            _ => false,
-        };
-        lag && self.by_states.len() == other.by_states.len()
-            && rows.into_iter().all(|(own, other)| all(own, other))
-            && all(&self.by_elevator, &other.by_elevator)
-            && all(&self.pitch_rate, &other.pitch_rate)
+            w.push(row);
+        }
+        let mut last = vec![T::zero(); order];
+        for (power, &alpha) in alpha.iter().enumerate() {
+            less(&mut last, alpha, &w[power]);
+        }
+        for (index, &zero) in zeros.iter().enumerate() {
+            less(&mut last, -zero, &w[index + outer]);
+        }
+        let mut by_states: Vec<Vec<T>> = (1..outer).map(unit).collect();
+        by_states.push(last);
+        by_states.extend((1..inner).map(|power| w[power].clone()));
+        if inner > 0 {
+            by_states.push(w[inner].clone());
+        }
+        let mut by_elevator = vec![T::zero(); order];
+        by_elevator[outer - 1] = T::constant(elevator_sign.per_nose_up()) * effect / leading;
+        let mut pitch_rate = by_states[0].clone();
+        pitch_rate.push(by_elevator[0]);
+        Some(Self { by_states, by_elevator, pitch_rate, lag })
     }
 
-    /// True if its matrices fit together.
-    #[must_use]
-    pub fn is_square(&self) -> bool {
-        let states = self.by_states.len();
-        states > 0
-            && self.by_states.iter().all(|row| row.len() == states)
-            && self.by_elevator.len() == states
-            && self.pitch_rate.len() == states + 1
+    /// Rows of state matrix and input of plant and actuator. Without a lag the elevator is the command,
+    /// and the deflection does not move by itself.
+    pub(crate) fn with_actuator(&self) -> (Rows<T>, Rows<T>) {
+        let mut a = self.by_states.clone();
+        let order = a.len();
+        let (own, by_command) = self.lag.rows();
+        let states = order + own.len();
+        let mut b = vec![vec![T::zero()]; states];
+        b[states - 1] = vec![by_command];
+        for ((row, b), &h) in a.iter_mut().zip(&mut b).zip(&self.by_elevator) {
+            row.resize(states, T::zero());
+            if matches!(self.lag, LagOf::None) {
+                *b = vec![h];
+            } else {
+                row[order] = h;
+            }
+        }
+        for by_own in own {
+            let mut row = vec![T::zero(); states];
+            row[order..].copy_from_slice(&by_own);
+            a.push(row);
+        }
+        (a, b)
     }
+}
 
+impl ContinuousPlant<Interval> {
     /// The plant over one sample, its command held: own states, then the deflection, then its rate where the lag is of
     /// second order.
     ///
@@ -232,7 +291,7 @@ impl EnclosedPlant {
         let mut rate = self.pitch_rate.clone();
         rate.resize(a.len(), Interval::ZERO);
         let (states, mut rows) = (a.len(), side_by_side(&phi, &gamma));
-        if self.lag == EnclosedLag::None {
+        if self.lag == LagOf::None {
             // The remembered deflection is the command.
             let by_command = rows.len() - 1;
             rows[by_command - states..].fill(Interval::ZERO);
@@ -240,46 +299,17 @@ impl EnclosedPlant {
         }
         Ok(SampledPlant { states, rows, rate })
     }
-
-    /// Rows of state matrix and input of plant and actuator. Without a lag the elevator is the command,
-    /// and the deflection does not move by itself.
-    fn with_actuator(&self) -> (Rows, Rows) {
-        let mut a = self.by_states.clone();
-        let order = a.len();
-        let (own, by_command) = self.lag.rows();
-        let states = order + own.len();
-        let mut b = vec![vec![Interval::ZERO]; states];
-        b[states - 1] = vec![by_command];
-        for ((row, b), &h) in a.iter_mut().zip(&mut b).zip(&self.by_elevator) {
-            row.resize(states, Interval::ZERO);
-            if self.lag == EnclosedLag::None {
-                *b = vec![h];
-            } else {
-                row[order] = h;
-            }
-        }
-        for by_own in own {
-            let mut row = vec![Interval::ZERO; states];
-            row[order..].copy_from_slice(&by_own);
-            a.push(row);
-        }
-        (a, b)
-    }
 }
 
 /// $h_1 \dots h_n$ of a monic denominator, with $h_0 = 0$ and
 ///
 /// $$ h_k = \beta_k - \sum_{i=1}^{k-1} \alpha_i h_{k-i} $$
-fn markov_parameters(
-    numerator: &[Interval],
-    leading: Interval,
-    alpha: &[Interval],
-) -> Vec<Interval> {
+fn markov_parameters<T: Scalar>(numerator: &[T], leading: T, alpha: &[T]) -> Vec<T> {
     let offset = (alpha.len() + 1).saturating_sub(numerator.len());
-    let mut markov: Vec<Interval> = Vec::with_capacity(alpha.len());
+    let mut markov: Vec<T> = Vec::with_capacity(alpha.len());
     for k in 1..=alpha.len() {
         let given = k.checked_sub(offset).and_then(|i| numerator.get(i));
-        let beta = given.map_or(Interval::ZERO, |&value| value / leading);
+        let beta = given.map_or(T::zero(), |&value| value / leading);
         let past = alpha.iter().zip(markov.iter().rev());
         markov.push(past.fold(beta, |rest, (&alpha, &h)| rest - alpha * h));
     }
@@ -298,7 +328,7 @@ impl From<Lag> for ActuatorLag {
     }
 }
 
-impl EnclosedLag {
+impl LagOf<Interval> {
     /// The lag as it is printed.
     ///
     /// # Errors
@@ -308,7 +338,7 @@ impl EnclosedLag {
         Ok(match lag {
             ActuatorLag::None => Self::None,
             ActuatorLag::First { time_constant_s } => {
-                Self::First(enclosed("time constant, s", time_constant_s)?)
+                Self::First(Interval::ONE / enclosed("time constant, s", time_constant_s)?)
             }
             ActuatorLag::Second { natural_frequency_rad_s, damping } => Self::Second(
                 enclosed("natural frequency, rad/s", natural_frequency_rad_s)?,
@@ -316,19 +346,18 @@ impl EnclosedLag {
             ),
         })
     }
+}
 
+impl<T: Scalar> LagOf<T> {
     /// Derivatives of the actuator's states by these states, and of the last of them by the command.
-    fn rows(self) -> (Rows, Interval) {
-        match self {
-            Self::None => (vec![vec![Interval::ZERO]], Interval::ZERO),
-            Self::First(time_s) => {
-                let by_command = Interval::ONE / time_s;
-                (vec![vec![-by_command]], by_command)
-            }
+    fn rows(&self) -> (Rows<T>, T) {
+        match *self {
+            Self::None => (vec![vec![T::zero()]], T::zero()),
+            Self::First(by_command) => (vec![vec![-by_command]], by_command),
             Self::Second(wn, damping) => {
                 let stiffness = wn * wn;
-                let by_rate = -(Interval::point(2.0) * damping * wn);
-                let deflection = vec![Interval::ZERO, Interval::ONE];
+                let by_rate = -(T::constant(2.0) * damping * wn);
+                let deflection = vec![T::zero(), T::one()];
                 (vec![deflection, vec![-stiffness, by_rate]], stiffness)
             }
         }
@@ -336,18 +365,18 @@ impl EnclosedLag {
 }
 
 /// The companion matrix of a monic denominator, last row last.
-fn companion(alpha: &[Interval]) -> Rows {
+fn companion<T: Scalar>(alpha: &[T]) -> Rows<T> {
     let order = alpha.len();
     let entry = |row: usize, column: usize| match row + 1 {
         next if next == order => -alpha[order - 1 - column],
-        next if next == column => Interval::ONE,
-        _ => Interval::ZERO,
+        next if next == column => T::one(),
+        _ => T::zero(),
     };
     (0..order).map(|row| (0..order).map(|column| entry(row, column)).collect()).collect()
 }
 
 /// Rows by state and by command, one after the other.
-fn side_by_side(phi: &IntervalMatrix, gamma: &IntervalMatrix) -> Vec<Interval> {
+pub(super) fn side_by_side(phi: &IntervalMatrix, gamma: &IntervalMatrix) -> Vec<Interval> {
     let states = phi.columns().max(1);
     let by_state: Vec<Interval> = phi.entries().collect();
     let rows = by_state.chunks(states).zip(gamma.entries());

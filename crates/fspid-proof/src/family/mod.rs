@@ -16,15 +16,15 @@ use fspid_numeric::scalar::Interval;
 use fspid_sim::loop_model::LoopModel;
 
 use crate::certificate::{Certificate, Claim};
-use crate::check::{EnclosedPlant, NotProved};
+pub use crate::check::MOST_PARAMETERS;
+use crate::check::{NotProved, PlantSet};
+use crate::description::LoopDescription;
 use crate::gain_set::{GainSet, KnownSlopes};
-use crate::recheck::{Recheck, RecheckError, Rechecked};
+use crate::recheck::{Recheck, RecheckError};
 use crate::scope::Range;
 
-pub use search::{FamilyVerdict, Uncertain, prove_family};
+pub use search::{FamilyVerdict, MakesPlant, Uncertain, prove_family};
 
-/// Most numbers that differ.
-pub const MOST_PARAMETERS: usize = 8;
 /// Most parts of a family.
 pub const MOST_PARTS: usize = 4096;
 
@@ -37,8 +37,25 @@ pub struct Parameter {
     pub paths: Vec<String>,
     /// True for a factor on what stands there.
     pub relative: bool,
+    /// True where plants are made of one over it, in which they are nearly linear, such as of a time constant.
+    pub inverse: bool,
     /// From where to where it goes, in the units of the scenario.
     pub ends: [f64; 2],
+}
+
+impl Parameter {
+    /// What plants are made of where the parameter lies between two ends.
+    #[must_use]
+    pub fn number(&self, [from, to]: [f64; 2]) -> Interval {
+        let between = Interval::between(from, to);
+        if self.inverse { Interval::ONE / between } else { between }
+    }
+}
+
+/// What plants of a box are made of.
+#[must_use]
+pub fn numbers(parameters: &[Parameter], ends: &[[f64; 2]]) -> Vec<Interval> {
+    parameters.iter().zip(ends).map(|(one, &ends)| one.number(ends)).collect()
 }
 
 /// A part of the box with its proof.
@@ -46,8 +63,8 @@ pub struct Parameter {
 pub struct Part {
     /// From where to where each parameter goes.
     pub ends: Vec<[f64; 2]>,
-    /// Plant and actuator there.
-    pub plant: EnclosedPlant,
+    /// Plants and actuators there.
+    pub plants: PlantSet,
     /// What is claimed of it; of stability.
     pub claim: Claim,
 }
@@ -88,15 +105,6 @@ pub enum FamilyError {
 }
 
 impl Part {
-    /// The loop over this part, with the settings of a certificate's own.
-    pub(crate) fn model(
-        &self,
-        certificate: &Certificate,
-    ) -> Result<LoopModel<Interval>, NotProved> {
-        let dt_s = certificate.description.controller.config().dt_s;
-        Ok(LoopModel::new(self.plant.sampled(dt_s)?, certificate.description.settings()))
-    }
-
     /// The claim as a certificate of its own, about the return to rest.
     fn alone(&self, certificate: &Certificate) -> Certificate {
         Certificate {
@@ -128,10 +136,11 @@ impl Family {
         let known = KnownSlopes::default();
         for (place, part) in self.parts.iter().enumerate() {
             let alone = part.alone(certificate);
-            let proved = || -> Result<Rechecked, RecheckError> {
-                let model = part.model(certificate)?;
-                let recheck = Recheck::with(&alone, model, set.clone(), &known)?.until(stops);
-                recheck.run()
+            let proved = || -> Result<(), RecheckError> {
+                for model in models(&part.plants, &certificate.description)? {
+                    Recheck::with(&alone, model, set.clone(), &known)?.until(stops).run()?;
+                }
+                Ok(())
             };
             let reason = |reason| FamilyError::Part { part: place, reason: Box::new(reason) };
             proved().map_err(reason)?;
@@ -147,7 +156,7 @@ impl Family {
         if !(1..=MOST_PARTS).contains(&self.parts.len()) {
             return Err("allowed are 1 to 4096 parts");
         }
-        let states = |part: &Part| part.plant.by_states.len();
+        let states = |part: &Part| part.plants.middle.len();
         for part in &self.parts {
             if part.ends.len() != self.parameters.len() {
                 return Err("a part has other parameters");
@@ -155,7 +164,7 @@ impl Family {
             if !part.claim.is_of_stability() {
                 return Err("a part does not claim stability");
             }
-            if states(part) != states(&self.parts[0]) || !part.plant.is_square() {
+            if states(part) != states(&self.parts[0]) || !part.plants.fits(self.parameters.len()) {
                 return Err("the plants of its parts have different states");
             }
         }
@@ -168,4 +177,15 @@ impl Family {
         let parts: Vec<&[[f64; 2]]> = self.parts.iter().map(|part| part.ends.as_slice()).collect();
         cover::covers(&whole, &parts).then_some(()).ok_or("its parts leave a part of it out")
     }
+}
+
+/// Loops between which those of plants lie. A loop's matrix is affine in what its plant makes of a sample, and
+/// $M^T P M$ is convex in M, so that what holds at each of them holds between.
+fn models(
+    plants: &PlantSet,
+    description: &LoopDescription,
+) -> Result<Vec<LoopModel<Interval>>, NotProved> {
+    let sampled = plants.sampled(description.controller.config().dt_s)?;
+    let settings = description.settings();
+    Ok(sampled.into_iter().map(|plant| LoopModel::new(plant, settings.clone())).collect())
 }

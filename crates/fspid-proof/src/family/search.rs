@@ -3,9 +3,9 @@
 use fspid_numeric::scalar::Interval;
 use fspid_sim::loop_model::LoopModel;
 
-use super::{Family, MOST_PARTS, Parameter, Part};
+use super::{Family, MOST_PARTS, Parameter, Part, models, numbers};
 use crate::certificate::Claim;
-use crate::check::{EnclosedPlant, NotProved};
+use crate::check::{ContinuousPlant, NotProved, PlantSet, Sloped};
 use crate::description::{LoopDescription, NotProvable};
 use crate::gain_set::GainSet;
 use crate::prove::{Effort, Prover, Verdict};
@@ -58,7 +58,7 @@ pub enum Uncertain {
 
 /// Proves or refutes the stability of every member around rest.
 ///
-/// `enclose` answers a plant that holds those of all members with parameters in these intervals.
+/// `plant` makes the plant of parameters, with slopes by them; of intervals all plants in them.
 ///
 /// # Errors
 /// As [`certify`](crate::certify).
@@ -66,20 +66,25 @@ pub fn prove_family(
     description: &LoopDescription,
     parameters: &[Parameter],
     effort: &Effort,
-    enclose: &dyn Fn(&[Interval]) -> Result<EnclosedPlant, NotProved>,
+    plant: &MakesPlant<'_>,
 ) -> Result<FamilyVerdict, NotProvable> {
     let asked = Asked::rest();
     let prover = Prover::new(description, &asked, effort)?;
     let set = prover.set(1.0);
     let whole: Vec<[f64; 2]> = parameters.iter().map(|one| one.ends).collect();
-    let mut search = Search { prover, set, enclose, whole, searches: 0, stops: effort.stops };
-    search.run(parameters)
+    let stops = effort.stops;
+    let mut search = Search { prover, set, parameters, plant, whole, searches: 0, stops };
+    search.run()
 }
+
+/// From parameters to a plant and its actuator.
+pub type MakesPlant<'a> = dyn Fn(&[Sloped]) -> Result<ContinuousPlant<Sloped>, NotProved> + 'a;
 
 struct Search<'a> {
     prover: Prover<'a>,
     set: GainSet,
-    enclose: &'a dyn Fn(&[Interval]) -> Result<EnclosedPlant, NotProved>,
+    parameters: &'a [Parameter],
+    plant: &'a MakesPlant<'a>,
     whole: Vec<[f64; 2]>,
     searches: usize,
     stops: fn() -> bool,
@@ -92,7 +97,7 @@ struct Piece {
 }
 
 impl Search<'_> {
-    fn run(&mut self, parameters: &[Parameter]) -> Result<FamilyVerdict, NotProvable> {
+    fn run(&mut self) -> Result<FamilyVerdict, NotProvable> {
         if let Some(refuted) = self.growing_corner() {
             return Ok(refuted);
         }
@@ -112,50 +117,78 @@ impl Search<'_> {
                 Err(verdict) => return Ok(verdict),
             }
         }
-        Ok(FamilyVerdict::Proved(Family { parameters: parameters.to_vec(), parts }))
+        Ok(FamilyVerdict::Proved(Family { parameters: self.parameters.to_vec(), parts }))
     }
 
     /// A proof of a piece, or its halves; an answer for all where there is one.
     fn piece(&mut self, piece: Piece) -> Result<Found, FamilyVerdict> {
         let open = |because| FamilyVerdict::Open { ends: piece.ends.clone(), because };
-        let plant = match (self.enclose)(&intervals(&piece.ends)) {
-            Ok(plant) => plant,
+        let (plants, loops) = match self.loops(&piece.ends) {
+            Ok(found) => found,
             // A narrower piece may do.
             Err(reason) => {
                 let halves = self.halves(&piece).ok_or_else(|| open(Uncertain::Plant(reason)))?;
                 return Ok(Found::Halves(halves));
             }
         };
-        let model = self.model(&plant).ok();
-        let kept = piece
-            .claim
-            .clone()
-            .filter(|claim| model.as_ref().is_some_and(|model| self.holds(claim, model)));
-        if let Some(claim) = kept {
-            return Ok(Found::Part(Part { ends: piece.ends, plant, claim }));
+        let part =
+            |claim| Found::Part(Part { ends: piece.ends.clone(), plants: plants.clone(), claim });
+        if let Some(claim) = piece.claim.as_ref().filter(|claim| self.holds(claim, &loops)) {
+            return Ok(part(claim.clone()));
         }
+        let common = self.common(&loops);
+        if common.is_none() {
+            self.refuted_in_the_middle(&piece)?;
+        }
+        if let Some(claim) = common.as_ref().filter(|claim| self.holds(claim, &loops)) {
+            return Ok(part(claim.clone()));
+        }
+        let claim = common.or_else(|| piece.claim.clone());
+        if let Some(halves) = self.halves(&Piece { ends: piece.ends.clone(), claim }) {
+            return Ok(Found::Halves(halves));
+        }
+        // Other claims than one form for all gains are looked for where there is no other way.
         let claim = self.claim_at_middle(&piece)?;
-        if model.as_ref().is_some_and(|model| self.holds(&claim, model)) {
-            return Ok(Found::Part(Part { ends: piece.ends, plant, claim }));
+        match self.holds(&claim, &loops) {
+            true => Ok(part(claim)),
+            false => Err(open(Uncertain::Narrow)),
         }
-        let ends = piece.ends.clone();
-        let halves = self.halves(&Piece { ends, claim: Some(claim) });
-        halves.map(Found::Halves).ok_or_else(|| open(Uncertain::Narrow))
+    }
+
+    /// Plants of a box, and the loops between which theirs lie.
+    fn loops(&self, ends: &[[f64; 2]]) -> Result<(PlantSet, Vec<LoopModel<Interval>>), NotProved> {
+        let plants = PlantSet::of(&numbers(self.parameters, ends), self.plant)?;
+        let loops = models(&plants, self.prover.description())?;
+        Ok((plants, loops))
+    }
+
+    /// One form for all of some loops.
+    fn common(&mut self, loops: &[LoopModel<Interval>]) -> Option<Claim> {
+        self.searches += 1;
+        if self.searches > MOST_SEARCHES {
+            return None;
+        }
+        let middles: Vec<LoopModel<f64>> = loops.iter().map(LoopModel::midpoint).collect();
+        self.prover.common_of(&middles, &self.set)
+    }
+
+    /// A member in the middle of a piece that grows ends the search.
+    fn refuted_in_the_middle(&self, piece: &Piece) -> Result<(), FamilyVerdict> {
+        let at = middle(&piece.ends);
+        let Ok(prover) = self.member(&at) else { return Ok(()) };
+        match prover.frozen_growth() {
+            Some(Verdict::Refuted(certificate, _)) => {
+                Err(FamilyVerdict::Refuted { at, claim: certificate.claim })
+            }
+            _ => Ok(()),
+        }
     }
 
     /// A claim about the member in the middle of a piece.
-    fn claim_at_middle(&mut self, piece: &Piece) -> Result<Claim, FamilyVerdict> {
+    fn claim_at_middle(&self, piece: &Piece) -> Result<Claim, FamilyVerdict> {
         let open = |because| FamilyVerdict::Open { ends: piece.ends.clone(), because };
-        let middle: Vec<f64> =
-            piece.ends.iter().map(|&[from, to]| from + 0.5 * (to - from)).collect();
-        self.searches += 1;
-        if self.searches > MOST_SEARCHES {
-            return Err(open(Uncertain::Work));
-        }
-        let prover = self.member(&middle).map_err(|reason| open(Uncertain::Plant(reason)))?;
-        if let Some(Verdict::Refuted(certificate, _)) = prover.frozen_growth() {
-            return Err(FamilyVerdict::Refuted { at: middle, claim: certificate.claim });
-        }
+        let prover = self.member(&middle(&piece.ends));
+        let prover = prover.map_err(|reason| open(Uncertain::Plant(reason)))?;
         let found = prover.stable(&self.set).map(|(certificate, _)| certificate.claim);
         found.ok_or_else(|| open(Uncertain::Member))
     }
@@ -163,8 +196,7 @@ impl Search<'_> {
     /// A corner of the box whose loop grows: asked first, since it ends most searches that end so.
     fn growing_corner(&self) -> Option<FamilyVerdict> {
         (0..1_usize << self.whole.len()).find_map(|corner| {
-            let end = |(place, ends): (usize, &[f64; 2])| ends[corner >> place & 1];
-            let at: Vec<f64> = self.whole.iter().enumerate().map(end).collect();
+            let at = at_corner(&self.whole, corner);
             match self.member(&at).ok()?.frozen_growth()? {
                 Verdict::Refuted(certificate, _) => {
                     Some(FamilyVerdict::Refuted { at, claim: certificate.claim })
@@ -176,22 +208,21 @@ impl Search<'_> {
 
     /// The prover of one member.
     fn member(&self, at: &[f64]) -> Result<Prover<'_>, NotProved> {
-        let at: Vec<Interval> = at.iter().map(|&value| Interval::point(value)).collect();
-        Ok(self.prover.of(self.model(&(self.enclose)(&at)?)?))
+        let ends: Vec<[f64; 2]> = at.iter().map(|&value| [value; 2]).collect();
+        let (_, mut loops) = self.loops(&ends)?;
+        let what = "loops of one plant";
+        let none = NotProved::Number { what, found: 0.0, allowed: "one" };
+        loops.pop().map(|model| self.prover.of(model)).ok_or(none)
     }
 
-    fn model(&self, plant: &EnclosedPlant) -> Result<LoopModel<Interval>, NotProved> {
-        let description = self.prover.description();
-        let dt_s = description.controller.config().dt_s;
-        Ok(LoopModel::new(plant.sampled(dt_s)?, description.settings()))
+    /// True if a claim is proved of each of some loops.
+    fn holds(&self, claim: &Claim, loops: &[LoopModel<Interval>]) -> bool {
+        loops.iter().all(|model| {
+            self.prover.of(model.clone()).rechecked(claim.clone(), 1.0, None).is_some()
+        })
     }
 
-    /// True if a claim is proved of every loop within a model.
-    fn holds(&self, claim: &Claim, model: &LoopModel<Interval>) -> bool {
-        self.prover.of(model.clone()).rechecked(claim.clone(), 1.0, None).is_some()
-    }
-
-    /// A piece, cut across the side that widens its loop most.
+    /// A piece, cut across the side that leaves most of second order.
     fn halves(&self, piece: &Piece) -> Option<[Piece; 2]> {
         let wide = |side: &usize| {
             let ([from, to], [first, last]) = (piece.ends[*side], self.whole[*side]);
@@ -211,13 +242,16 @@ impl Search<'_> {
         }))
     }
 
-    /// How wide the loop of a piece is where one side stands in its middle.
+    /// What is left of second order in a piece where one side stands in its middle.
     fn width_without(&self, piece: &Piece, side: usize) -> f64 {
         let mut ends = piece.ends.clone();
         let [from, to] = ends[side];
         ends[side] = [from + 0.5 * (to - from); 2];
-        let model = (self.enclose)(&intervals(&ends)).and_then(|plant| self.model(&plant));
-        model.map_or(f64::INFINITY, |model| model.plant().rows.iter().map(|it| it.width()).sum())
+        let widths = |model: &LoopModel<Interval>| {
+            model.plant().rows.iter().map(|it| it.width()).sum::<f64>()
+        };
+        let first = |(_, loops): (_, Vec<LoopModel<Interval>>)| loops.first().map(widths);
+        self.loops(&ends).ok().and_then(first).unwrap_or(f64::INFINITY)
     }
 }
 
@@ -226,6 +260,11 @@ enum Found {
     Halves([Piece; 2]),
 }
 
-fn intervals(ends: &[[f64; 2]]) -> Vec<Interval> {
-    ends.iter().map(|&[from, to]| Interval::between(from, to)).collect()
+/// One of the corners of a box, by the bits of its number.
+fn at_corner(ends: &[[f64; 2]], corner: usize) -> Vec<f64> {
+    ends.iter().enumerate().map(|(side, ends)| ends[corner >> side & 1]).collect()
+}
+
+fn middle(ends: &[[f64; 2]]) -> Vec<f64> {
+    ends.iter().map(|&[from, to]| from + 0.5 * (to - from)).collect()
 }

@@ -368,6 +368,11 @@ impl<'a> Prover<'a> {
         Self { model: enclosed.midpoint(), enclosed, ..self.within(self.range) }
     }
 
+    /// The same with another plant in ordinary arithmetic, where nothing is proved.
+    fn around(&self, model: LoopModel<f64>) -> Self {
+        Self { model, ..self.within(self.range) }
+    }
+
     pub(crate) const fn description(&self) -> &LoopDescription {
         self.description
     }

@@ -2,6 +2,7 @@
 
 use fspid_core::{Fspid, Law, SecondInput};
 use fspid_lti::Matrix;
+use fspid_sim::loop_model::LoopModel;
 
 use super::Prover;
 use crate::certificate::{Certificate, Claim};
@@ -31,6 +32,24 @@ impl Prover<'_> {
             let level = self.level(&corners, &form, &rest);
             (Claim::CommonQuadratic { form, rate }, level)
         })
+    }
+
+    /// A claim of one form for several loops that differ in their plants alone, in ordinary arithmetic: what is to be asked
+    /// of everything between them.
+    pub(crate) fn common_of(&self, loops: &[LoopModel<f64>], set: &GainSet) -> Option<Claim> {
+        let rest = self.rest(set).ok()?;
+        let corners = self.held(set, 1.0, &rest).ok()?.held_hull(THINNED);
+        let closed = loops.iter().map(|model| self.around(model.clone()).matrices(&corners));
+        let matrices = closed.collect::<Option<Vec<_>>>()?.concat();
+        let conditions: Vec<Condition<'_>> =
+            matrices.iter().map(|matrix| Condition { matrix, cone: None }).collect();
+        let problem = LyapunovProblem { conditions: &conditions, cones: &[], rate: 1.0 };
+        match solve::common_lyapunov(&problem, &self.search()) {
+            solve::Verdict::Found(solution) => {
+                Some(Claim::CommonQuadratic { form: solution.p, rate: 1.0 })
+            }
+            solve::Verdict::NotFound { .. } => None,
+        }
     }
 
     /// True where something of bounded size may never cease.

@@ -1,7 +1,7 @@
 //! What a certificate's file says of a family: what differs, forms, and parts with their plants.
 
 use fspid_numeric::scalar::Interval;
-use fspid_proof::check::{EnclosedLag, EnclosedPlant};
+use fspid_proof::check::PlantSet;
 use fspid_proof::{Claim, Family, FamilyPart, Parameter};
 use serde::{Deserialize, Serialize};
 
@@ -9,6 +9,8 @@ use super::file::ClaimFile;
 
 /// Both ends of a number.
 type Ends = [f64; 2];
+/// A matrix of such.
+type Rows = Vec<Vec<Ends>>;
 
 /// A family as written.
 #[derive(Debug, Serialize, Deserialize)]
@@ -26,6 +28,7 @@ struct ParameterFile {
     name: String,
     paths: Vec<String>,
     relative: bool,
+    inverse: bool,
     ends: Ends,
 }
 
@@ -33,20 +36,21 @@ struct ParameterFile {
 #[serde(deny_unknown_fields)]
 struct PartFile {
     ends: Vec<Ends>,
-    by_states: Vec<Vec<Ends>>,
-    by_elevator: Vec<Ends>,
-    pitch_rate: Vec<Ends>,
-    lag: LagFile,
+    plants: PlantsFile,
     /// Which of the claims.
     claim: usize,
 }
 
+/// Plants and actuators in continuous time: rows over states and command.
 #[derive(Debug, Serialize, Deserialize)]
-#[serde(tag = "order", rename_all = "kebab-case", deny_unknown_fields)]
-enum LagFile {
-    None,
-    First { time_constant_s: Ends },
-    Second { natural_frequency_rad_s: Ends, damping: Ends },
+#[serde(deny_unknown_fields)]
+struct PlantsFile {
+    middle: Rows,
+    all: Rows,
+    slopes: Vec<Rows>,
+    reach: Vec<f64>,
+    pitch_rate: Vec<Ends>,
+    without_lag: bool,
 }
 
 impl FamilyFile {
@@ -55,11 +59,12 @@ impl FamilyFile {
             name: one.name.clone(),
             paths: one.paths.clone(),
             relative: one.relative,
+            inverse: one.inverse,
             ends: one.ends,
         });
         let mut claims: Vec<&Claim> = Vec::new();
         let mut parts = Vec::with_capacity(family.parts.len());
-        for FamilyPart { ends, plant, claim } in &family.parts {
+        for FamilyPart { ends, plants, claim } in &family.parts {
             let known = claims.iter().position(|it| *it == claim);
             let place = known.unwrap_or_else(|| {
                 claims.push(claim);
@@ -67,10 +72,7 @@ impl FamilyFile {
             });
             parts.push(PartFile {
                 ends: ends.clone(),
-                by_states: plant.by_states.iter().map(|row| all_ends(row)).collect(),
-                by_elevator: all_ends(&plant.by_elevator),
-                pitch_rate: all_ends(&plant.pitch_rate),
-                lag: LagFile::of(plant.lag),
+                plants: PlantsFile::of(plants),
                 claim: place,
             });
         }
@@ -85,22 +87,13 @@ impl FamilyFile {
             let claim = claims.get(part.claim).ok_or_else(|| {
                 format!("a part has claim {}; there are {}, from 0", part.claim, claims.len())
             })?;
-            let rows = part.by_states.iter().map(|row| intervals(row));
-            Ok(FamilyPart {
-                ends: part.ends,
-                plant: EnclosedPlant {
-                    by_states: rows.collect::<Result<_, String>>()?,
-                    by_elevator: intervals(&part.by_elevator)?,
-                    pitch_rate: intervals(&part.pitch_rate)?,
-                    lag: part.lag.build()?,
-                },
-                claim: claim.clone(),
-            })
+            Ok(FamilyPart { ends: part.ends, plants: part.plants.build()?, claim: claim.clone() })
         };
         let parameters = self.parameters.into_iter().map(|one| Parameter {
             name: one.name,
             paths: one.paths,
             relative: one.relative,
+            inverse: one.inverse,
             ends: one.ends,
         });
         Ok(Family {
@@ -110,29 +103,31 @@ impl FamilyFile {
     }
 }
 
-impl LagFile {
-    fn of(lag: EnclosedLag) -> Self {
-        match lag {
-            EnclosedLag::None => Self::None,
-            EnclosedLag::First(time_s) => Self::First { time_constant_s: ends(time_s) },
-            EnclosedLag::Second(frequency, damping) => {
-                Self::Second { natural_frequency_rad_s: ends(frequency), damping: ends(damping) }
-            }
+impl PlantsFile {
+    fn of(plants: &PlantSet) -> Self {
+        let PlantSet { middle, all, slopes, reach, pitch_rate, without_lag } = plants;
+        let rows = |rows: &Vec<Vec<Interval>>| rows.iter().map(|row| all_ends(row)).collect();
+        Self {
+            middle: rows(middle),
+            all: rows(all),
+            slopes: slopes.iter().map(rows).collect(),
+            reach: reach.clone(),
+            pitch_rate: all_ends(pitch_rate),
+            without_lag: *without_lag,
         }
     }
 
-    fn build(self) -> Result<EnclosedLag, String> {
-        let above_zero = |ends: Ends| {
-            let value = interval(ends)?;
-            let good = value.lower() > 0.0;
-            good.then_some(value).ok_or_else(|| "a lag's numbers are above 0".to_owned())
+    fn build(self) -> Result<PlantSet, String> {
+        let rows = |rows: &Rows| -> Result<Vec<Vec<Interval>>, String> {
+            rows.iter().map(|row| intervals(row)).collect()
         };
-        Ok(match self {
-            Self::None => EnclosedLag::None,
-            Self::First { time_constant_s } => EnclosedLag::First(above_zero(time_constant_s)?),
-            Self::Second { natural_frequency_rad_s, damping } => {
-                EnclosedLag::Second(above_zero(natural_frequency_rad_s)?, above_zero(damping)?)
-            }
+        Ok(PlantSet {
+            middle: rows(&self.middle)?,
+            all: rows(&self.all)?,
+            slopes: self.slopes.iter().map(rows).collect::<Result<_, _>>()?,
+            reach: self.reach,
+            pitch_rate: intervals(&self.pitch_rate)?,
+            without_lag: self.without_lag,
         })
     }
 }

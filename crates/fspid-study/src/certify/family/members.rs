@@ -1,15 +1,16 @@
 //! The members of a family: what the dispersions draw, the numbers of the loop that it changes, and the plants that come of
 //! it.
 
+use fspid_numeric::Scalar;
 use fspid_numeric::scalar::Interval;
-use fspid_proof::check::{EnclosedPlant, NotProved};
+use fspid_proof::check::{ContinuousPlant, NotProved, Sloped, printed};
 use fspid_proof::{LoopDescription, MOST_PARAMETERS, NotProvable, Parameter};
 use fspid_scenario::dispersion::{Dispersion, Distribution};
 use fspid_scenario::file::{NewValue, SettingPath, Study, Template};
 use fspid_sim::LinearPlant;
 
 use super::loop_number::LoopNumber;
-use super::source::Source;
+use super::source::{Source, with_number};
 use crate::analysis::lasting_plants;
 
 /// Why no question can be asked of a family.
@@ -40,6 +41,9 @@ pub enum NoFamily {
         why: String,
     },
 }
+
+/// A number that was rounded, over it.
+const ROUNDED: Interval = Interval::between(1.0 - 1e-15, 1.0 + 1e-15);
 
 /// A drawn number with the numbers of the loop that follow it.
 struct Drawn {
@@ -81,13 +85,18 @@ impl Members {
         &self.parameters
     }
 
-    /// A plant that holds those of all members with parameters in these intervals.
-    pub(super) fn plant(&self, at: &[Interval]) -> Result<EnclosedPlant, NotProved> {
+    /// The plant of parameters, as [`Parameter::number`] has them.
+    pub(super) fn plant(&self, at: &[Sloped]) -> Result<ContinuousPlant<Sloped>, NotProved> {
         let mut source = self.source.clone();
-        for (drawn, value) in self.drawn.iter().zip(at) {
+        for (drawn, &value) in self.drawn.iter().zip(at) {
             for (number, factor_of) in &drawn.numbers {
-                // As a scenario does it: the factor times what stands there, rounded once.
-                let value = factor_of.map_or(*value, |nominal| Interval::point(nominal) * *value);
+                // Numbers stand for all decimals that round to them, and a product is rounded once more.
+                let factor = |nominal: f64| Sloped::fixed(printed(nominal) * ROUNDED);
+                let value = match (factor_of, drawn.parameter.inverse) {
+                    (None, _) => value * Sloped::fixed(ROUNDED),
+                    (Some(nominal), false) => factor(*nominal) * value,
+                    (Some(nominal), true) => value * (Sloped::one() / factor(*nominal)),
+                };
                 source.put(*number, value);
             }
         }
@@ -124,6 +133,7 @@ impl Asking<'_> {
                 name: target.name.clone(),
                 paths: target.paths.iter().map(|path| path.text().to_owned()).collect(),
                 relative: dispersion.relative,
+                inverse: numbers.iter().all(|it| *it == LoopNumber::TimeConstant),
                 ends,
             };
             let nominal = |path: &SettingPath| {
@@ -150,11 +160,13 @@ impl Asking<'_> {
                 })
                 .collect();
             let flown = self.described(&values, paths)?;
-            let mut source = Source::of(self.description);
-            for (number, nominal) in &drawn.numbers {
-                source.put(*number, Interval::point(nominal.map_or(end, |it| it * end)));
-            }
-            if !source.is_of(&flown, self.description) {
+            let follows = drawn.numbers.iter().try_fold(
+                self.description.clone(),
+                |loop_, (number, nominal)| {
+                    with_number(&loop_, *number, nominal.map_or(end, |it| it * end))
+                },
+            );
+            if follows != Some(flown) {
                 return Err(NoFamily::NotBounded {
                     path: drawn.parameter.paths.join(", "),
                     why: "it changes more of the loop than this number, such as gains that are designed from it; allowed is a number that stands alone",

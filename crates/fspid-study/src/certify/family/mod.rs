@@ -9,10 +9,10 @@ mod source;
 pub(super) use answer::{box_in_words, in_json, sentences};
 pub use members::NoFamily;
 
-use fspid_numeric::scalar::Interval;
+use fspid_proof::check::{PlantSet, Sloped};
 use fspid_proof::{
     Certificate, Effort, Family, FamilyVerdict, LeftOut, LoopDescription, NotProvable, Outcome,
-    Rechecked, Verdict, prove_family,
+    Rechecked, Verdict, numbers, prove_family,
 };
 use fspid_scenario::file::Template;
 use fspid_sim::LinearPlant;
@@ -63,9 +63,9 @@ pub(super) fn certified(
         Ok(members) => members,
         Err(none) => return Ok(FamilyAnswer::None(none)),
     };
-    let enclose = |at: &[Interval]| members.plant(at);
+    let plant = |at: &[Sloped]| members.plant(at);
     let parameters = members.parameters().to_vec();
-    let verdict = prove_family(description, &parameters, effort, &enclose)?;
+    let verdict = prove_family(description, &parameters, effort, &plant)?;
     if let FamilyVerdict::Proved(family) = &verdict {
         let mut whole = Certificate { family: Some(family.clone()), ..certificate.clone() };
         whole.left_out.retain(|one| *one != LeftOut::Dispersions);
@@ -89,9 +89,8 @@ pub(super) fn differs(
         return Some(box_in_words(members.parameters()));
     }
     let encloses = |part: &fspid_proof::FamilyPart| {
-        let at: Vec<Interval> =
-            part.ends.iter().map(|&[from, to]| Interval::between(from, to)).collect();
-        members.plant(&at).is_ok_and(|plant| part.plant.encloses(&plant))
+        let numbers = numbers(&family.parameters, &part.ends);
+        PlantSet::of(&numbers, &|at| members.plant(at)).is_ok_and(|it| part.plants.encloses(&it))
     };
     let place = family.parts.iter().position(|part| !encloses(part))?;
     Some(format!("other plants in part {place}"))

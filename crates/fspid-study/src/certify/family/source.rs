@@ -1,41 +1,52 @@
-//! The numbers of a loop's plant and actuator, each between bounds, and the plant that they make.
+//! The numbers of a loop's plant and actuator, with slopes, and the plant that they make.
 
 use fspid_numeric::scalar::Interval;
 use fspid_proof::LoopDescription;
-use fspid_proof::check::{ActuatorLag, EnclosedLag, EnclosedPlant, NotProved, printed};
+use fspid_proof::check::{ActuatorLag, ContinuousPlant, LagOf, NotProved, Sloped, printed};
 use fspid_sim::ElevatorSign;
+use fspid_sim::actuator::Lag;
 
 use super::loop_number::LoopNumber;
 
 /// Numbers of plant and actuator.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Source {
-    numerator: Vec<Interval>,
-    denominator: Vec<Interval>,
+    numerator: Vec<Sloped>,
+    denominator: Vec<Sloped>,
     elevator_sign: ElevatorSign,
-    lag: EnclosedLag,
+    lag: LagOf<Sloped>,
 }
 
 impl Source {
-    /// Those of a loop as it is.
+    /// Those of a loop as it is, each with the decimals that round to it.
     pub(super) fn of(description: &LoopDescription) -> Self {
-        let points = |values: &[f64]| values.iter().map(|&it| Interval::point(it)).collect();
+        let fixed = |value: f64| Sloped::fixed(printed(value));
+        let all = |values: &[f64]| values.iter().map(|&it| fixed(it)).collect();
+        let lag = match ActuatorLag::from(description.actuator.lag()) {
+            ActuatorLag::None => LagOf::None,
+            ActuatorLag::First { time_constant_s } => {
+                LagOf::First(Sloped::fixed(Interval::ONE / printed(time_constant_s)))
+            }
+            ActuatorLag::Second { natural_frequency_rad_s, damping } => {
+                LagOf::Second(fixed(natural_frequency_rad_s), fixed(damping))
+            }
+        };
         Self {
-            numerator: points(&description.numerator),
-            denominator: points(&description.denominator),
+            numerator: all(&description.numerator),
+            denominator: all(&description.denominator),
             elevator_sign: description.elevator_sign,
-            lag: lag_of(description),
+            lag,
         }
     }
 
-    /// Puts a number between bounds; a place that the loop does not have stays without.
-    pub(super) fn put(&mut self, number: LoopNumber, value: Interval) {
+    /// Puts a number; one that the loop does not have stays without. A time constant comes as one over it.
+    pub(super) fn put(&mut self, number: LoopNumber, value: Sloped) {
         let place = match (number, &mut self.lag) {
             (LoopNumber::Numerator(index), _) => self.numerator.get_mut(index),
             (LoopNumber::Denominator(index), _) => self.denominator.get_mut(index),
-            (LoopNumber::TimeConstant, EnclosedLag::First(time_s)) => Some(time_s),
-            (LoopNumber::NaturalFrequency, EnclosedLag::Second(frequency, _)) => Some(frequency),
-            (LoopNumber::Damping, EnclosedLag::Second(_, damping)) => Some(damping),
+            (LoopNumber::TimeConstant, LagOf::First(bandwidth)) => Some(bandwidth),
+            (LoopNumber::NaturalFrequency, LagOf::Second(frequency, _)) => Some(frequency),
+            (LoopNumber::Damping, LagOf::Second(_, damping)) => Some(damping),
             _ => None,
         };
         if let Some(place) = place {
@@ -43,52 +54,51 @@ impl Source {
         }
     }
 
-    /// True if these are the numbers of `flown`, and if all else of that loop is as in `own`.
-    pub(super) fn is_of(&self, flown: &LoopDescription, own: &LoopDescription) -> bool {
-        let with_plant_and_lag_of_own = LoopDescription {
-            numerator: own.numerator.clone(),
-            denominator: own.denominator.clone(),
-            actuator: flown.actuator.with_lag(own.actuator.lag()),
-            ..flown.clone()
-        };
-        *self == Self::of(flown) && with_plant_and_lag_of_own == *own
-    }
-
-    /// The plant of all these numbers, each with the decimals that round to it.
-    pub(super) fn plant(&self) -> Result<EnclosedPlant, NotProved> {
-        let all = |values: &[Interval]| values.iter().copied().map(rounded).collect::<Vec<_>>();
-        let lag = match self.lag {
-            EnclosedLag::None => EnclosedLag::None,
-            EnclosedLag::First(time_s) => EnclosedLag::First(rounded(time_s)),
-            EnclosedLag::Second(frequency, damping) => {
-                EnclosedLag::Second(rounded(frequency), rounded(damping))
-            }
-        };
-        let denominator = all(&self.denominator);
-        if denominator.first().is_none_or(|leading| leading.contains(0.0)) {
+    /// The plant of all these numbers: in the form in which most of them enter linearly, if the elevator has an effect
+    /// everywhere.
+    pub(super) fn plant(&self) -> Result<ContinuousPlant<Sloped>, NotProved> {
+        let may_vanish = |it: &Sloped| it.value.contains(0.0);
+        if self.denominator.first().is_none_or(may_vanish) {
             return Err(NotProved::Number {
                 what: "leading coefficient of the denominator",
                 found: 0.0,
                 allowed: "ends on one side of 0",
             });
         }
-        let numerator = all(&self.numerator);
-        Ok(EnclosedPlant::of_transfer_function(&numerator, &denominator, self.elevator_sign, lag))
+        let (sign, lag) = (self.elevator_sign, self.lag);
+        // Coefficients before the first that is there are no part of the numerator.
+        let there = self.numerator.iter().position(|it| it.value != Interval::ZERO).unwrap_or(0);
+        let numerator = &self.numerator[there..];
+        let normal =
+            ContinuousPlant::in_normal_form(numerator, &self.denominator, (sign, lag), may_vanish);
+        Ok(normal.unwrap_or_else(|| {
+            ContinuousPlant::of_transfer_function(numerator, &self.denominator, sign, lag)
+        }))
     }
 }
 
-fn rounded(value: Interval) -> Interval {
-    printed(value.lower()).hull(printed(value.upper()))
-}
-
-fn lag_of(description: &LoopDescription) -> EnclosedLag {
-    match ActuatorLag::from(description.actuator.lag()) {
-        ActuatorLag::None => EnclosedLag::None,
-        ActuatorLag::First { time_constant_s } => {
-            EnclosedLag::First(Interval::point(time_constant_s))
+/// A loop with another number in it; the loop as it is where it has no such number.
+pub(super) fn with_number(
+    description: &LoopDescription,
+    number: LoopNumber,
+    value: f64,
+) -> Option<LoopDescription> {
+    let mut other = description.clone();
+    match number {
+        LoopNumber::Numerator(index) => *other.numerator.get_mut(index)? = value,
+        LoopNumber::Denominator(index) => *other.denominator.get_mut(index)? = value,
+        LoopNumber::TimeConstant => {
+            other.actuator.lag().time_constant_s()?;
+            other.actuator = other.actuator.with_lag(Lag::first_order(value).ok()?);
         }
-        ActuatorLag::Second { natural_frequency_rad_s, damping } => {
-            EnclosedLag::Second(Interval::point(natural_frequency_rad_s), Interval::point(damping))
+        LoopNumber::NaturalFrequency | LoopNumber::Damping => {
+            let (frequency, damping) = other.actuator.lag().second_order_parameters()?;
+            let lag = match number {
+                LoopNumber::Damping => Lag::second_order(frequency, value),
+                _ => Lag::second_order(value, damping),
+            };
+            other.actuator = other.actuator.with_lag(lag.ok()?);
         }
     }
+    Some(other)
 }

@@ -54,30 +54,29 @@ const PARAMETER: Shape = Object(&[
     key("name", Text(NAME)),
     key("paths", List(&Text(NAME), [1, COEFFICIENTS])),
     key("relative", Truth),
+    key("inverse", Truth),
     key("ends", BOTH_ENDS),
 ]);
 
 /// Ends of a number of a plant.
 const BOTH_ENDS: Shape = List(&REAL, [2, 2]);
 const ROW: Shape = List(&BOTH_ENDS, [1, COEFFICIENTS]);
+const ROWS: Shape = List(&ROW, [1, COEFFICIENTS]);
 
 const PART: Shape = Object(&[
     key("ends", List(&BOTH_ENDS, [1, MOST_PARAMETERS])),
-    key("by_states", List(&ROW, [1, COEFFICIENTS])),
-    key("by_elevator", ROW),
-    key("pitch_rate", ROW),
-    key("lag", ENCLOSED_LAG),
+    key("plants", PLANTS),
     key("claim", Whole(0, MOST_PARTS as u64)),
 ]);
 
-const ENCLOSED_LAG: Shape = Kinds(
-    "order",
-    &[
-        ("none", &[]),
-        ("first", &[key("time_constant_s", BOTH_ENDS)]),
-        ("second", &[key("natural_frequency_rad_s", BOTH_ENDS), key("damping", BOTH_ENDS)]),
-    ],
-);
+const PLANTS: Shape = Object(&[
+    key("middle", ROWS),
+    key("all", ROWS),
+    key("slopes", List(&ROWS, [1, MOST_PARAMETERS])),
+    key("reach", List(&NOT_NEGATIVE, [1, MOST_PARAMETERS])),
+    key("pitch_rate", ROW),
+    key("without_lag", Truth),
+]);
 
 /// Longest names.
 const NAME: usize = 1000;

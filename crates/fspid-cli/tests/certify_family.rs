@@ -1,0 +1,134 @@
+//! `fspid certify --family`: all that dispersions can draw, at once.
+
+use crate::common;
+
+use common::{code, fspid, json, text};
+
+const SCENARIO: &str = r#"
+schema = 1
+name = "Drawn"
+
+[plant]
+numerator = [1.151, 0.1774]
+denominator = [1.0, 0.739, 0.921, 0.0]
+elevator_sign = "nose-up-positive"
+
+[actuator]
+time_constant_s = 0.1
+
+[loop]
+sample_period_s = 0.02
+duration_s = 8.0
+
+[setpoint]
+kind = "step"
+amplitude_deg = 3.0
+
+[[controller]]
+name = "PID"
+kind = "pid"
+kp = 1.2
+ki = 0.4
+kd = 0.5
+
+[[dispersion]]
+name = "effectiveness"
+paths = ["plant.numerator[0]", "plant.numerator[1]"]
+distribution = "normal"
+mean = 1.0
+standard_deviation = 0.1
+lower = 0.8
+upper = 1.2
+relative = true
+
+[[dispersion]]
+name = "damping"
+path = "plant.denominator[1]"
+distribution = "uniform"
+lower = 0.65
+upper = 0.85
+
+[[dispersion]]
+name = "servo"
+path = "actuator.time_constant_s"
+distribution = "log-uniform"
+lower = 0.08
+upper = 0.12
+
+[[dispersion]]
+path = "setpoint.amplitude_deg"
+distribution = "uniform"
+lower = 1.0
+upper = 4.0
+"#;
+
+fn folder(scenario: &str) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("drawn.toml"), scenario).expect("written");
+    folder
+}
+
+#[test]
+fn a_family_is_proved_written_checked_and_compared_with_what_the_scenario_draws() {
+    let folder = folder(SCENARIO);
+    let output = fspid(&["certify", "drawn.toml", "--family", "--out", "proofs"], folder.path());
+    assert_eq!(code(&output), 0, "{}", text(&output.stderr));
+    let told = text(&output.stdout);
+    let box_in_words = "effectiveness (plant.numerator[0], plant.numerator[1]) from 0.8 to 1.2 times as large; damping (plant.denominator[1]) from 0.65 to 0.85; servo (actuator.time_constant_s) from 0.08 to 0.12";
+    assert!(told.contains(box_in_words) && !told.contains("that a campaign draws"), "{told}");
+    let output = fspid(&["certify", "--check", "proofs/pid.certificate.json"], folder.path());
+    assert_eq!(code(&output), 0, "{}", text(&output.stderr));
+    assert!(text(&output.stdout).contains(box_in_words));
+    let against = |setting: &str| {
+        let words = [
+            "certify",
+            "--check",
+            "proofs/pid.certificate.json",
+            "--against",
+            "drawn.toml",
+            "--set",
+            setting,
+        ];
+        fspid(&words, folder.path())
+    };
+    assert_eq!(code(&against("setpoint.amplitude_deg=2.5")), 0);
+    let wider = against("dispersion[1].upper=0.9");
+    assert_eq!(code(&wider), 1);
+    assert!(text(&wider.stdout).contains("from 0.65 to 0.9"), "{}", text(&wider.stdout));
+    // The same proof says nothing of a scenario that draws what it does not know.
+    let unknown = against("dispersion[1].path=loop.sample_period_s");
+    assert_ne!(code(&unknown), 0);
+}
+
+#[test]
+fn what_no_family_can_hold_is_refused_by_name() {
+    let changed = |from: &str, to: &str| {
+        assert!(SCENARIO.contains(from), "{from}");
+        let folder = folder(&SCENARIO.replace(from, to));
+        let words = ["certify", "drawn.toml", "--family", "--format", "json"];
+        let output = fspid(&words, folder.path());
+        assert_eq!(code(&output), 1, "{}", text(&output.stderr));
+        let family = json(&output)["controllers"][0]["family"].clone();
+        assert_eq!(family["verdict"], "open");
+        family["in_words"].as_str().expect("words").to_owned()
+    };
+    let open_end = changed("lower = 0.8\nupper = 1.2\n", "");
+    assert!(open_end.contains("has no ends"), "{open_end}");
+    let gain = changed("path = \"plant.denominator[1]\"", "path = \"controller[0].kp\"");
+    assert!(gain.contains("`controller[0].kp`: families know"), "{gain}");
+}
+
+#[test]
+fn a_family_with_an_unstable_member_is_refuted_with_the_member() {
+    let slow = SCENARIO.replace("lower = 0.08\nupper = 0.12", "lower = 0.08\nupper = 2.5");
+    let folder = folder(&slow);
+    let output = fspid(&["certify", "drawn.toml", "--family"], folder.path());
+    assert_eq!(code(&output), 1);
+    let told = text(&output.stdout);
+    assert!(told.contains("REFUTED: with gains that the controller has"), "{told}");
+    let at = told.split("servo (actuator.time_constant_s) ").last().expect("a member");
+    let lag_s = at.split_whitespace().next().expect("a number");
+    let set = format!("actuator.time_constant_s={lag_s}");
+    let member = fspid(&["certify", "drawn.toml", "--set", &set], folder.path());
+    assert!(text(&member.stdout).contains("REFUTED"), "{}", text(&member.stdout));
+}

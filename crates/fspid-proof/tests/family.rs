@@ -1,0 +1,192 @@
+//! Plants and actuators between bounds, proved at once.
+
+use fspid_core::{Derivative, Gains, Pid, PidConfig};
+use fspid_lti::{Matrix, spectral_radius};
+use fspid_numeric::scalar::Interval;
+use fspid_proof::check::{ContinuousPlant, LagOf, NotProved, PlantSet, Sloped};
+use fspid_proof::{
+    Asked, Certificate, Effort, Family, FamilyVerdict, LoopDescription, Parameter, Verdict,
+    certify, numbers, prove_family,
+};
+use fspid_sim::actuator::{Actuator, Lag};
+use fspid_sim::loop_model::{LoopModel, SampledPlant, Sensing};
+use fspid_sim::{Controller, ElevatorSign};
+
+const NUMERATOR: [f64; 3] = [-1.69144, -0.84341, -0.0099096];
+const DENOMINATOR: [f64; 5] = [1.0, 1.17103, 1.55405, 0.012538, 0.0072771];
+/// Effectiveness, damping and stiffness as factors, the servo's time constant, s.
+const NAMES: [&str; 4] = ["effect", "damping", "stiffness", "lag"];
+
+fn parameters(ends: [[f64; 2]; 4]) -> Vec<Parameter> {
+    let parameter = |(name, ends): (&str, [f64; 2])| Parameter {
+        name: name.to_owned(),
+        paths: vec![name.to_owned()],
+        relative: name != "lag",
+        inverse: name == "lag",
+        ends,
+    };
+    NAMES.into_iter().zip(ends).map(parameter).collect()
+}
+
+/// The paper's 747 behind its servo.
+fn plant(at: &[Sloped]) -> Result<ContinuousPlant<Sloped>, NotProved> {
+    let [effect, damping, stiffness, bandwidth] = *at else { panic!("four parameters") };
+    let point = |value| Sloped::fixed(Interval::point(value));
+    let numerator = NUMERATOR.map(|it| point(it) * effect);
+    let mut denominator = DENOMINATOR.map(point);
+    denominator[1] = denominator[1] * damping;
+    denominator[2] = denominator[2] * stiffness;
+    let sign = ElevatorSign::NoseDownPositive;
+    let may_vanish = |it: &Sloped| it.value.contains(0.0);
+    let parts = (sign, LagOf::First(bandwidth));
+    let plant = ContinuousPlant::in_normal_form(&numerator, &denominator, parts, may_vanish);
+    Ok(plant.expect("an elevator with an effect"))
+}
+
+/// The same, as a loop is described.
+fn member([effect, damping, stiffness, lag_s]: [f64; 4], gains: Gains<f64>) -> LoopDescription {
+    let config =
+        PidConfig { derivative: Derivative { filter_s: 0.05 }, ..PidConfig::sampled_every(0.01) };
+    let mut denominator = DENOMINATOR.to_vec();
+    denominator[1] *= damping;
+    denominator[2] *= stiffness;
+    LoopDescription {
+        numerator: NUMERATOR.map(|it| it * effect).to_vec(),
+        denominator,
+        elevator_sign: ElevatorSign::NoseDownPositive,
+        actuator: Actuator::new(Lag::first_order(lag_s).expect("allowed")),
+        pitch: Sensing::DIRECT,
+        rate: Sensing::DIRECT,
+        controller: Controller::Fixed(Pid::new(gains, config).expect("allowed")),
+    }
+}
+
+const GAINS: Gains<f64> = Gains { kp: 2.0, ki: 0.5, kd: 1.0 };
+const NOMINAL: [f64; 4] = [1.0, 1.0, 1.0, 0.1];
+const BOX: [[f64; 2]; 4] = [[0.85, 1.15], [0.9, 1.1], [0.85, 1.15], [0.09, 0.11]];
+
+fn found(ends: [[f64; 2]; 4], gains: Gains<f64>) -> FamilyVerdict {
+    let loop_ = member(NOMINAL, gains);
+    prove_family(&loop_, &parameters(ends), &Effort::default(), &plant).expect("provable")
+}
+
+fn proved(ends: [[f64; 2]; 4]) -> Family {
+    match found(ends, GAINS) {
+        FamilyVerdict::Proved(family) => family,
+        other => panic!("{other:?}"),
+    }
+}
+
+fn radius(description: &LoopDescription) -> f64 {
+    let model = description.enclosed().expect("a model").midpoint();
+    spectral_radius(&model.closed_matrix(description.controller.nominal()).expect("finite"))
+        .expect("a radius")
+}
+
+/// Numbers in 0..1 that fill it evenly.
+fn share(number: u32) -> f64 {
+    let golden = 0.618_033_988_749_895 * f64::from(number);
+    golden - libm::floor(golden)
+}
+
+fn somewhere(ends: [[f64; 2]; 4], number: u32) -> [f64; 4] {
+    core::array::from_fn(|side| {
+        let [from, to] = ends[side];
+        let which = u32::try_from(side).expect("few");
+        from + (to - from) * share(number * 5 + which * which * 3 + which)
+    })
+}
+
+#[test]
+fn every_member_of_a_proved_family_is_stable_and_the_certificate_says_so_alone() {
+    let family = proved(BOX);
+    assert!((2..60).contains(&family.parts.len()), "{} parts", family.parts.len());
+    for number in 0..300 {
+        let at = somewhere(BOX, number);
+        assert!(radius(&member(at, GAINS)) < 1.0, "{at:?}");
+    }
+    let loop_ = member(NOMINAL, GAINS);
+    let outcome = certify(&loop_, &Asked::rest(), &Effort::default()).expect("provable");
+    let Verdict::Proved(certificate, _) = outcome.verdict else { panic!("{outcome:?}") };
+    let whole = |family: Family| Certificate { family: Some(family), ..certificate.clone() };
+    let checked = whole(family.clone()).check().expect("it holds").family.expect("a family");
+    assert_eq!(checked.parts, family.parts.len());
+    let refused = |change: &dyn Fn(&mut Family), word: &str| {
+        let mut other = family.clone();
+        change(&mut other);
+        let refused = whole(other).check().expect_err(word).to_string();
+        assert!(refused.contains(word), "{refused}");
+    };
+    refused(&|it| drop(it.parts.pop()), "leave a part");
+    refused(&|it| it.parameters[0].ends[1] = 1.2, "leave a part");
+    refused(&|it| it.parts[0].plants.slopes.truncate(2), "different states");
+    // A wider reach than the forms hold for, and plants that are others.
+    refused(&|it| it.parts[0].plants.reach[2] *= 30.0, "part 0 of the family");
+    let other = |it: &mut Family| it.parts[0].plants.middle[1][4] = Interval::between(-90.0, 90.0);
+    refused(&other, "part 0 of the family");
+}
+
+#[test]
+fn a_family_with_a_member_that_grows_is_refuted_at_one_that_does() {
+    let gains = Gains { kp: 4.0, ki: 2.0, kd: 1.0 };
+    let ends = [[0.5, 4.0], [0.5, 1.5], [0.7, 1.3], [0.05, 0.4]];
+    let FamilyVerdict::Refuted { at, claim } = found(ends, gains) else { panic!("not refuted") };
+    assert!(!claim.is_of_stability());
+    let at: [f64; 4] = at.try_into().expect("four");
+    assert!(radius(&member(at, gains)) > 1.0, "{at:?}");
+}
+
+/// The sampled plants of members lie between the corners that the proof asks, and their loops between the loops.
+#[test]
+fn the_sampled_plant_of_every_member_lies_between_the_corners_of_its_set() {
+    let ends = [[0.97, 1.03], [0.97, 1.03], [0.98, 1.02], [0.098, 0.102]];
+    let parameters = parameters(ends);
+    let set = PlantSet::of(&numbers(&parameters, &ends), &plant).expect("plants");
+    let corners = set.sampled(0.01).expect("sampled");
+    assert_eq!(corners.len(), 16);
+    for number in 0..50 {
+        let at = somewhere(ends, number);
+        let point: Vec<[f64; 2]> = at.iter().map(|&it| [it; 2]).collect();
+        let one = PlantSet::of(&numbers(&parameters, &point), &plant).expect("a plant");
+        let one = one.sampled(0.01).expect("sampled").remove(0);
+        // The share of each corner: the plants are nearly linear in the numbers that they are made of.
+        let shares: Vec<f64> = at
+            .iter()
+            .zip(ends)
+            .enumerate()
+            .map(|(side, (&it, [from, to]))| match side {
+                3 => (1.0 / it - 1.0 / to) / (1.0 / from - 1.0 / to),
+                _ => (it - from) / (to - from),
+            })
+            .collect();
+        for (entry, value) in one.rows.iter().enumerate() {
+            let mut between = Interval::ZERO;
+            for (corner, plant) in corners.iter().enumerate() {
+                let weight = shares.iter().enumerate().fold(1.0, |weight, (side, share)| {
+                    weight * if corner >> side & 1 == 0 { 1.0 - share } else { *share }
+                });
+                between = between + Interval::point(weight) * plant.rows[entry];
+            }
+            let off = (between.lower() - value.lower()).max(value.upper() - between.upper());
+            assert!(off < 1e-13, "entry {entry} of {at:?}: {value:?} is not in {between:?}");
+        }
+    }
+}
+
+#[test]
+fn a_loops_matrix_is_affine_in_what_its_plant_makes_of_a_sample() {
+    let description = member(NOMINAL, GAINS);
+    let closed = |rows: Vec<f64>| -> Matrix {
+        let model = description.enclosed().expect("a model").midpoint();
+        let SampledPlant { states, rate, .. } = model.plant().clone();
+        let plant = SampledPlant { states, rows, rate };
+        LoopModel::new(plant, description.settings()).closed_matrix(GAINS).expect("finite")
+    };
+    let rows = |at| member(at, GAINS).enclosed().expect("a model").midpoint().plant().rows.clone();
+    let (one, other) = (rows([1.0; 4]), rows([0.5, 1.5, 0.7, 0.05]));
+    let middle = one.iter().zip(&other).map(|(one, other)| 0.5 * (one + other)).collect();
+    let [one, other, middle] = [closed(one), closed(other), closed(middle)];
+    for ((one, other), middle) in one.data().iter().zip(other.data()).zip(middle.data()) {
+        assert!((0.5 * (one + other) - middle).abs() < 1e-14);
+    }
+}
