@@ -34,7 +34,7 @@ pub const SEA_LEVEL_PRESSURE_PA: f64 = 101_325.0;
 pub const SEA_LEVEL_DENSITY_KG_M3: f64 = 1.225;
 
 /// $g_0 / R$, K/m.
-const SCALE_K_M: f64 = STANDARD_GRAVITY_M_S2 / GAS_CONSTANT_J_KG_K;
+pub(crate) const SCALE_K_M: f64 = STANDARD_GRAVITY_M_S2 / GAS_CONSTANT_J_KG_K;
 
 /// Temperature at sea level in K.
 const SEA_LEVEL_TEMPERATURE_K: f64 = 288.15;
@@ -189,6 +189,28 @@ impl Layer {
         let Base { temperature_k, pressure_pa } = base;
         let change_k = self.lapse_k_m * (altitude_m - self.base_m);
         Base { temperature_k: temperature_k + change_k, pressure_pa: pressure_pa * ratio }
+    }
+}
+
+/// A layer with the air at its base.
+pub(crate) struct Stratum {
+    pub(crate) base_m: f64,
+    pub(crate) lapse_k_m: f64,
+    pub(crate) air: Air,
+}
+
+impl Stratum {
+    /// The layer in which all altitudes between two lie; none where they lie in several, or beyond the standard.
+    pub(crate) fn over(lowest_m: f64, highest_m: f64) -> Option<Self> {
+        let tops = LAYERS.iter().skip(1).map(|next| next.base_m).chain([ALTITUDE_MAX_M]);
+        let mut layers = LAYERS.iter().zip(tops).enumerate();
+        let holds = |(index, (layer, top_m)): &(usize, (&Layer, f64))| {
+            let bottom_m = if *index == 0 { ALTITUDE_MIN_M } else { layer.base_m };
+            bottom_m <= lowest_m && highest_m <= *top_m
+        };
+        let (_, (layer, _)) = layers.find(holds)?;
+        let Layer { base_m, lapse_k_m } = *layer;
+        Some(Self { base_m, lapse_k_m, air: Air::in_layers(base_m) })
     }
 }
 

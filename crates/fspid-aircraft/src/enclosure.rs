@@ -5,12 +5,12 @@
 //! arithmetic. The derivatives of the equations of motion are written out, not differenced. For aircraft of derivatives to
 //! which nothing is added (no configurations, Mach rows, ground or engine of their own).
 
-use fspid_numeric::scalar::{Interval, Scalar};
+use fspid_numeric::scalar::{Base, Dual, Interval, Scalar};
 
 use crate::aerodynamics::derivatives::{
     DragLaw, Geometry, Longitudinal, LongitudinalCoefficient, ThrustLaw,
 };
-use crate::atmosphere::Environment;
+use crate::atmosphere::{AirModel, Environment, SCALE_K_M, Stratum};
 use crate::data::{DerivativeData, Laws, Moment};
 use crate::trim::TrimTarget;
 
@@ -23,44 +23,44 @@ const MOST_STEPS: usize = 40;
 
 /// One longitudinal coefficient, see [`LongitudinalCoefficient`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EnclosedCoefficient {
+pub struct EnclosedCoefficient<T> {
     /// At the reference.
-    pub reference: Interval,
+    pub reference: T,
     /// By angle of attack.
-    pub alpha: Interval,
+    pub alpha: T,
     /// By its rate.
-    pub alpha_rate: Interval,
+    pub alpha_rate: T,
     /// By pitch rate.
-    pub pitch_rate: Interval,
+    pub pitch_rate: T,
     /// By relative change of speed.
-    pub speed: Interval,
+    pub speed: T,
     /// By elevator.
-    pub elevator: Interval,
+    pub elevator: T,
 }
 
 /// A straight flight of an aircraft of derivatives, every number between bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EnclosedFlight {
+pub struct EnclosedFlight<T> {
     /// Mass.
-    pub mass_kg: Interval,
+    pub mass_kg: T,
     /// How the moment of inertia in pitch is known.
-    pub inertia: EnclosedMoment,
+    pub inertia: EnclosedMoment<T>,
     /// How far the centre of gravity is behind that of the derivatives, in chords.
-    pub aft_chords: Interval,
+    pub aft_chords: T,
     /// True airspeed.
-    pub airspeed_m_s: Interval,
+    pub airspeed_m_s: T,
     /// Geopotential altitude.
-    pub altitude_m: Interval,
+    pub altitude_m: T,
     /// Climb angle.
-    pub flight_path_rad: Interval,
+    pub flight_path_rad: T,
     /// Lift about the centre of gravity of the derivatives.
-    pub lift: EnclosedCoefficient,
+    pub lift: EnclosedCoefficient<T>,
     /// Drag.
-    pub drag: EnclosedCoefficient,
+    pub drag: EnclosedCoefficient<T>,
     /// Pitching moment.
-    pub pitch: EnclosedCoefficient,
+    pub pitch: EnclosedCoefficient<T>,
     /// Thrust by relative change of speed.
-    pub thrust_speed: Interval,
+    pub thrust_speed: T,
     geometry: Geometry,
     reference_airspeed_m_s: f64,
     alpha_rad: Interval,
@@ -70,38 +70,38 @@ pub struct EnclosedFlight {
 
 /// [`Moment`] between bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum EnclosedMoment {
+pub enum EnclosedMoment<T> {
     /// Itself, kg m².
-    Inertia(Interval),
+    Inertia(T),
     /// By the radius of gyration, m.
-    Gyration(Interval),
+    Gyration(T),
 }
 
 /// The linear model of pitch: rates of θ, q, V and α by these and by the elevator (SI, elevator as the derivatives count it).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EnclosedModel {
+pub struct EnclosedModel<T> {
     /// State matrix, row by row.
-    pub by_states: [[Interval; 4]; 4],
+    pub by_states: [[T; 4]; 4],
     /// By elevator.
-    pub by_elevator: [Interval; 4],
+    pub by_elevator: [T; 4],
 }
 
 /// What holds a straight flight.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EnclosedTrim {
+pub struct EnclosedTrim<T> {
     /// Angle of attack from the reference's, rad.
-    pub alpha_rad: Interval,
+    pub alpha_rad: T,
     /// Elevator, rad.
-    pub elevator_rad: Interval,
+    pub elevator_rad: T,
     /// Thrust, N.
-    pub thrust_n: Interval,
+    pub thrust_n: T,
 }
 
-fn point(value: f64) -> Interval {
-    Interval::point(value)
+fn point<T: Scalar>(value: f64) -> T {
+    T::constant(value)
 }
 
-impl EnclosedCoefficient {
+impl<T: Scalar> EnclosedCoefficient<T> {
     fn of(row: &LongitudinalCoefficient) -> Self {
         let LongitudinalCoefficient { reference, alpha, alpha_rate, pitch_rate, speed, elevator } =
             *row;
@@ -116,7 +116,7 @@ impl EnclosedCoefficient {
     }
 
     /// This one and a part of another.
-    fn and(&self, part: Interval, other: &Self) -> Self {
+    fn and(&self, part: T, other: &Self) -> Self {
         Self {
             reference: self.reference + part * other.reference,
             alpha: self.alpha + part * other.alpha,
@@ -128,13 +128,13 @@ impl EnclosedCoefficient {
     }
 
     /// Seen from a place that lags behind in angle of attack, see [`Longitudinal::moved`].
-    fn lagging(self, aft_chords: Interval) -> Self {
-        let pitch_rate = self.pitch_rate - point(2.0) * aft_chords * self.alpha;
+    fn lagging(self, aft_chords: T) -> Self {
+        let pitch_rate = self.pitch_rate - T::constant(2.0) * aft_chords * self.alpha;
         Self { pitch_rate, ..self }
     }
 }
 
-impl EnclosedFlight {
+impl<T: Sought> EnclosedFlight<T> {
     /// The flight of an aircraft at a target, each number as it is.
     #[must_use]
     pub fn of(
@@ -171,30 +171,45 @@ impl EnclosedFlight {
         }
     }
 
-    /// Density of the air: it falls with altitude.
-    fn density_kg_m3(&self) -> Interval {
-        let at = |altitude_m| self.environment.air_at(altitude_m).density_kg_m3;
-        let (least, most) = (at(self.altitude_m.upper()), at(self.altitude_m.lower()));
-        Interval::between(least * (1.0 - AIR_ROUNDING), most * (1.0 + AIR_ROUNDING))
+    /// Density of the air; none over altitudes in which the temperature's slope changes.
+    fn density_kg_m3(&self) -> Option<T> {
+        let altitude = self.altitude_m.bounds();
+        let density = match self.environment.air {
+            AirModel::Uniform(air) => T::constant(air.density_kg_m3),
+            AirModel::Standard => {
+                let layer = Stratum::over(altitude.lower(), altitude.upper())?;
+                let above = self.altitude_m - T::constant(layer.base_m);
+                let base = T::constant(layer.air.temperature_k);
+                let scale = T::constant(SCALE_K_M);
+                let ratio = if layer.lapse_k_m == 0.0 {
+                    (-(scale * above) / base).exp()
+                } else {
+                    let lapse = T::constant(layer.lapse_k_m);
+                    (T::one() + lapse * above / base).pow(-(scale / lapse) - T::one())
+                };
+                T::constant(layer.air.density_kg_m3) * ratio
+            }
+        };
+        Some(density * T::enclosing(Interval::between(1.0 - AIR_ROUNDING, 1.0 + AIR_ROUNDING)))
     }
 
     /// Relative change of speed from the reference.
-    fn relative_speed(&self) -> Interval {
-        let reference = point(self.reference_airspeed_m_s);
+    fn relative_speed(&self) -> T {
+        let reference = T::constant(self.reference_airspeed_m_s);
         (self.airspeed_m_s - reference) / reference
     }
 
     /// The coefficients about the centre of gravity that flies.
-    fn coefficients(&self) -> [EnclosedCoefficient; 3] {
+    fn coefficients(&self) -> [EnclosedCoefficient<T>; 3] {
         let aft = self.aft_chords;
         let turned = self.pitch.and(aft, &self.lift);
         [self.lift, self.drag, turned].map(|row| row.lagging(aft))
     }
 
     /// $\bar q S$, N.
-    fn scale_n(&self) -> Interval {
-        let half = point(0.5) * self.density_kg_m3() * point(self.geometry.area_m2);
-        half * self.airspeed_m_s.square()
+    fn scale_n(&self) -> Option<T> {
+        let half = T::constant(0.5) * self.density_kg_m3()? * T::constant(self.geometry.area_m2);
+        Some(half * self.airspeed_m_s.square())
     }
 
     /// Angle of attack, elevator and thrust of every straight flight within; none where they are not found, or not only
@@ -205,54 +220,57 @@ impl EnclosedFlight {
     ///
     /// $$ f(\alpha) = \bar q S\, C_L + (\bar q S\, C_D + m g \sin\gamma) \tan\alpha - m g \cos\gamma = 0 $$
     #[must_use]
-    pub fn trim(&self) -> Option<EnclosedTrim> {
+    pub fn trim(&self) -> Option<EnclosedTrim<T>> {
         let [lift, drag, pitch] = self.coefficients();
-        let (scale, speed) = (self.scale_n(), self.relative_speed());
-        let weight = self.mass_kg * point(self.environment.gravity_m_s2);
+        let (scale, speed) = (self.scale_n()?, self.relative_speed());
+        let weight = self.mass_kg * T::constant(self.environment.gravity_m_s2);
         let (along, across) =
             (weight * self.flight_path_rad.sin(), weight * self.flight_path_rad.cos());
         // What the elevator that balances the moments makes of lift and drag.
-        let per_moment = |row: &EnclosedCoefficient| row.elevator / pitch.elevator;
+        let per_moment = |row: &EnclosedCoefficient<T>| row.elevator / pitch.elevator;
         let still = pitch.reference + pitch.speed * speed;
-        let balanced = |row: &EnclosedCoefficient| {
+        let balanced = |row: &EnclosedCoefficient<T>| {
             let share = per_moment(row);
             [row.reference + row.speed * speed - share * still, row.alpha - share * pitch.alpha]
         };
         let [lift_at_0, lift_slope] = balanced(&lift);
         let [drag_at_0, drag_slope] = balanced(&drag);
         let bend = self.polar_bend();
-        let drag_of = |alpha: Interval| drag_at_0 + drag_slope * alpha + bend * alpha.square();
-        let value = |alpha: Interval| {
+        let drag_of = |alpha: T| drag_at_0 + drag_slope * alpha + bend * alpha.square();
+        let value = |alpha: T| {
             let drag = scale * drag_of(alpha) + along;
             scale * (lift_at_0 + lift_slope * alpha) + drag * alpha.tan() - across
         };
-        let slope = |alpha: Interval| {
+        let slope = |alpha: T| {
             let drag = scale * drag_of(alpha) + along;
-            let bent = drag_slope + point(2.0) * bend * alpha;
+            let bent = drag_slope + T::constant(2.0) * bend * alpha;
             scale * lift_slope + scale * bent * alpha.tan() + drag / alpha.cos().square()
         };
-        let alpha = enclosed_root(self.alpha_rad, value, slope)?;
+        let alpha = root(self.alpha_rad, value, slope)?;
         let elevator = -(still + pitch.alpha * alpha) / pitch.elevator;
         let thrust = (scale * drag_of(alpha) + along) / alpha.cos();
         Some(EnclosedTrim { alpha_rad: alpha, elevator_rad: elevator, thrust_n: thrust })
     }
 
     /// k of the parabola of drag over the angle of attack beyond its tangent; 0 along the tangent.
-    fn polar_bend(&self) -> Interval {
+    fn polar_bend(&self) -> T {
         match self.laws.drag {
-            DragLaw::Linear => Interval::ZERO,
-            DragLaw::Polar => point(0.5) * self.drag.alpha / self.lift.reference * self.lift.alpha,
+            DragLaw::Linear => T::zero(),
+            DragLaw::Polar => {
+                T::constant(0.5) * self.drag.alpha / self.lift.reference * self.lift.alpha
+            }
         }
     }
 
     /// Slope of the thrust over speed, N s/m, at a thrust.
-    fn thrust_by_speed(&self, thrust_n: Interval) -> Interval {
+    fn thrust_by_speed(&self, thrust_n: T) -> T {
         match self.laws.thrust {
-            ThrustLaw::Constant => Interval::ZERO,
+            ThrustLaw::Constant => T::zero(),
             ThrustLaw::WithSpeed => {
                 let coefficient = self.drag.reference + self.thrust_speed * self.relative_speed();
-                let share = self.thrust_speed / point(self.reference_airspeed_m_s) / coefficient;
-                thrust_n * (point(2.0) / self.airspeed_m_s + share)
+                let share =
+                    self.thrust_speed / T::constant(self.reference_airspeed_m_s) / coefficient;
+                thrust_n * (T::constant(2.0) / self.airspeed_m_s + share)
             }
         }
     }
@@ -265,37 +283,37 @@ impl EnclosedFlight {
     ///
     /// differentiated at $\dot V = \dot\alpha = q = 0$.
     #[must_use]
-    pub fn model(&self) -> Option<EnclosedModel> {
-        let trim = self.trim()?;
+    pub fn model(&self) -> Option<EnclosedModel<T>> {
+        let (trim, scale) = (self.trim()?, self.scale_n()?);
         let [lift, drag, pitch] = self.coefficients();
-        let half_chord_s = point(0.5) * point(self.geometry.chord_m) / self.airspeed_m_s;
-        let alpha_rate = self.alpha_rate_row(&trim, &lift);
+        let half_chord_s =
+            T::constant(0.5) * T::constant(self.geometry.chord_m) / self.airspeed_m_s;
+        let alpha_rate = self.alpha_rate_row(&trim, &lift, scale);
         // What a coefficient has of the angle of attack's rate, which follows from the other rows.
-        let with_rate = |row: [Interval; 5], by_rate: Interval| -> [Interval; 5] {
+        let with_rate = |row: [T; 5], by_rate: T| -> [T; 5] {
             core::array::from_fn(|at| row[at] + half_chord_s * by_rate * alpha_rate[at])
         };
-        let mut moments = self.slopes(&trim, &pitch, Interval::ZERO);
+        let mut moments = self.slopes(&trim, &pitch, T::zero());
         // The moment is 0 at the trim, whatever the pressure.
-        moments[SPEED] = pitch.speed / point(self.reference_airspeed_m_s);
+        moments[SPEED] = pitch.speed / T::constant(self.reference_airspeed_m_s);
         let moments = with_rate(moments, pitch.alpha_rate);
         let drags = with_rate(self.slopes(&trim, &drag, self.polar_bend()), drag.alpha_rate);
-        let per_inertia = self.scale_n() * point(self.geometry.chord_m) / self.inertia_kg_m2();
-        let theta_rate =
-            [Interval::ZERO, Interval::ONE, Interval::ZERO, Interval::ZERO, Interval::ZERO];
+        let per_inertia = scale * T::constant(self.geometry.chord_m) / self.inertia_kg_m2();
+        let theta_rate = [T::zero(), T::one(), T::zero(), T::zero(), T::zero()];
         let rows = [
             theta_rate,
             moments.map(|it| per_inertia * it),
-            self.speed_rate_row(&trim, drags),
+            self.speed_rate_row(&trim, drags, scale),
             alpha_rate,
         ];
-        let bounded = rows.iter().flatten().all(|it| it.is_bounded());
+        let bounded = rows.iter().flatten().all(|it| it.bounds().is_bounded());
         bounded.then(|| EnclosedModel {
             by_states: rows.map(|[theta, q, speed, alpha, _]| [theta, q, speed, alpha]),
             by_elevator: rows.map(|row| row[4]),
         })
     }
 
-    fn inertia_kg_m2(&self) -> Interval {
+    fn inertia_kg_m2(&self) -> T {
         match self.inertia {
             EnclosedMoment::Inertia(inertia) => inertia,
             EnclosedMoment::Gyration(radius) => self.mass_kg * radius.square(),
@@ -303,24 +321,20 @@ impl EnclosedFlight {
     }
 
     /// A coefficient times the share of the dynamic pressure by θ, q, V, α and elevator, without the angle of attack's rate.
-    fn slopes(
-        &self,
-        trim: &EnclosedTrim,
-        row: &EnclosedCoefficient,
-        bend: Interval,
-    ) -> [Interval; 5] {
+    fn slopes(&self, trim: &EnclosedTrim<T>, row: &EnclosedCoefficient<T>, bend: T) -> [T; 5] {
         let alpha = trim.alpha_rad;
         let at_trim = row.reference
             + row.alpha * alpha
             + row.speed * self.relative_speed()
             + row.elevator * trim.elevator_rad
             + bend * alpha.square();
-        let pressure = point(2.0) / self.airspeed_m_s;
+        let pressure = T::constant(2.0) / self.airspeed_m_s;
         [
-            Interval::ZERO,
-            point(0.5) * point(self.geometry.chord_m) / self.airspeed_m_s * row.pitch_rate,
-            row.speed / point(self.reference_airspeed_m_s) + pressure * at_trim,
-            row.alpha + point(2.0) * bend * alpha,
+            T::zero(),
+            T::constant(0.5) * T::constant(self.geometry.chord_m) / self.airspeed_m_s
+                * row.pitch_rate,
+            row.speed / T::constant(self.reference_airspeed_m_s) + pressure * at_trim,
+            row.alpha + T::constant(2.0) * bend * alpha,
             row.elevator,
         ]
     }
@@ -329,55 +343,97 @@ impl EnclosedFlight {
     ///
     /// $(\bar q S C_L + T \sin\alpha) / (m V)$ holds the weight at the trim, $(g / V) \cos\gamma$: what both lose with 1/V
     /// cancels.
-    fn alpha_rate_row(&self, trim: &EnclosedTrim, lift: &EnclosedCoefficient) -> [Interval; 5] {
+    fn alpha_rate_row(
+        &self,
+        trim: &EnclosedTrim<T>,
+        lift: &EnclosedCoefficient<T>,
+        scale: T,
+    ) -> [T; 5] {
         let (sin, cos) = (trim.alpha_rad.sin(), trim.alpha_rad.cos());
         let momentum = self.mass_kg * self.airspeed_m_s;
-        let across = self.scale_n() / momentum;
-        let gravity = point(self.environment.gravity_m_s2);
+        let across = scale / momentum;
+        let gravity = T::constant(self.environment.gravity_m_s2);
         let turning = gravity / self.airspeed_m_s * self.flight_path_rad.sin();
         let own = [
             -turning,
-            Interval::ONE,
+            T::one(),
             -(self.thrust_by_speed(trim.thrust_n) * sin / momentum),
             turning - trim.thrust_n * cos / momentum,
-            Interval::ZERO,
+            T::zero(),
         ];
-        let lifts = self.slopes(trim, lift, Interval::ZERO);
-        let half_chord_s = point(0.5) * point(self.geometry.chord_m) / self.airspeed_m_s;
-        let rest = Interval::ONE + across * half_chord_s * lift.alpha_rate;
+        let lifts = self.slopes(trim, lift, T::zero());
+        let half_chord_s =
+            T::constant(0.5) * T::constant(self.geometry.chord_m) / self.airspeed_m_s;
+        let rest = T::one() + across * half_chord_s * lift.alpha_rate;
         core::array::from_fn(|at| (own[at] - across * lifts[at]) / rest)
     }
 
     /// Rate of the airspeed by θ, q, V, α and elevator, with what the drag has of each.
-    fn speed_rate_row(&self, trim: &EnclosedTrim, drags: [Interval; 5]) -> [Interval; 5] {
+    fn speed_rate_row(&self, trim: &EnclosedTrim<T>, drags: [T; 5], scale: T) -> [T; 5] {
         let (sin, cos) = (trim.alpha_rad.sin(), trim.alpha_rad.cos());
-        let falling = point(self.environment.gravity_m_s2) * self.flight_path_rad.cos();
+        let falling = T::constant(self.environment.gravity_m_s2) * self.flight_path_rad.cos();
         let own = [
             -falling,
-            Interval::ZERO,
+            T::zero(),
             self.thrust_by_speed(trim.thrust_n) * cos / self.mass_kg,
             falling - trim.thrust_n * sin / self.mass_kg,
-            Interval::ZERO,
+            T::zero(),
         ];
-        let per_mass = self.scale_n() / self.mass_kg;
+        let per_mass = scale / self.mass_kg;
         core::array::from_fn(|at| own[at] - per_mass * drags[at])
     }
 }
 
+/// Numbers of which bounds are known, so that a root can be enclosed.
+pub trait Sought: Scalar {
+    /// Everything within, without slopes.
+    fn enclosing(value: Interval) -> Self;
+    /// What the value lies between.
+    fn bounds(&self) -> Interval;
+    /// A root with the slopes that it has where `residual` is what the function is there, its slopes by all but the root
+    /// among it, and `slope` that by the root: $x' = -\partial_p f / \partial_x f$.
+    fn at_root(root: Interval, residual: Self, slope: Interval) -> Self;
+}
+
+impl Sought for Interval {
+    fn enclosing(value: Interval) -> Self {
+        value
+    }
+
+    fn bounds(&self) -> Interval {
+        *self
+    }
+
+    fn at_root(root: Interval, _: Self, _: Interval) -> Self {
+        root
+    }
+}
+
+impl<const N: usize> Sought for Dual<Interval, N> {
+    fn enclosing(value: Interval) -> Self {
+        Self::fixed(value)
+    }
+
+    fn bounds(&self) -> Interval {
+        self.value
+    }
+
+    fn at_root(root: Interval, residual: Self, slope: Interval) -> Self {
+        let derivative = residual.derivative.map(|by| (-by).scaled(Interval::ONE / slope));
+        Self { value: root, derivative }
+    }
+}
+
 /// The only root of a function within, by Newton's method: $N(X) = m - f(m) / f'(X)$.
-fn enclosed_root(
-    within: Interval,
-    value: impl Fn(Interval) -> Interval,
-    slope: impl Fn(Interval) -> Interval,
-) -> Option<Interval> {
+fn root<T: Sought>(within: Interval, value: impl Fn(T) -> T, slope: impl Fn(T) -> T) -> Option<T> {
     let (mut root, mut exists) = (within, false);
     for _ in 0..MOST_STEPS {
-        let slopes = slope(root);
+        let slopes = slope(T::enclosing(root)).bounds();
         if slopes.contains(0.0) || !slopes.is_bounded() {
             return None;
         }
-        let middle = point(root.midpoint());
-        let next = middle - value(middle) / slopes;
+        let middle = Interval::point(root.midpoint());
+        let next = middle - value(T::enclosing(middle)).bounds() / slopes;
         exists |= root.encloses(next);
         let narrowed = next.intersection(root)?;
         if narrowed == root {
@@ -385,5 +441,6 @@ fn enclosed_root(
         }
         root = narrowed;
     }
-    exists.then_some(root)
+    let there = T::enclosing(root);
+    exists.then(|| T::at_root(root, value(there), slope(there).bounds()))
 }

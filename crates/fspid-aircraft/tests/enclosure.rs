@@ -33,7 +33,7 @@ fn flown(data: &DerivativeData, laws: Laws, target: TrimTarget) -> Option<[[f64;
 /// Differences of the equations are that near to their derivatives, of the largest entry of a row.
 const DIFFERENCED: f64 = 2e-8;
 
-fn holds(model: &EnclosedModel, rows: &[[f64; 5]; 4], what: &str) {
+fn holds(model: &EnclosedModel<Interval>, rows: &[[f64; 5]; 4], what: &str) {
     for (place, row) in rows.iter().enumerate() {
         let largest = row.iter().fold(0.0_f64, |most, it| most.max(it.abs()));
         let own = model.by_states[place].iter().chain([&model.by_elevator[place]]);
@@ -60,7 +60,8 @@ fn at_one_condition_the_enclosure_is_the_linear_model_of_every_aircraft() {
                     flight_path_rad: climb_rad,
                 };
                 let Some(rows) = flown(&data, laws, target) else { continue };
-                let enclosed = EnclosedFlight::of(&data, laws, Environment::STANDARD, target);
+                let enclosed =
+                    EnclosedFlight::<Interval>::of(&data, laws, Environment::STANDARD, target);
                 let model = enclosed.model().expect("a trim");
                 holds(&model, &rows, &format!("{name} {laws:?} {speed} {climb_rad}"));
                 let widest = model.by_states.iter().flatten().map(|it| it.radius());
@@ -88,7 +89,8 @@ fn every_flight_in_a_box_lies_in_the_enclosure_of_the_box() {
         let slope = ranges(data.longitudinal.pitch.alpha, -0.03);
         let target =
             TrimTarget { airspeed_m_s: speed[0], altitude_m: altitude[0], flight_path_rad: 0.0 };
-        let mut enclosed = EnclosedFlight::of(&data, LAWS[1], Environment::STANDARD, target);
+        let mut enclosed =
+            EnclosedFlight::<Interval>::of(&data, LAWS[1], Environment::STANDARD, target);
         let between = |[from, to]: [f64; 2]| Interval::between(from, to);
         enclosed.mass_kg = between(mass);
         enclosed.inertia = EnclosedMoment::Gyration(between(radius));
@@ -126,7 +128,8 @@ fn every_flight_in_a_box_lies_in_the_enclosure_of_the_box() {
 fn a_box_with_flights_that_cannot_be_trimmed_has_no_model() {
     let data = derivative_data("navion");
     let target = TrimTarget { airspeed_m_s: 50.0, altitude_m: 0.0, flight_path_rad: 0.0 };
-    let mut enclosed = EnclosedFlight::of(&data, LAWS[0], Environment::STANDARD, target);
+    let mut enclosed =
+        EnclosedFlight::<Interval>::of(&data, LAWS[0], Environment::STANDARD, target);
     enclosed.airspeed_m_s = Interval::between(5.0, 60.0);
     assert!(enclosed.model().is_none());
     enclosed.airspeed_m_s = Interval::between(50.0, 60.0);

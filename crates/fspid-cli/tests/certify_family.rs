@@ -121,6 +121,7 @@ fn what_no_family_can_hold_is_refused_by_name() {
 #[test]
 fn a_family_with_an_unstable_member_is_refuted_with_the_member() {
     let slow = SCENARIO.replace("lower = 0.08\nupper = 0.12", "lower = 0.08\nupper = 2.5");
+    let slow = slow.replace("kp = 1.2", "kp = 8.0");
     let folder = folder(&slow);
     let output = fspid(&["certify", "drawn.toml", "--family"], folder.path());
     assert_eq!(code(&output), 1);
@@ -131,4 +132,75 @@ fn a_family_with_an_unstable_member_is_refuted_with_the_member() {
     let set = format!("actuator.time_constant_s={lag_s}");
     let member = fspid(&["certify", "drawn.toml", "--set", &set], folder.path());
     assert!(text(&member.stdout).contains("REFUTED"), "{}", text(&member.stdout));
+}
+
+const AIRCRAFT: &str = r#"
+schema = 1
+name = "Any load, any speed"
+
+[aircraft]
+name = "navion"
+airspeed_m_s = 53.6
+altitude_ft = 1000.0
+mass_kg = 1240.0
+
+[actuator]
+time_constant_s = 0.1
+
+[loop]
+sample_period_s = 0.02
+duration_s = 8.0
+
+[setpoint]
+kind = "step"
+amplitude_deg = 3.0
+
+[[controller]]
+name = "PID"
+kind = "pid"
+kp = 1.0
+ki = 0.4
+kd = 0.2
+
+[[dispersion]]
+name = "mass"
+path = "aircraft.mass_kg"
+distribution = "uniform"
+lower = 1150.0
+upper = 1300.0
+
+[[dispersion]]
+name = "speed"
+path = "aircraft.airspeed_m_s"
+distribution = "uniform"
+lower = 51.0
+upper = 56.0
+
+[[dispersion]]
+name = "altitude"
+path = "aircraft.altitude_ft"
+distribution = "uniform"
+lower = 0.0
+upper = 2000.0
+
+[[dispersion]]
+name = "stiffness"
+path = "aircraft.name.longitudinal.pitch.alpha"
+distribution = "uniform"
+lower = 0.9
+upper = 1.1
+relative = true
+"#;
+
+#[test]
+fn an_aircraft_is_proved_for_any_mass_speed_and_altitude_between_limits() {
+    let folder = folder(AIRCRAFT);
+    let output = fspid(&["certify", "drawn.toml", "--family", "--out", "proofs"], folder.path());
+    let told = text(&output.stdout);
+    assert_eq!(code(&output), 0, "{told}{}", text(&output.stderr));
+    assert!(told.contains("mass (aircraft.mass_kg) from 1150 to 1300; speed"), "{told}");
+    let words =
+        ["certify", "--check", "proofs/pid.certificate.json", "--against", "drawn.toml"];
+    let output = fspid(&words, folder.path());
+    assert_eq!(code(&output), 0, "{}", text(&output.stdout));
 }

@@ -57,7 +57,7 @@ pub use crate::requirement::Requirement;
 pub use crate::setting_path::{NewValue, SettingPath};
 pub use aircraft::parse_aircraft_at;
 pub use aircraft::{aircraft, parse_aircraft};
-pub use build::{Airframe, DerivedGains, GainSource, RangeRule};
+pub use build::{Airframe, DerivedGains, FlownDerivatives, GainSource, RangeRule};
 pub use changed_text::changed_text;
 pub use extra::Extra;
 pub use fspid_diagnostics::{Problem, Problems, known_words};
@@ -94,6 +94,8 @@ pub struct Study {
     pub contest: Option<Contest>,
     /// What is made of flights that leave the range in which the aircraft's data are trusted.
     pub range_rule: RangeRule,
+    /// What the aircraft at the start is made of, where it is one of derivatives to which nothing is added.
+    pub derivatives: Option<FlownDerivatives>,
     /// Everything that is set, in the order of the specification.
     pub settings: Vec<Setting>,
     /// Files that it refers to, as it names them.
@@ -129,6 +131,7 @@ impl Study {
             tuning: None,
             contest: None,
             range_rule,
+            derivatives: None,
         })
     }
 
@@ -143,6 +146,7 @@ impl Study {
             tuning,
             contest,
             range_rule,
+            derivatives,
         } = built;
         let as_written = |it: &&Requirement| it.cases.as_written();
         Self {
@@ -156,6 +160,7 @@ impl Study {
             tuning,
             contest,
             range_rule,
+            derivatives,
             settings: Vec::new(),
             files: Vec::new(),
             digest: String::new(),

@@ -1,6 +1,6 @@
 //! The aircraft of a scenario: read, trimmed, and flown nonlinear or linear.
 
-use super::flown::{Flown, Way};
+use super::flown::{Flown, FlownDerivatives, Way};
 use std::path::Path;
 
 use fspid_aircraft::data::{AircraftData, Laws, ModelData};
@@ -39,7 +39,7 @@ pub(super) fn flown(
         return simulator::flown(report, files, section, part);
     }
     let plant = data::plant(report, files, sound(PLANT)?)?;
-    Some(Flown { plant: plant.into(), way: None })
+    Some(Flown { plant: plant.into(), way: None, derivatives: None })
 }
 
 fn aircraft(
@@ -66,6 +66,10 @@ fn aircraft(
     };
     fits(report, part, &data)?;
     let varied = configuration::varied(report, (section, part), &data)?;
+    let derivatives = match &data.model {
+        ModelData::Derivatives(data) if varied.is_none() => Some(**data),
+        _ => None,
+    };
     let target = target(part)?;
     check_ground(report, part, target);
     let own_air = part.get(keys::ATMOSPHERE)? == AtmosphereWord::Reference;
@@ -90,8 +94,11 @@ fn aircraft(
             configuration::changing(report, part, plant, varied)?.into()
         }
     };
-    let way = way(part, target, aircraft.environment())?;
-    Some(Flown { plant, way: Some(Way { span_m, ..way }) })
+    let environment = *aircraft.environment();
+    let way = way(part, target, &environment)?;
+    let laws = laws(part)?;
+    let derivatives = derivatives.map(|data| FlownDerivatives { data, laws, environment, target });
+    Some(Flown { plant, way: Some(Way { span_m, ..way }), derivatives })
 }
 
 /// Along a target in the air of an environment, by an aircraft without a span.

@@ -1,5 +1,7 @@
 //! What is flown, and how.
 
+use fspid_aircraft::data::{DerivativeData, Laws};
+use fspid_aircraft::{Environment, TrimTarget};
 use fspid_sim::{Course, Plant};
 
 /// A plant and what the air around it depends on.
@@ -7,6 +9,21 @@ pub(super) struct Flown {
     pub(super) plant: Plant,
     /// Where it flies, and its span; for an aircraft.
     pub(super) way: Option<Way>,
+    /// What an aircraft of derivatives is made of, where nothing is added to them.
+    pub(super) derivatives: Option<FlownDerivatives>,
+}
+
+/// A straight flight of an aircraft of derivatives: what its plant is made of.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FlownDerivatives {
+    /// The aircraft, as it is loaded.
+    pub data: DerivativeData,
+    /// Drag and thrust away from the reference.
+    pub laws: Laws,
+    /// Gravity and air.
+    pub environment: Environment,
+    /// Speed, altitude and climb.
+    pub target: TrimTarget,
 }
 
 /// The way of an aircraft.

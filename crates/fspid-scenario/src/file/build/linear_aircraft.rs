@@ -36,7 +36,7 @@ pub(super) fn flown(
     let plant = plant(report, (part, key), model)?;
     let way = flight::way(part, target, &Environment::STANDARD)?;
     let way = Way { span_m: model.span_m, assumed: model.condition.is_none(), ..way };
-    Some(Flown { plant: plant.into(), way: Some(way) })
+    Some(Flown { plant: plant.into(), way: Some(way), derivatives: None })
 }
 
 /// Refuses what a linear model cannot do.

@@ -32,6 +32,7 @@ pub use airframe::Airframe;
 pub use derived::{DerivedGains, GainSource};
 use flight_stack::Which;
 use flown::Flown;
+pub use flown::FlownDerivatives;
 use fspid_sim::actuator::Actuator;
 use fspid_sim::signal::Disturbance;
 use fspid_sim::{
@@ -69,6 +70,7 @@ pub(crate) struct Built {
     pub(crate) tuning: Option<Tuning>,
     pub(crate) contest: Option<Contest>,
     pub(crate) range_rule: RangeRule,
+    pub(crate) derivatives: Option<FlownDerivatives>,
 }
 
 /// The scenario with its requirements; every part that the check left sound is built even where
@@ -108,6 +110,7 @@ pub(crate) fn scenario(
     let tuning = section.get(keys::TUNING).and_then(|part| tuning(report, part, &names));
     let contest = section.get(keys::CONTEST).and_then(|part| contest(report, part, &names));
     let airframes = airframe::airframes(files, section, flown.as_ref());
+    let derivatives = flown.as_ref().and_then(|flown| flown.derivatives.clone());
     let scenario = Scenario {
         name: section.get(keys::NAME)?.to_owned(),
         plant: flown?.plant,
@@ -124,6 +127,7 @@ pub(crate) fn scenario(
     check_whole(report, section, &scenario);
     Some(Built {
         range_rule: RangeRule::of(section, &scenario),
+        derivatives,
         scenario,
         requirements,
         airframes,

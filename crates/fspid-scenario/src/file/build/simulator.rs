@@ -35,7 +35,7 @@ pub(super) fn flown(
     };
     let plant = ExternalPlant { simulator, answer_limit_s: part.get(keys::ANSWER_LIMIT_S)? };
     let way = way(&plant);
-    Some(Flown { plant: plant.into(), way })
+    Some(Flown { plant: plant.into(), way, derivatives: None })
 }
 
 fn jsbsim(report: &mut Report, files: &mut Files<'_>, part: &Section) -> Option<Jsbsim> {

@@ -10,7 +10,7 @@ use fspid_scenario::file::{NewValue, SettingPath, Study, Template};
 use fspid_sim::LinearPlant;
 
 use super::loop_number::LoopNumber;
-use super::source::{Source, with_number};
+use super::source::Source;
 use crate::analysis::lasting_plants;
 
 /// Why no question can be asked of a family.
@@ -77,7 +77,7 @@ impl Members {
             return Err(NoFamily::TooMany(drawn.len()));
         }
         let parameters = drawn.iter().map(|one| one.parameter.clone()).collect();
-        let source = Source::of(description);
+        let source = Source::of(template.study(), description);
         Ok(Self { drawn, parameters, source })
     }
 
@@ -89,18 +89,25 @@ impl Members {
     pub(super) fn plant(&self, at: &[Sloped]) -> Result<ContinuousPlant<Sloped>, NotProved> {
         let mut source = self.source.clone();
         for (drawn, &value) in self.drawn.iter().zip(at) {
-            for (number, factor_of) in &drawn.numbers {
-                // Numbers stand for all decimals that round to them, and a product is rounded once more.
-                let factor = |nominal: f64| Sloped::fixed(printed(nominal) * ROUNDED);
-                let value = match (factor_of, drawn.parameter.inverse) {
-                    (None, _) => value * Sloped::fixed(ROUNDED),
-                    (Some(nominal), false) => factor(*nominal) * value,
-                    (Some(nominal), true) => value * (Sloped::one() / factor(*nominal)),
-                };
-                source.put(*number, value);
-            }
+            drawn.put(&mut source, value);
         }
         source.plant()
+    }
+}
+
+impl Drawn {
+    /// Puts the numbers that follow from a value into a loop's; none where the loop has no such number.
+    fn put(&self, source: &mut Source, value: Sloped) -> Option<()> {
+        self.numbers.iter().try_for_each(|(number, factor_of)| {
+            // Numbers stand for all decimals that round to them, and a product is rounded once more.
+            let factor = |nominal: f64| Sloped::fixed(printed(nominal) * ROUNDED);
+            let value = match (factor_of, self.parameter.inverse) {
+                (None, _) => value * Sloped::fixed(ROUNDED),
+                (Some(nominal), false) => factor(*nominal) * value,
+                (Some(nominal), true) => value * (Sloped::one() / factor(*nominal)),
+            };
+            source.put(*number, value)
+        })
     }
 }
 
@@ -124,7 +131,7 @@ impl Asking<'_> {
                 if target.paths.iter().all(is_outside_of_the_loop) {
                     continue;
                 }
-                let why = "families know coefficients of a [plant], and time constant, natural frequency and damping of the [actuator]; certify its values one by one with --set";
+                let why = "families know coefficients of a [plant]; mass, inertia in pitch, centre of gravity, airspeed, altitude and longitudinal derivatives of an [aircraft] of derivatives to which nothing is added; time constant, natural frequency and damping of the [actuator]; certify other values one by one with --set";
                 return Err(NoFamily::NotBounded { path: first.to_owned(), why });
             };
             let why = "what it draws has no ends; allowed are lower and upper of a normal distribution, or a uniform one";
@@ -160,16 +167,15 @@ impl Asking<'_> {
                 })
                 .collect();
             let flown = self.described(&values, paths)?;
-            let follows = drawn.numbers.iter().try_fold(
-                self.description.clone(),
-                |loop_, (number, nominal)| {
-                    with_number(&loop_, *number, nominal.map_or(end, |it| it * end))
-                },
-            );
-            if follows != Some(flown) {
+            let mut source = Source::of(self.template.study(), self.description);
+            let number = Sloped::fixed(drawn.parameter.number([end; 2]));
+            let follows = drawn
+                .put(&mut source, number)
+                .is_some_and(|()| source.is_of(&flown, self.description));
+            if !follows {
                 return Err(NoFamily::NotBounded {
                     path: drawn.parameter.paths.join(", "),
-                    why: "it changes more of the loop than this number, such as gains that are designed from it; allowed is a number that stands alone",
+                    why: "the loop does not follow it as a family does: it changes gains that are designed or scheduled from it, or the aircraft has configurations, Mach rows or tables; allowed is a number that stands alone",
                 });
             }
         }
