@@ -129,4 +129,9 @@ fn a_loop_of_too_many_states_is_refused_by_name() {
     assert_eq!(code(&refused), 1, "{}", told(&refused));
     let expected = "NOT PROVABLE: loop: 308 states";
     assert!(out(&refused).contains(expected), "{}{}", out(&refused), told(&refused));
+    // With fixed gains 108 samples took 1.2 GB and more than a minute.
+    let (delay, pid) = (["--set", "actuator.delay_samples=108"], ["--controller", "PID"]);
+    let refused = fspid(&[&["certify", text(&scenario)][..], &delay, &pid].concat());
+    assert_eq!(code(&refused), 1, "{}", told(&refused));
+    assert!(out(&refused).contains("allowed are up to 40"), "{}{}", out(&refused), told(&refused));
 }

@@ -14,6 +14,7 @@
 mod balance;
 mod ball;
 mod complex;
+mod delayed;
 mod doubled;
 mod eigenvalues;
 mod error;
@@ -36,6 +37,7 @@ mod transfer_function;
 mod wide;
 
 pub use complex::{Complex, modulus, quotient};
+pub use delayed::{DelayedLoop, DelayedPath};
 pub use eigenvalues::{eigenvalues, spectral_radius};
 pub use error::LtiError;
 pub use exponential::{exponential, exponential_change};

@@ -84,6 +84,13 @@ pub enum SimError {
         /// The gain.
         found: f64,
     },
+    /// So many samples on their way around a loop that it is not asked as one matrix.
+    LongWay {
+        /// How many.
+        samples: usize,
+        /// Most allowed.
+        most: usize,
+    },
     /// An external controller in a program that starts none.
     NoHost,
     /// An external controller that cannot fly.
@@ -190,6 +197,10 @@ impl fmt::Display for SimError {
             Self::TooLarge { key, found } => write!(
                 f,
                 "{key} is {found:e}; with it the sampled loop leaves the range of 64-bit numbers, allowed is a smaller one"
+            ),
+            Self::LongWay { samples, most } => write!(
+                f,
+                "{samples} samples are on their way around the loop; margins and poles are asked of at most {most}, whose cost grows with their cube; whether the loop holds, `simulate` says"
             ),
             Self::Linear(error) => error.fmt(f),
             Self::Controller(error) => error.fmt(f),

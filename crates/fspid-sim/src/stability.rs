@@ -57,7 +57,7 @@ pub fn instability(
     let trimmed = scenario.plant.aircraft().map(AircraftPlant::linear).transpose()?;
     let around_trim = trimmed.iter().map(|plant| (0.0, plant));
     for (from_s, plant) in around_trim.chain(scenario.lasting_plants()) {
-        let spectral_radius = spectral_radius(&closed_loop(scenario, plant, gains, config)?)?;
+        let spectral_radius = radius_at_rest(scenario, plant, gains, config)?;
         // What cannot be told from the edge counts as unstable here, and so does NaN.
         if !(spectral_radius < 1.0 - MARGIN) {
             let doubling_s = doubling_s(spectral_radius, scenario.timing.dt_s());
@@ -66,6 +66,25 @@ pub fn instability(
         }
     }
     Ok(None)
+}
+
+/// Spectral radius of the loop of one plant with fixed gains; of a long way 0 for one that holds, and 1 where rounding hides
+/// whether it does.
+fn radius_at_rest(
+    scenario: &Scenario,
+    plant: &LinearPlant,
+    gains: Gains<f64>,
+    config: &PidConfig<f64>,
+) -> Result<f64, SimError> {
+    let model = fixed_model(scenario, plant, gains, config)?;
+    if !model.settings().is_long() {
+        return Ok(spectral_radius(&model.closed_matrix(gains)?)?);
+    }
+    match model.unstable_radius(gains) {
+        Ok(radius) => Ok(radius.unwrap_or(0.0)),
+        Err(SimError::Linear(error)) => error.undecided_radius().ok_or(error.into()),
+        Err(error) => Err(error),
+    }
 }
 
 /// Norm of a loop's matrix below which no question about its poles leaves the range of 64-bit numbers:
@@ -85,6 +104,13 @@ pub fn can_be_judged(
     let gains = controller.nominal();
     let memory = Memory::of_gains(gains, controller.config());
     let model = LoopModel::of(scenario, plant, controller.config(), memory)?;
+    if model.settings().is_long() {
+        // Margins are not asked of it. What is undecided is told beside its flight.
+        return match model.unstable_radius(gains) {
+            Err(SimError::Linear(error)) if error.undecided_radius().is_some() => Ok(()),
+            other => other.map(|_| ()),
+        };
+    }
     // What margins are asked of.
     model.sharpened(scenario, plant)?.open(gains, BreakPoint::default())?;
     is_in_range(&closed_loop(scenario, plant, gains, controller.config())?)?;
@@ -232,6 +258,16 @@ pub(crate) fn closed_loop(
     gains: Gains<f64>,
     config: &PidConfig<f64>,
 ) -> Result<Matrix, SimError> {
+    fixed_model(scenario, plant, gains, config)?.closed_matrix(gains)
+}
+
+/// The loop of a controller whose gains do not move, for which ages that change are none.
+fn fixed_model(
+    scenario: &Scenario,
+    plant: &LinearPlant,
+    gains: Gains<f64>,
+    config: &PidConfig<f64>,
+) -> Result<LoopModel<f64>, SimError> {
     let model = LoopModel::of(scenario, plant, config, Memory::of_gains(gains, config))?;
-    model.without_changing_ages().closed_matrix(gains)
+    Ok(model.without_changing_ages())
 }

@@ -321,6 +321,13 @@ impl<T: Base> Assembly<T> {
         }
     }
 
+    /// The loop broken at the command, and what comes back through the seen pitch with the controller's memory, and through
+    /// the seen rate.
+    pub(super) fn ways(&self) -> (OpenLoop<T>, [Vec<T>; 2]) {
+        let by_rate = self.rate.iter().map(|rate| self.command_by_rate * *rate).collect();
+        (self.broken(BreakPoint::Command), [self.command_through(true, false), by_rate])
+    }
+
     /// What is between command and seen signals, for a loop without memory of its controller.
     pub(super) fn plant(self) -> OpenPlant<T> {
         let by_rate = self.rate.iter().map(|rate| -(self.command_by_rate * *rate)).collect();

@@ -20,6 +20,7 @@ mod assembly;
 mod break_point;
 #[cfg(test)]
 mod from_the_core;
+mod long_way;
 mod memory;
 mod opening;
 mod parts;
@@ -38,6 +39,7 @@ use crate::plant::LinearPlant;
 use crate::scenario::Scenario;
 
 pub use break_point::BreakPoint;
+pub use long_way::MOST_AS_STATES;
 pub use memory::Memory;
 pub(crate) use parts::LoopParts;
 pub use sensing::Sensing;
@@ -296,8 +298,9 @@ impl LoopModel<f64> {
     /// The one-sample matrix of the closed loop.
     ///
     /// # Errors
-    /// Gains so large that an entry overflows.
+    /// Gains so large that an entry overflows, and a way that is too long for a matrix.
     pub fn closed_matrix(&self, gains: Gains<f64>) -> Result<Matrix, SimError> {
+        self.settings.require_matrix()?;
         Ok(Matrix::from_rows(&self.closed(gains))?)
     }
 }

@@ -16,8 +16,9 @@ impl LoopModel<f64> {
     /// in the loop that stays closed: there is no family.
     ///
     /// # Errors
-    /// Poles of the plant that are not found.
+    /// Poles of the plant that are not found, and a way that is too long for a matrix.
     pub fn family(&self, point: BreakPoint) -> Result<Option<LoopFamily>, SimError> {
+        self.settings.require_matrix()?;
         let (settings, none) =
             (&self.settings, Memory { integral: false, derivative: false, previous: false });
         let without = LoopSettings { memory: none, ..settings.clone() };
@@ -37,8 +38,9 @@ impl LoopModel<f64> {
     /// The open loop at a point.
     ///
     /// # Errors
-    /// Gains so large that an entry overflows.
+    /// Gains so large that an entry overflows, and a way that is too long for a matrix.
     pub fn open(&self, gains: Gains<f64>, point: BreakPoint) -> Result<SampledLoop, SimError> {
+        self.settings.require_matrix()?;
         let OpenLoop { matrix, entry, exit } = self.assembly(gains).broken(point);
         let returned = exit.iter().map(|value| -value).collect();
         let dt_s = self.settings.config.dt_s;

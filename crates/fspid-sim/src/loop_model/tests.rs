@@ -212,3 +212,60 @@ fn what_a_sample_changes_is_its_step_less_what_it_was() {
         }
     }
 }
+
+/// The case with more and less gain, behind delays of commands and sensors that are short enough for a matrix.
+fn late_cases() -> Vec<Case> {
+    let scaled = |factor: f64, delay_samples: usize| {
+        cases().into_iter().map(move |case| {
+            let Gains { kp, ki, kd } = case.gains;
+            let gains = Gains { kp: factor * kp, ki: factor * ki, kd: factor * kd };
+            let actuator = case.actuator.with_delay(delay_samples).expect("allowed");
+            Case { gains, actuator, ..case }
+        })
+    };
+    [(0.2, 4), (1.0, 9), (3.0, 25), (10.0, 0)]
+        .into_iter()
+        .flat_map(|(factor, delay)| scaled(factor, delay))
+        .collect()
+}
+
+#[test]
+fn a_loop_whose_dead_times_are_no_states_has_the_verdict_of_its_matrix() {
+    let (mut held, mut lost) = (0, 0);
+    for (number, case) in late_cases().iter().enumerate() {
+        let model = case.model();
+        let by_matrix =
+            model.open(case.gains, BreakPoint::Command).expect("finite").unstable_radius();
+        let found = model.delayed(case.gains).expect("a loop").unstable_radius();
+        match (by_matrix, found) {
+            (Ok(None), Ok(None)) => held += 1,
+            (Ok(Some(one)), Ok(Some(other))) => {
+                lost += 1;
+                assert!((one - other).abs() < 1e-8, "case {number}: {one} {other}");
+            }
+            verdicts => panic!("case {number}: {verdicts:?}"),
+        }
+    }
+    assert!(held > 2 && lost > 2, "{held} {lost}");
+}
+
+/// 10 000 samples used to be a matrix of 800 MB, whose eigenvalues nobody waits for.
+#[test]
+fn a_way_of_ten_thousand_samples_is_judged_without_a_matrix() {
+    let of = |factor: f64| {
+        let case = cases().remove(0);
+        let Gains { kp, .. } = case.gains;
+        // Without an integral: a loop whose gain is below 1 at every frequency holds behind any delay.
+        let gains = Gains { kp: factor * kp, ki: 0.0, kd: 0.0 };
+        Case { gains, actuator: servo(10_000), ..case }
+    };
+    let calm = of(0.01);
+    assert_eq!(calm.model().unstable_radius(calm.gains), Ok(None));
+    let bold = of(1.0);
+    let found = bold.model().unstable_radius(bold.gains);
+    assert!(matches!(found, Ok(Some(radius)) if radius > 1.0 && radius < 1.001), "{found:?}");
+    let refused = bold.model().closed_matrix(bold.gains).expect_err("too long").to_string();
+    assert!(refused.starts_with("10000 samples are on their way"), "{refused}");
+    assert!(bold.model().open(bold.gains, BreakPoint::Command).is_err());
+    assert!(bold.model().family(BreakPoint::Command).is_err());
+}

@@ -5,7 +5,7 @@ use fspid_core::{Gains, SecondInput};
 use super::{Rest, Side, slopes};
 use crate::controller::Controller;
 use crate::error::SimError;
-use crate::loop_model::{BreakPoint, LoopModel, SampledPlant};
+use crate::loop_model::{LoopModel, SampledPlant};
 use crate::scenario::Scenario;
 
 /// Motions that are followed around a kink. One that grows does so by itself after a while, wherever it starts; several
@@ -26,6 +26,9 @@ const GROWN: f64 = core::f64::consts::LN_2;
 /// that alone would grow then proves nothing: motions may leave it faster than they grow. So motions are followed
 /// through the sides as they come; the rest is [`Stand::Grows`] if one of them does, and if none is seen to,
 /// [`Doubt::OneSide`] says that it is not decided.
+///
+/// Where so much is on its way that it is no state ([`MOST_AS_STATES`](crate::loop_model::MOST_AS_STATES)), no motion is
+/// followed, and one unstable side is [`Doubt::LongWay`].
 ///
 /// Of a sensor with a clock of its own the age changes: the loop is asked with its largest and with none. Where the
 /// answers differ, it is [`Doubt::ChangingAge`].
@@ -54,6 +57,8 @@ pub enum Doubt {
     Rounding,
     /// A side of a kink is unstable, and no motion was seen to grow.
     OneSide,
+    /// A side of a kink is unstable, and so much is on its way that no motion is followed through the sides.
+    LongWay,
     /// A sensor shows values of changing age, and the loop is stable with one of them and not with another.
     ChangingAge,
 }
@@ -71,11 +76,13 @@ type Model = (LoopModel<f64>, Gains<f64>);
 
 /// What the poles of a loop say.
 fn found((model, gains): &Model) -> Result<Found, SimError> {
-    let radius = model.open(*gains, BreakPoint::default())?.unstable_radius();
-    match radius {
+    match model.unstable_radius(*gains) {
         Ok(None) => Ok(Found::Stable),
         Ok(Some(radius)) => Ok(Found::Unstable(radius)),
-        Err(error) => error.undecided_radius().map(Found::Blurred).ok_or(error.into()),
+        Err(SimError::Linear(error)) => {
+            error.undecided_radius().map(Found::Blurred).ok_or(error.into())
+        }
+        Err(error) => Err(error),
     }
 }
 
@@ -120,6 +127,9 @@ impl Rest {
         if let Some(spectral_radius) = unstable.reduce(larger) {
             if models.len() == 1 || !spectral_radius.is_finite() {
                 return Ok(Stand::Grows { spectral_radius });
+            }
+            if models.iter().any(|(model, _)| model.settings().is_long()) {
+                return Ok(Stand::Undecided { spectral_radius, doubt: Doubt::LongWay });
             }
             return Ok(match self.growth_of_motions(models) {
                 Some(spectral_radius) => Stand::Grows { spectral_radius },

@@ -80,6 +80,7 @@ fn undecided(spectral_radius: f64, doubt: Doubt) -> Absent {
     match doubt {
         Doubt::Rounding => Absent::Undecided { spectral_radius },
         Doubt::OneSide => Absent::OneSide { spectral_radius },
+        Doubt::LongWay => Absent::LongWay { spectral_radius },
         Doubt::ChangingAge => Absent::ChangingAge { spectral_radius },
     }
 }

@@ -87,6 +87,15 @@ pub enum Absent {
         /// Spectral radius of the sampled closed loop on that side.
         spectral_radius: f64,
     },
+    /// The rules have a kink where the loop rests, one side of it is unstable, and so much is on its way that no motion is
+    /// followed.
+    #[error(
+        "undecided: unstable on one side of a kink that the rules have where the loop rests (spectral radius {spectral_radius:.6} there), and motions are not followed through so many samples on their way"
+    )]
+    LongWay {
+        /// Spectral radius of the sampled closed loop on that side.
+        spectral_radius: f64,
+    },
     /// A sensor has a clock of its own, and the loop is stable with one age of its values and not with another.
     #[error(
         "undecided: a sensor with a clock of its own shows values of changing age, with one of which the loop is unstable (spectral radius {spectral_radius:.6}) and with another stable"

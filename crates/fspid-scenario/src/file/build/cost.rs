@@ -4,7 +4,7 @@
 //! (`fspid simulate` with `--set`).
 
 use fspid_sim::actuator::Actuator;
-use fspid_sim::loop_model::Sensing;
+use fspid_sim::loop_model::{MOST_AS_STATES, Sensing};
 use fspid_sim::sensor::Sensor;
 use fspid_sim::{Scenario, Timing};
 
@@ -14,10 +14,9 @@ use crate::file::spec::{actuator, sensor};
 use crate::keyed::{Key, KeyName, Section};
 use fspid_diagnostics::Report;
 
-/// Most samples that a command and its answer are on their way, behind an aircraft that is not linear too: it is judged by
-/// its linear model at the trim. The loop at rest has a state for each, and its cost grows with their cube: 200 take
-/// 0.5 s, 500 take 5 s, 1000 take 37 s.
-const MOST_ON_THEIR_WAY: usize = 400;
+/// Most samples that a command and its answer are on their way. Whether the loop holds is asked along a circle, in steps that
+/// grow with them: 10 000 take 0.1 s. With outer loops each is a state of every mode's matrix, [`MOST_AS_STATES`] at most.
+const MOST_ON_THEIR_WAY: usize = 20_000;
 /// Most looks of a sensor within a sample of the loop; each costs some 20 ns: 1000 take 0.05 s, 10^10 years.
 const MOST_LOOKS: f64 = 10_000.0;
 /// Most pieces in which a sample of an actuator of second order is searched for an event: 1600 take 0.7 s, 16 000 take
@@ -104,13 +103,20 @@ fn check_way(report: &mut Report, section: &Section, scenario: &Scenario) {
     let ways: Vec<(usize, &Section, KeyName)> = delay.into_iter().chain(remembered).collect();
     let samples = ways.iter().fold(0_usize, |sum, way| sum.saturating_add(way.0));
     let Some((_, part, key)) = ways.into_iter().max_by_key(|way| way.0) else { return };
-    if samples > MOST_ON_THEIR_WAY {
+    let (most, cost) = match scenario.autopilot {
+        Some(_) => (
+            MOST_AS_STATES,
+            "with outer loops each mode has a state for each, and its cost grows with their cube",
+        ),
+        None => (MOST_ON_THEIR_WAY, "whether it holds is asked in steps that grow with them"),
+    };
+    if samples > most {
         let message = format!(
-            "{samples} samples of {:?} s on their way around the loop: the loop at rest has a state for each, and its cost grows with their cube (1000 take half a minute)",
+            "{samples} samples of {:?} s on their way around the loop: {cost}",
             scenario.timing.dt_s()
         );
         let allowed = format!(
-            "up to {MOST_ON_THEIR_WAY} samples: a longer sample period, or a shorter delay or sampling time"
+            "up to {most} samples: a longer sample period, or a shorter delay or sampling time"
         );
         part.wrong(report, key, message, allowed);
     }
