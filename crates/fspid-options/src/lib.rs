@@ -5,6 +5,7 @@
 //! Each struct of settings is written out field by field, never with `..`: an option that is added to the
 //! controller does not compile here until it is drawn, and then is drawn in all of these tests.
 
+pub mod hostile;
 mod systems;
 
 pub use systems::{any_system, inputs_of};

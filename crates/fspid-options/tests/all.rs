@@ -1,0 +1,3 @@
+//! All integration tests in one binary: linking one takes less than linking many.
+
+mod hostile_samples;
