@@ -8,12 +8,14 @@ mod daveml;
 mod fcl;
 mod fis;
 mod fll;
+mod fly;
 mod fml;
 mod formula;
 mod mavlink;
 mod plan;
 mod scenario;
 mod server;
+mod set;
 mod state;
 mod toml;
 
@@ -23,19 +25,21 @@ use std::sync::OnceLock;
 type Reader = fn(&[u8]) -> Option<()>;
 
 /// A module for each file in this folder but this one, by its name.
-const READERS: [(&str, Reader); 14] = [
+const READERS: [(&str, Reader); 16] = [
     ("certificate", certificate::read),
     ("csv", csv::read),
     ("daveml", daveml::read),
     ("fcl", fcl::read),
     ("fis", fis::read),
     ("fll", fll::read),
+    ("fly", fly::read),
     ("fml", fml::read),
     ("formula", formula::read),
     ("mavlink", mavlink::read),
     ("plan", plan::read),
     ("scenario", scenario::read),
     ("server", server::read),
+    ("set", set::read),
     ("state", state::read),
     ("toml", toml::read),
 ];

@@ -2,6 +2,7 @@
 
 mod campaign;
 mod engine;
+mod false_safe;
 mod parts;
 mod rare;
 mod search;

@@ -10,7 +10,7 @@ use serde_json::Value;
 use crate::common::{code, json, text};
 use crate::hostile_answers::{bare_null, unnumbered};
 
-const SCENARIOS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios");
+pub const SCENARIOS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios");
 
 /// Scenarios of different kinds.
 const FILES: [&str; 10] = [
@@ -61,7 +61,7 @@ const SIZES: [f64; 18] = [
 ];
 
 /// Numbers of a counter: the same each time, on every machine.
-struct Drawn(u64);
+pub struct Drawn(pub u64);
 
 impl Drawn {
     fn bits(&mut self) -> u64 {
@@ -72,11 +72,11 @@ impl Drawn {
         bits ^ bits >> 31
     }
 
-    fn below(&mut self, count: usize) -> usize {
+    pub fn below(&mut self, count: usize) -> usize {
         (self.bits() % count as u64) as usize
     }
 
-    fn one_of<'a, T>(&mut self, list: &'a [T]) -> &'a T {
+    pub fn one_of<'a, T>(&mut self, list: &'a [T]) -> &'a T {
         &list[self.below(list.len())]
     }
 
@@ -85,7 +85,7 @@ impl Drawn {
     }
 
     /// A value of a number of the file, as `--set` takes it.
-    fn value(&mut self, row: &Value) -> String {
+    pub fn value(&mut self, row: &Value) -> String {
         let schema = &row["schema"];
         if schema["type"] == "integer" {
             let ends = [&schema["minimum"], &schema["maximum"]].map(Value::as_i64);
@@ -109,7 +109,7 @@ impl Drawn {
 }
 
 /// The program, which ends where it works for too long.
-fn asked(arguments: &[&str]) -> Output {
+pub fn asked(arguments: &[&str]) -> Output {
     let program = env!("CARGO_BIN_EXE_fspid");
     #[cfg(unix)]
     let mut command = {
@@ -124,7 +124,7 @@ fn asked(arguments: &[&str]) -> Output {
 }
 
 /// The numbers of a scenario, but for what is required of it.
-fn numbers(file: &str) -> Vec<Value> {
+pub fn numbers(file: &str) -> Vec<Value> {
     let answer = json(&asked(&["check", file, "--paths", "--format", "json"]));
     let is_number = |row: &&Value| {
         let kind = row["schema"]["type"].as_str().unwrap_or_default();
@@ -138,7 +138,7 @@ fn numbers(file: &str) -> Vec<Value> {
 }
 
 /// Changes of one to three numbers; of an aircraft's own many numbers not too often.
-fn changes(drawn: &mut Drawn, rows: &[Value]) -> Vec<String> {
+pub fn changes(drawn: &mut Drawn, rows: &[Value]) -> Vec<String> {
     let count = *drawn.one_of(&[1, 1, 1, 2, 3]);
     let is_inner = |row: &&Value| row["path"].as_str().is_some_and(|path| path.contains(".name."));
     let (inner, outer): (Vec<&Value>, Vec<&Value>) = rows.iter().partition(is_inner);
@@ -150,7 +150,7 @@ fn changes(drawn: &mut Drawn, rows: &[Value]) -> Vec<String> {
     (0..count).map(change).collect()
 }
 
-fn setting(name: &str, otherwise: u64) -> u64 {
+pub fn setting(name: &str, otherwise: u64) -> u64 {
     std::env::var(name).ok().and_then(|text| text.parse().ok()).unwrap_or(otherwise)
 }
 
@@ -187,6 +187,11 @@ fn what_check_accepts_is_answered_with_numbers_or_with_reasons() {
 
 /// How a command ended, or what is wrong with that or with what it told.
 fn told(words: &[String], codes: &[i32]) -> Result<i32, String> {
+    answer(words, codes).map(|output| code(&output))
+}
+
+/// What a command told, or what is wrong with that or with how it ended.
+pub fn answer(words: &[String], codes: &[i32]) -> Result<Output, String> {
     let arguments: Vec<&str> = words.iter().map(String::as_str).collect();
     let output = asked(&arguments);
     let (out, told) = (text(&output.stdout), text(&output.stderr));
@@ -208,5 +213,5 @@ fn told(words: &[String], codes: &[i32]) -> Result<i32, String> {
     {
         return failed(format!("a null without its reason at {place}"));
     }
-    Ok(code(&output))
+    Ok(output)
 }

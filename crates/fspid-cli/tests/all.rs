@@ -39,3 +39,4 @@ mod small_things;
 mod tables;
 mod tune;
 mod verify;
+mod whole_program;

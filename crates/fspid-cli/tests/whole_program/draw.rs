@@ -1,0 +1,224 @@
+//! Scenarios at random: parts of all that there are, exchanged, with keys and words of the schema.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+use toml::{Table, Value as Toml};
+
+use super::schema::Schema;
+use crate::accepted::{Drawn, SCENARIOS};
+
+const EVERY_KEY: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../fspid-scenario/tests/scenarios");
+/// What flies: one of them.
+const FLYING: [&str; 3] = ["plant", "aircraft", "simulator"];
+/// What every scenario has.
+const ALWAYS: [&str; 5] = ["schema", "name", "loop", "setpoint", "controller"];
+/// Longest flight, s.
+const LONGEST_S: f64 = 12.0;
+
+/// The documents that scenarios are made of.
+pub struct Parts {
+    all: Vec<Table>,
+}
+
+impl Parts {
+    pub fn shipped() -> Self {
+        let mut files = Vec::new();
+        for folder in [SCENARIOS, EVERY_KEY] {
+            walk(Path::new(folder), &mut files);
+        }
+        files.sort();
+        let read = |path: &PathBuf| std::fs::read_to_string(path).ok()?.parse::<Table>().ok();
+        let all: Vec<Table> = files.iter().filter_map(read).collect();
+        assert!(all.len() > 30, "{} scenarios", all.len());
+        Self { all }
+    }
+
+    /// One of them, changed in a few places.
+    pub fn draw(&self, drawn: &mut Drawn, schema: &Schema) -> Table {
+        let mut document = drawn.one_of(&self.all).clone();
+        for _ in 0..drawn.below(4) {
+            match drawn.below(6) {
+                0 | 1 => self.exchange(drawn, &mut document),
+                2 => self.exchange_below(drawn, &mut document),
+                3 => leave_out(drawn, &mut document),
+                4 => other_word(drawn, &mut document, schema),
+                _ => one_key_more(drawn, &mut document, schema),
+            }
+        }
+        shorten(&mut document);
+        document
+    }
+
+    /// A whole part of another.
+    fn exchange(&self, drawn: &mut Drawn, document: &mut Table) {
+        let other = drawn.one_of(&self.all);
+        let keys: Vec<&String> = other.keys().filter(|key| *key != "schema").collect();
+        let key = (*drawn.one_of(&keys)).clone();
+        if FLYING.contains(&key.as_str()) {
+            FLYING.iter().for_each(|flying| drop(document.remove(*flying)));
+        }
+        document.insert(key.clone(), other[&key].clone());
+    }
+
+    /// One key of a part of another.
+    fn exchange_below(&self, drawn: &mut Drawn, document: &mut Table) {
+        let key = a_key(drawn, document);
+        let others: Vec<&Table> = self.all.iter().filter_map(|it| table(it.get(&key)?)).collect();
+        if others.is_empty() {
+            return;
+        }
+        let other = *drawn.one_of(&others);
+        let (Some(own), false) = (document.get_mut(&key).and_then(table_mut), other.is_empty())
+        else {
+            return;
+        };
+        let names: Vec<&String> = other.keys().collect();
+        let name = (*drawn.one_of(&names)).clone();
+        own.insert(name.clone(), other[&name].clone());
+    }
+}
+
+fn walk(folder: &Path, files: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).expect("a folder").flatten() {
+        let path = entry.path();
+        if path.is_dir() {
+            walk(&path, files);
+        } else if path.extension().is_some_and(|ending| ending == "toml") {
+            files.push(path);
+        }
+    }
+}
+
+fn a_key(drawn: &mut Drawn, document: &Table) -> String {
+    let keys: Vec<&String> = document.keys().collect();
+    (*drawn.one_of(&keys)).clone()
+}
+
+/// A table, or the first of a list.
+fn table(value: &Toml) -> Option<&Table> {
+    match value {
+        Toml::Table(table) => Some(table),
+        Toml::Array(list) => list.first().and_then(table),
+        _ => None,
+    }
+}
+
+fn table_mut(value: &mut Toml) -> Option<&mut Table> {
+    match value {
+        Toml::Table(table) => Some(table),
+        Toml::Array(list) => list.first_mut().and_then(table_mut),
+        _ => None,
+    }
+}
+
+/// Leaves out a part, or a key of one.
+fn leave_out(drawn: &mut Drawn, document: &mut Table) {
+    let key = a_key(drawn, document);
+    if drawn.below(2) == 0 && !ALWAYS.contains(&key.as_str()) && !FLYING.contains(&key.as_str()) {
+        document.remove(&key);
+        return;
+    }
+    let Some(own) = document.get_mut(&key).and_then(table_mut) else { return };
+    if own.len() > 1 {
+        let name = a_key(drawn, own);
+        own.remove(&name);
+    }
+}
+
+/// Every word of a document with its place, in an order that is always the same.
+fn words<'a>(value: &'a mut Toml, key: &str, found: &mut Vec<(String, &'a mut String)>) {
+    match value {
+        Toml::Table(table) => {
+            for (name, below) in table.iter_mut() {
+                let below_key = if key.is_empty() { name.clone() } else { format!("{key}.{name}") };
+                words(below, &below_key, found);
+            }
+        }
+        Toml::Array(list) => {
+            list.iter_mut().for_each(|below| words(below, &format!("{key}[]"), found));
+        }
+        Toml::String(word) => found.push((key.to_owned(), word)),
+        _ => {}
+    }
+}
+
+fn words_of<'a>(node: &'a Value) -> Vec<&'a str> {
+    node["enum"].as_array().into_iter().flatten().filter_map(Value::as_str).collect()
+}
+
+/// Another word where the schema allows several.
+fn other_word(drawn: &mut Drawn, document: &mut Table, schema: &Schema) {
+    let mut whole = Toml::Table(std::mem::take(document));
+    let mut found = Vec::new();
+    words(&mut whole, "", &mut found);
+    found.retain(|(key, _)| schema.at(key).iter().any(|node| !words_of(node).is_empty()));
+    if !found.is_empty() {
+        let place = drawn.below(found.len());
+        let (key, word) = &mut found[place];
+        let allowed: Vec<&str> = schema.at(key).into_iter().flat_map(words_of).collect();
+        **word = (*drawn.one_of(&allowed)).to_owned();
+    }
+    if let Toml::Table(table) = whole {
+        *document = table;
+    }
+}
+
+/// A key that the schema knows and the part has not, with a value that the schema allows.
+fn one_key_more(drawn: &mut Drawn, document: &mut Table, schema: &Schema) {
+    let key = a_key(drawn, document);
+    let path = match document.get(&key) {
+        Some(Toml::Array(_)) => format!("{key}[]"),
+        _ => key.clone(),
+    };
+    let nodes = schema.at(&path);
+    let known: Vec<(&String, &Value)> =
+        nodes.iter().filter_map(|node| node["properties"].as_object()).flatten().collect();
+    let Some(own) = document.get_mut(&key).and_then(table_mut) else { return };
+    let missing: Vec<_> = known.into_iter().filter(|(name, _)| !own.contains_key(*name)).collect();
+    if missing.is_empty() {
+        return;
+    }
+    let (name, _) = drawn.one_of(&missing);
+    let below = schema.at(&format!("{path}.{name}"));
+    if let Some(value) = below.into_iter().find_map(|node| value(drawn, node)) {
+        own.insert((*name).clone(), value);
+    }
+}
+
+/// A value that a node of the schema allows, if it is a number, a word or a truth.
+fn value(drawn: &mut Drawn, node: &Value) -> Option<Toml> {
+    let allowed = words_of(node);
+    if !allowed.is_empty() {
+        return Some(Toml::String((*drawn.one_of(&allowed)).to_owned()));
+    }
+    let low = ["minimum", "exclusiveMinimum"].iter().find_map(|name| node[*name].as_f64());
+    let high = ["maximum", "exclusiveMaximum"].iter().find_map(|name| node[*name].as_f64());
+    match node["type"].as_str()? {
+        "boolean" => Some(Toml::Boolean(drawn.below(2) == 0)),
+        "integer" => Some(Toml::Integer(low.unwrap_or(0.0) as i64 + drawn.below(9) as i64)),
+        "number" => {
+            let size = *drawn.one_of(&[0.01, 0.1, 0.3, 1.0, 2.0, 5.0, 20.0, 100.0]);
+            let value = match (low, high) {
+                (Some(low), Some(high)) if high - low < 1e3 => low + (high - low) * size / 101.0,
+                (Some(low), _) => low + size,
+                _ => size,
+            };
+            Some(Toml::Float(value))
+        }
+        _ => None,
+    }
+}
+
+/// Flights of a few seconds, or thousands of draws would take days.
+fn shorten(document: &mut Table) {
+    let Some(part) = document.get_mut("loop").and_then(table_mut) else { return };
+    let duration = part.get("duration_s").and_then(|it| match it {
+        Toml::Float(value) => Some(*value),
+        Toml::Integer(value) => Some(*value as f64),
+        _ => None,
+    });
+    if duration.is_some_and(|duration| duration > LONGEST_S) {
+        part.insert("duration_s".to_owned(), Toml::Float(LONGEST_S));
+    }
+}
