@@ -2,7 +2,6 @@
 
 mod campaign;
 mod engine;
-mod false_safe;
 mod parts;
 mod rare;
 mod search;

@@ -10,7 +10,7 @@ use serde_json::Value;
 use crate::common::{code, json, text};
 use crate::hostile_answers::{bare_null, unnumbered};
 
-pub const SCENARIOS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios");
+pub(crate) const SCENARIOS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios");
 
 /// Scenarios of different kinds.
 const FILES: [&str; 10] = [
@@ -61,7 +61,7 @@ const SIZES: [f64; 18] = [
 ];
 
 /// Numbers of a counter: the same each time, on every machine.
-pub struct Drawn(pub u64);
+pub(crate) struct Drawn(pub(crate) u64);
 
 impl Drawn {
     fn bits(&mut self) -> u64 {
@@ -72,11 +72,11 @@ impl Drawn {
         bits ^ bits >> 31
     }
 
-    pub fn below(&mut self, count: usize) -> usize {
+    pub(crate) fn below(&mut self, count: usize) -> usize {
         (self.bits() % count as u64) as usize
     }
 
-    pub fn one_of<'a, T>(&mut self, list: &'a [T]) -> &'a T {
+    pub(crate) fn one_of<'a, T>(&mut self, list: &'a [T]) -> &'a T {
         &list[self.below(list.len())]
     }
 
@@ -85,7 +85,7 @@ impl Drawn {
     }
 
     /// A value of a number of the file, as `--set` takes it.
-    pub fn value(&mut self, row: &Value) -> String {
+    pub(crate) fn value(&mut self, row: &Value) -> String {
         let schema = &row["schema"];
         if schema["type"] == "integer" {
             let ends = [&schema["minimum"], &schema["maximum"]].map(Value::as_i64);
@@ -109,7 +109,7 @@ impl Drawn {
 }
 
 /// The program, which ends where it works for too long.
-pub fn asked(arguments: &[&str]) -> Output {
+pub(crate) fn asked(arguments: &[&str]) -> Output {
     let program = env!("CARGO_BIN_EXE_fspid");
     #[cfg(unix)]
     let mut command = {
@@ -124,7 +124,7 @@ pub fn asked(arguments: &[&str]) -> Output {
 }
 
 /// The numbers of a scenario, but for what is required of it.
-pub fn numbers(file: &str) -> Vec<Value> {
+pub(crate) fn numbers(file: &str) -> Vec<Value> {
     let answer = json(&asked(&["check", file, "--paths", "--format", "json"]));
     let is_number = |row: &&Value| {
         let kind = row["schema"]["type"].as_str().unwrap_or_default();
@@ -138,7 +138,7 @@ pub fn numbers(file: &str) -> Vec<Value> {
 }
 
 /// Changes of one to three numbers; of an aircraft's own many numbers not too often.
-pub fn changes(drawn: &mut Drawn, rows: &[Value]) -> Vec<String> {
+pub(crate) fn changes(drawn: &mut Drawn, rows: &[Value]) -> Vec<String> {
     let count = *drawn.one_of(&[1, 1, 1, 2, 3]);
     let is_inner = |row: &&Value| row["path"].as_str().is_some_and(|path| path.contains(".name."));
     let (inner, outer): (Vec<&Value>, Vec<&Value>) = rows.iter().partition(is_inner);
@@ -150,7 +150,7 @@ pub fn changes(drawn: &mut Drawn, rows: &[Value]) -> Vec<String> {
     (0..count).map(change).collect()
 }
 
-pub fn setting(name: &str, otherwise: u64) -> u64 {
+pub(crate) fn setting(name: &str, otherwise: u64) -> u64 {
     std::env::var(name).ok().and_then(|text| text.parse().ok()).unwrap_or(otherwise)
 }
 
@@ -191,7 +191,7 @@ fn told(words: &[String], codes: &[i32]) -> Result<i32, String> {
 }
 
 /// What a command told, or what is wrong with that or with how it ended.
-pub fn answer(words: &[String], codes: &[i32]) -> Result<Output, String> {
+pub(crate) fn answer(words: &[String], codes: &[i32]) -> Result<Output, String> {
     let arguments: Vec<&str> = words.iter().map(String::as_str).collect();
     let output = asked(&arguments);
     let (out, told) = (text(&output.stdout), text(&output.stderr));

@@ -15,6 +15,7 @@ mod external;
 mod external_fly;
 #[cfg(unix)]
 mod external_losses;
+mod false_safe;
 mod flight_stacks;
 mod fly;
 mod fmu_aircraft;

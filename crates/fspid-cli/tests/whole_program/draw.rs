@@ -17,12 +17,12 @@ const ALWAYS: [&str; 5] = ["schema", "name", "loop", "setpoint", "controller"];
 const LONGEST_S: f64 = 12.0;
 
 /// The documents that scenarios are made of.
-pub struct Parts {
+pub(super) struct Parts {
     all: Vec<Table>,
 }
 
 impl Parts {
-    pub fn shipped() -> Self {
+    pub(super) fn shipped() -> Self {
         let mut files = Vec::new();
         for folder in [SCENARIOS, EVERY_KEY] {
             walk(Path::new(folder), &mut files);
@@ -35,7 +35,7 @@ impl Parts {
     }
 
     /// One of them, changed in a few places.
-    pub fn draw(&self, drawn: &mut Drawn, schema: &Schema) -> Table {
+    pub(super) fn draw(&self, drawn: &mut Drawn, schema: &Schema) -> Table {
         let mut document = drawn.one_of(&self.all).clone();
         for _ in 0..drawn.below(4) {
             match drawn.below(6) {

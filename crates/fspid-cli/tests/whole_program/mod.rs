@@ -66,7 +66,8 @@ fn every_law_holds_of_every_scenario_that_check_accepts() {
             if code(&asked(&to_str(&scenario.words(&["check"])))) == 0 {
                 accepted += 1;
                 reached.extend(schema.reached(&document));
-                wrong.extend(laws(&scenario, draw).into_iter().map(|what| kept(&path, draw, &what)));
+                wrong
+                    .extend(laws(&scenario, draw).into_iter().map(|what| kept(&path, draw, &what)));
             }
         }
         std::fs::remove_file(&path).expect("removed");
@@ -135,7 +136,9 @@ fn text_says_what_json_says(scenario: &Accepted<'_>) -> Result<(), String> {
         let (name, verdict) = (word(controller, "name"), word(controller, "verdict"));
         let stands = told.lines().any(|line| line.contains(name) && line.contains(verdict));
         if !stands {
-            return Err(format!("JSON says {verdict:?} of {name:?}, and the text does not: {told}"));
+            return Err(format!(
+                "JSON says {verdict:?} of {name:?}, and the text does not: {told}"
+            ));
         }
     }
     Ok(())
@@ -148,7 +151,9 @@ fn flights_and_analysis_agree(scenario: &Accepted<'_>) -> Result<(), String> {
     // What has no equations, or too much on its way, is refused by name.
     let analysed = match answer(&words, &[0, 1]) {
         Ok(output) => json(&output),
-        Err(told) if told.contains("on their way") || told.contains("no equations") => return Ok(()),
+        Err(told) if told.contains("on their way") || told.contains("no equations") => {
+            return Ok(());
+        }
         Err(told) => return Err(told),
     };
     for controller in list(&flown, "controllers") {
@@ -160,7 +165,8 @@ fn flights_and_analysis_agree(scenario: &Accepted<'_>) -> Result<(), String> {
         };
         let (verdict, stability) = (word(controller, "verdict"), word(other, "stability"));
         let grows = verdict.starts_with("unstable at rest");
-        let is_good = ["settled", "not settled", "flown"].iter().any(|good| verdict.starts_with(good));
+        let is_good =
+            ["settled", "not settled", "flown"].iter().any(|good| verdict.starts_with(good));
         let undecided = verdict.contains("undecided") || stability == "undecided";
         if !undecided && (grows && stability == "stable" || is_good && stability == "unstable") {
             return Err(format!("{name}: the flight is {verdict:?}, the analysis {stability:?}"));
@@ -175,7 +181,9 @@ fn lanes_are_single_flights(scenario: &Accepted<'_>) -> Result<(), String> {
     let folder = scenario.path.parent().map(Path::to_path_buf);
     let study = match file::parse(&text, "draw.toml", folder.as_deref(), &scenario.set) {
         Ok(study) => study,
-        Err(problems) => return Err(format!("check accepts it, and it cannot be read: {problems}")),
+        Err(problems) => {
+            return Err(format!("check accepts it, and it cannot be read: {problems}"));
+        }
     };
     // Another program flies these, and is asked for by the commands.
     if study.scenario.plant.external().is_some() || !study.scenario.externals.is_empty() {

@@ -9,13 +9,13 @@ use crate::accepted::asked;
 use crate::common::json;
 
 /// The schema that the program prints.
-pub struct Schema {
+pub(super) struct Schema {
     root: Value,
     all: BTreeSet<String>,
 }
 
 impl Schema {
-    pub fn of_scenarios() -> Self {
+    pub(super) fn of_scenarios() -> Self {
         let root = json(&asked(&["schema"]));
         let mut all = BTreeSet::new();
         collect(&root, &root, "", &mut all);
@@ -23,19 +23,19 @@ impl Schema {
     }
 
     /// Every key, as `controller[].kp`, and every word, as `controller[].kind=pid`.
-    pub fn all(&self) -> &BTreeSet<String> {
+    pub(super) fn all(&self) -> &BTreeSet<String> {
         &self.all
     }
 
     /// Those that a document has.
-    pub fn reached(&self, document: &toml::Table) -> BTreeSet<String> {
+    pub(super) fn reached(&self, document: &toml::Table) -> BTreeSet<String> {
         let mut found = BTreeSet::new();
         have(&Toml::Table(document.clone()), "", &mut found);
         found.intersection(&self.all).cloned().collect()
     }
 
     /// What the schema says at a key.
-    pub fn at(&self, key: &str) -> Vec<&Value> {
+    pub(super) fn at(&self, key: &str) -> Vec<&Value> {
         let mut nodes = vec![&self.root];
         for step in key.replace("[]", ".[]").split('.').filter(|step| !step.is_empty()) {
             nodes = nodes

@@ -1,5 +1,5 @@
 //! A hundred thousand loops that are bad by construction, shown to everybody who judges:
-//! `cargo run --release -p fspid-campaign --example false_safe -- 100000 SEED`.
+//! `cargo run --release -p fspid-cli --example false_safe -- 100000 SEED`.
 
 #![allow(clippy::print_stdout, reason = "an example prints")]
 

@@ -3,17 +3,17 @@
 use std::f64::consts::PI;
 
 /// A loop that nobody may call good.
-pub struct Bad {
+pub(crate) struct Bad {
     /// Why it is bad.
-    pub family: &'static str,
+    pub(crate) family: &'static str,
     /// The scenario.
-    pub text: String,
+    pub(crate) text: String,
     /// Whether it is bad at rest; otherwise only its flight is.
-    pub at_rest: bool,
+    pub(crate) at_rest: bool,
 }
 
 /// Numbers of a counter: splitmix64.
-pub struct Drawn(pub u64);
+pub(crate) struct Drawn(pub(crate) u64);
 
 impl Drawn {
     fn bits(&mut self) -> u64 {
@@ -24,7 +24,7 @@ impl Drawn {
         bits ^ bits >> 31
     }
 
-    pub fn below(&mut self, count: u64) -> u64 {
+    pub(crate) fn below(&mut self, count: u64) -> u64 {
         self.bits() % count
     }
 
@@ -42,8 +42,8 @@ impl Drawn {
     }
 }
 
-/// Flights of a campaign are as many as this side by side, so that its lanes are asked, too.
-pub const FAMILIES: [fn(&mut Drawn) -> Bad; 8] = [
+/// Everything that is bad.
+pub(crate) const FAMILIES: [fn(&mut Drawn) -> Bad; 8] = [
     late_integrator,
     late_sensor,
     slow_growth,
@@ -57,7 +57,7 @@ pub const FAMILIES: [fn(&mut Drawn) -> Bad; 8] = [
 /// The ground takes a nonlinear flight of seconds: one in so many draws.
 const GROUND_EVERY: u64 = 200;
 
-pub fn any(drawn: &mut Drawn) -> Bad {
+pub(crate) fn any(drawn: &mut Drawn) -> Bad {
     if drawn.below(GROUND_EVERY) == 0 {
         return ground(drawn);
     }
@@ -151,7 +151,8 @@ fn late_sensor(drawn: &mut Drawn) -> Bad {
     let controller = pid(drawn, [kp, 0.0, 0.0]);
     let delay_s = seen as f64 * dt_s;
     let actuator = format!(
-        "[actuator]\ndelay_samples = {command}\n[sensor]\npreset = \"ideal\"\npitch = {{ delay_s = {delay_s:?}, scale_error = {scale_error:?} }}\n"
+        "[actuator]\ndelay_samples = {command}\n[sensor]\npreset = \"ideal\"\npitch = {{ delay_s = {delay_s:?}, scale_error_pct = {:?} }}\n",
+        100.0 * scale_error
     );
     Loop { plant: plant(&[1.0], &[1.0, 0.0]), actuator, dt_s, controller }.bad("late sensor")
 }
