@@ -47,10 +47,13 @@ fn controller(found: &AnalysedLoop) -> Value {
         Equilibrium::Drifts { .. } => ("none: they drift", None),
     };
     let of_several = |it: &PlantLoop| merged([json!({ "from_s": it.from_s }), plant(it)]);
+    // With a mode of an autopilot that grows the pitch loop alone may be stable, and has its margins.
+    let with_modes = (found.growing_modes() > 0).then(|| of_stability(found.stability()));
     let plants = if found.plants.len() > 1 { found.plants.as_slice() } else { &[] };
     merged([
         json!({ "name": found.name }),
         found.worst().map_or_else(absent, plant),
+        with_modes.unwrap_or_else(|| json!({})),
         json!({ "gains_are": kind, "gains": gains.map(triple) }),
         present(json!({
             "plants": unless_empty(plants, of_several),

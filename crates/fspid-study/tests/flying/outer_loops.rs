@@ -88,6 +88,9 @@ fn outer_loops_that_grow_are_called_unstable_by_flight_and_analysis_alike() {
     assert!(!analysis.all_held());
     let text = analysis.text();
     assert!(text.contains("UNSTABLE with the outer loops of 2 of 3 modes"), "{text}");
+    // The JSON said that the pitch loop alone is stable, and nothing else by that name.
+    let told = analysis.json()["controllers"][0].clone();
+    assert!(told["stable"] == false && told["stability"] == "unstable", "{told}");
     let good = Analysis::of(&study(CAPTURE, &[]), Question::default()).expect("analysed");
     assert_eq!(good.stability(), Stability::Stable);
     assert!(good.text().contains("mode capture: stable with its outer loops"), "{}", good.text());
