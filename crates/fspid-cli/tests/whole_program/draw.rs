@@ -47,6 +47,7 @@ impl Parts {
             }
         }
         shorten(&mut document);
+        without_waiting(&mut document);
         document
     }
 
@@ -207,6 +208,17 @@ fn value(drawn: &mut Drawn, node: &Value) -> Option<Toml> {
             Some(Toml::Float(value))
         }
         _ => None,
+    }
+}
+
+/// Without controllers that wait for a flight stack at an address: nobody is there, and each flight would wait for that.
+fn without_waiting(document: &mut Table) {
+    let waits = |it: &Toml| {
+        let kind = table(it).and_then(|it| it.get("kind")).and_then(Toml::as_str);
+        kind.is_some_and(|kind| ["ardupilot", "px4"].contains(&kind))
+    };
+    if let Some(Toml::Array(controllers)) = document.get_mut("controller") {
+        controllers.retain(|controller| !waits(controller));
     }
 }
 

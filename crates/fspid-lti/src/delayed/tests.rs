@@ -40,8 +40,8 @@ fn with_states(a: &Matrix, b: &[f64], paths: &[DelayedPath]) -> Matrix {
     let order = a.rows();
     let size = order + paths.iter().map(|path| path.samples).sum::<usize>();
     let mut rows = vec![vec![0.0; size]; size];
-    for row in 0..order {
-        rows[row][..order].copy_from_slice(a.row(row));
+    for (place, row) in rows.iter_mut().enumerate().take(order) {
+        row[..order].copy_from_slice(a.row(place));
     }
     let mut first = order;
     for path in paths {
