@@ -144,7 +144,7 @@ fn words<'a>(value: &'a mut Toml, key: &str, found: &mut Vec<(String, &'a mut St
     }
 }
 
-fn words_of<'a>(node: &'a Value) -> Vec<&'a str> {
+fn words_of(node: &Value) -> Vec<&str> {
     node["enum"].as_array().into_iter().flatten().filter_map(Value::as_str).collect()
 }
 
