@@ -13,6 +13,7 @@ mod linear_file;
 mod loading;
 mod lqi;
 mod moving_air;
+mod old_scenarios;
 mod one_verdict;
 mod outer_loops;
 mod requirements;
