@@ -11,7 +11,8 @@ awk '/^## In ten commands/ { here = 1 } here && /^```$/ { exit } block { print }
     docs/guide/export.md > "$work/commands"
 [ "$(wc -l < "$work/commands")" = 10 ]
 export CARGO_TARGET_DIR="$PWD/target" DEBIAN_FRONTEND=noninteractive
-sed -i "s|cargo run --release --|cargo run --release --manifest-path $PWD/Cargo.toml --|; s|^apt-get install|command -v qemu-system-arm > /dev/null \|\| apt-get install|" "$work/commands"
+run="${FSPID:-cargo run --release --manifest-path $PWD/Cargo.toml --}"
+sed -i "s|cargo run --release --|$run|; s|^apt-get install|command -v qemu-system-arm > /dev/null \|\| apt-get install|" "$work/commands"
 for folder in data checks; do ln -s "$PWD/$folder" "$work/$folder"; done
 cd "$work"
 bash -euo pipefail commands | tee said

@@ -6,13 +6,14 @@ cd "$(dirname "$0")/../.."
 
 work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
-profile=release
-[ "${1:-}" = --wheel ] && profile=wheel
+# The module is built from the same crates as the program, where that is built with it.
+profile=release features=(--features as-the-program)
+if [ "${1:-}" = --wheel ]; then profile=wheel features=(); fi
 
 pip=(python -m pip --disable-pip-version-check --quiet install)
 python3 -m venv "$work/build"
 PATH="$work/build/bin:$PATH" "${pip[@]}" "maturin>=1.16,<2"
-PATH="$work/build/bin:$PATH" maturin build --quiet --profile "$profile" --manifest-path crates/fspid-py/Cargo.toml --out "$work/wheels"
+PATH="$work/build/bin:$PATH" maturin build --quiet --profile "$profile" "${features[@]}" --manifest-path crates/fspid-py/Cargo.toml --out "$work/wheels"
 wheel=("$work"/wheels/*.whl)
 echo "wheel, profile $profile: $(($(stat -c %s "${wheel[0]}") / 1000)) kB"
 
