@@ -1,0 +1,82 @@
+#!/usr/bin/env bash
+# The long checks, one after the other, and one page about them at the end: target/nightly/summary.md.
+#   run.sh                  every lane
+#   run.sh --list           their names and commands
+#   run.sh fuzz coverage    those alone
+# A lane that fails does not end the others; the script ends with 1 where one has failed. What a lane printed is in target/nightly.
+# Takes a night on two cores.
+set -uo pipefail
+cd "$(dirname "$0")/../.."
+export CARGO_INCREMENTAL=0 DEBIAN_FRONTEND=noninteractive
+
+# Name, what it asks, and the command, in the order in which they run: what is quick and what others need first.
+lanes() {
+    cat <<'LANES'
+release-program|the program as it is handed out to the lanes below|web/build.sh && cargo build --release --locked
+instructions|instructions of a step, inference, margins, certificate|checks/instructions/check.py
+supply|licences, sources, budgets, bill of materials|checks/supply/check.sh
+packages|every crate compiles from what is packed|checks/packages/check.sh
+reproducible|two builds, one hash|checks/reproducible/check.sh
+same-bits|the same answers on other processors|checks/same-bits/check.sh
+firmware|core for a Cortex-M4F|checks/firmware/check.sh
+exports|C on six emulated processors and an AVR|checks/export/check.sh --long
+fmu|FMUs in FMPy, under sanitizers|checks/export/fmu.sh
+evidence|evidence of exports, its verdicts held|checks/export/evidence.sh
+accepted|1500 drawn scenarios, every command|FSPID_ACCEPTED_DRAWS=1500 cargo test --workspace --locked --test all accepted
+faults|a thousand disturbed writes|python3 checks/faults/matrix.py target/release/fspid --kills 72
+rare|intervals of rare failures|checks/rare/coverage.sh
+flood|the server, flooded for ten minutes|checks/serve/flood.sh
+slow-loops|margins of 10 000 loops with slow modes, refuted from outside|cargo run --release --locked -p fspid-lti --example slow_loops -- 10000 "$(date +%Y%m%d)" >target/nightly/loops.csv && python3 oracles/check_slow_loops.py target/nightly/loops.csv
+proofs|flights against proofs|cargo run --release --locked -p fspid-proof --example refute_proofs -- --count 100
+fuzz|every reader for 10 minutes|fuzz/run.sh 600
+coverage|lines and branches of every crate|checks/coverage/check.sh
+mutation|changes of what flies that no test notices|checks/mutation/check.sh
+release|a release, without keeping it|checks/release/make.sh "$(checks/nightly/next.sh)" --dry-run
+LANES
+}
+
+if [[ "${1:-}" == --list ]]; then
+    lanes | awk -F'|' '{ printf "%-16s %s\n%-16s   %s\n", $1, $2, "", $3 }'
+    exit
+fi
+for name in "$@"; do
+    if ! lanes | grep -q "^$name|"; then
+        echo "there is no lane \`$name\`; known are $(lanes | cut -d'|' -f1 | paste -sd' ')" >&2
+        exit 2
+    fi
+done
+out="$PWD/target/nightly"
+mkdir -p "$out"
+summary="$out/summary.md"
+{
+    printf '# The night of %s\n\n' "$(date --utc '+%F %H:%M') UTC"
+    printf 'Commit %s%s; %s; %s, %s cores.\n\n' "$(git rev-parse --short=12 HEAD)" "$([[ -z "$(git status --porcelain)" ]] || echo ' and changes')" \
+        "$(rustc --version)" "$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)" "$(nproc)"
+    printf '| lane | asks | minutes | of processor | answer |\n| --- | --- | --- | --- | --- |\n'
+} >"$summary"
+
+failed=0 asked=0
+while IFS='|' read -r name what command; do
+    if (($#)) && [[ " $* " != *" $name "* ]]; then continue; fi
+    printf '== %s: %s\n' "$name" "$command"
+    asked=$((asked + 1)) began=$SECONDS
+    TIMEFORMAT='%U %S'
+    { time bash -c "$command" >"$out/$name.log" 2>&1 </dev/null; } 2>"$out/time"
+    code=$?
+    # `time` answers with its command's own code.
+    minutes="$(awk -v s=$((SECONDS - began)) 'BEGIN { printf "%.1f", s / 60 }')"
+    processor="$(awk 'END { printf "%.1f", ($1 + $2) / 60 }' "$out/time")"
+    last="$(grep -v '^[[:space:]]*$' "$out/$name.log" | tail -n 1 | tr '|' '/' | cut -c1-140)"
+    if ((code)); then
+        failed=$((failed + 1))
+        answer="**FAILED ($code)**: $last"
+    elif grep -q 'NOT CHECKED\|not judged' "$out/$name.log"; then
+        answer="in part: $(grep -m 1 'NOT CHECKED\|not judged' "$out/$name.log" | tr '|' '/' | cut -c1-140)"
+    else
+        answer="$last"
+    fi
+    printf '| %s | %s | %s | %s | %s |\n' "$name" "$what" "$minutes" "$processor" "$answer" >>"$summary"
+done < <(lanes)
+printf '\n%d lanes, %d failed, %d minutes. What each printed is beside this page.\n' "$asked" "$failed" "$((SECONDS / 60))" >>"$summary"
+cat "$summary"
+((failed == 0))
