@@ -42,7 +42,9 @@ trap 'rm -rf "$work"' EXIT
 step() { printf '\n== %s (after %d min)\n' "$1" "$((SECONDS / 60))"; }
 
 step "the version, in a clone"
-clone="$work/fspid"
+# Always the same folder, so that a second try need not build everything again.
+clone="$root/target/release-clone"
+rm -rf "$clone"
 git clone --quiet "$root" "$clone"
 cd "$clone"
 python3 checks/release/version.py "$version" "$(date --utc +%F)" "$clone"
@@ -69,10 +71,12 @@ cp "$root"/target/release-crates/package/fspid*-"$version".crate "$out/"
 printf '%d crates\n' "$(find "$out" -name '*.crate' | wc -l)"
 
 step "the program, profile $profile"
-[[ -n "$dry" && ! -d "$root/web/dist/site" ]] || export FSPID_WEB_DIST="${FSPID_WEB_DIST:-$root/web/dist}"
+# A dry run takes the page that is there, if one is.
 if [[ -z "$dry" ]]; then
     web/build.sh
     export FSPID_WEB_DIST="$clone/web/dist"
+else
+    export FSPID_WEB_DIST="${FSPID_WEB_DIST:-$root/web/dist}"
 fi
 export CARGO_TARGET_DIR="$root/target/reproducible"
 checks/reproducible/build.sh "$profile"

@@ -1,10 +1,13 @@
 #!/usr/bin/env bash
 # Two builds of the commit that is checked out, in two folders, with two folders of cargo's: one hash, or where they part.
-#   check.sh [PROFILE]     `release` if nothing is named; `dist` is what is handed out, and takes twice as long
+#   check.sh [PROFILE]                      `release` if nothing is named; `dist` is what is handed out, and takes twice as long
+#   check.sh PROFILE --against PROGRAM      one build, compared with a program that somebody else built of this commit
 # With a page in web/dist both carry it. Takes two builds from nothing: some fifteen minutes on two cores.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 profile="${1:-release}"
+against="${3:-}"
+[[ "${2:---against}" == --against ]] || { echo "check.sh [PROFILE [--against PROGRAM]]" >&2 && exit 2; }
 work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
 cargo_home="${CARGO_HOME:-$HOME/.cargo}"
@@ -18,7 +21,7 @@ built() {
     rm -rf "$1"
 }
 
-built "$work/one" "$work/first"
+if [[ -n "$against" ]]; then cp "$against" "$work/first"; else built "$work/one" "$work/first"; fi
 # The same packages by another path, as another person has them.
 mkdir -p "$work/cargo of another"
 for part in registry git config.toml; do
