@@ -25,13 +25,15 @@ if [[ "${1:-}" == --missed ]]; then
 fi
 
 crates=(--workspace)
-(($#)) && crates=("${@/#/--package=}")
+# Alone a crate has only the features that it is asked with; in the workspace others ask it.
+if (($#)); then crates=("${@/#/--package=}" --all-features); fi
 rm -rf "$CARGO_TARGET_DIR/raw"
 mkdir -p "$CARGO_TARGET_DIR/raw"
 export RUSTC_BOOTSTRAP=1 RUSTFLAGS="-Cinstrument-coverage -Zcoverage-options=branch"
 export LLVM_PROFILE_FILE="$CARGO_TARGET_DIR/raw/%p-%4m.profraw"
 # Macros and build scripts are instrumented too, and run while it is built: they write where nobody looks.
-LLVM_PROFILE_FILE="$CARGO_TARGET_DIR/building-%4m.profraw" cargo test --locked --no-run "${crates[@]}" 2>"$CARGO_TARGET_DIR/built"
+LLVM_PROFILE_FILE="$CARGO_TARGET_DIR/building-%4m.profraw" cargo test --locked --no-run --tests "${crates[@]}" 2>"$CARGO_TARGET_DIR/built" ||
+    { tail -n 20 "$CARGO_TARGET_DIR/built" >&2 && exit 1; }
 sed -n 's/.*(\(.*target\/coverage\/.*\))$/\1/p' "$CARGO_TARGET_DIR/built" >"$programs"
 # What tests start is a program too.
 [[ -x "$CARGO_TARGET_DIR/debug/fspid" && "${crates[*]}" == *workspace* ]] && echo "$CARGO_TARGET_DIR/debug/fspid" >>"$programs"
