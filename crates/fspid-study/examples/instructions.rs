@@ -97,7 +97,7 @@ fn counted_inference(supervisor: &Supervisor<f64>) -> f64 {
         let change = f64::from(k % 97) / 10.0 - 4.8;
         supervisor
             .infer(black_box(error), black_box(change))
-            .map_or(0.0, |found| found.increments.kp)
+            .map_or(0.0, |found| found.delta.kp)
     };
     (0..TIMES).map(one).sum()
 }
