@@ -18,6 +18,7 @@ supply|licences, sources, budgets, bill of materials|checks/supply/check.sh
 packages|every crate compiles from what is packed|checks/packages/check.sh
 reproducible|two builds, one hash|checks/reproducible/check.sh
 same-bits|the same answers on other processors|checks/same-bits/check.sh
+windows|compiles for Windows, neither linked nor run|checks/windows/check.sh
 firmware|core for a Cortex-M4F|checks/firmware/check.sh
 exports|C on six emulated processors and an AVR|checks/export/check.sh --long
 fmu|FMUs in FMPy, under sanitizers|checks/export/fmu.sh
