@@ -53,4 +53,6 @@ done <"$programs"
 # What tests start is a program too.
 if [[ "${crates[*]}" == *workspace* ]]; then counted "$CARGO_TARGET_DIR/debug/fspid" "$FSPID_COVERAGE_RAW"/*/*.profraw; fi
 rm -rf "$FSPID_COVERAGE_RAW"
-python3 checks/coverage/table.py "$CARGO_TARGET_DIR"/*.lcov
+asked=()
+for name in "$@"; do asked+=(--crate "$name"); done
+python3 checks/coverage/table.py "${asked[@]}" "$CARGO_TARGET_DIR"/*.lcov

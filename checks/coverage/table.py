@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Lines and branches of each crate that any of the programs ran, from what `llvm-cov export --format=lcov` wrote of each.
 
-    table.py FILE.lcov…                   a row for each crate
+    table.py [--crate NAME…] FILE.lcov…   a row for each crate, or for each that is named
     table.py --missed FOLDER FILE.lcov…   what none of them ran, by file and line
 
 Modules of tests are left out: `tests.rs`, `tests/`, and what stands behind `#[cfg(test)]` in a file. A branch is one side of a
@@ -62,6 +62,10 @@ def read(files: list[str]) -> tuple[dict, dict]:
 def main() -> None:
     words = sys.argv[1:]
     missed = words[1] if words[:1] == ["--missed"] else None
+    asked = set()
+    while words[:1] == ["--crate"]:
+        asked.add(words[1])
+        words = words[2:]
     lines, branches = read(words[2:] if missed else words)
     if not lines:
         raise SystemExit("no file of a crate was found")
@@ -79,6 +83,8 @@ def main() -> None:
             row[at + 1] += 1
     print(f"{'crate':24} {'lines':>22} {'branches':>22}")
     for name, (ran, all_lines, sides, all_sides) in sorted(table.items()):
+        if asked and name not in asked:
+            continue
         of = f"{ran:6} of {all_lines:6} {ran / all_lines:6.1%}", f"{sides:6} of {all_sides:6} {sides / max(all_sides, 1):6.1%}"
         print(f"{name:24} {of[0]:>22} {of[1]:>22}")
 

@@ -18,8 +18,12 @@ files=("$@")
 ((${#files[@]})) || files=(crates/fspid-core/src/{pid,guard,limits,integral,rounded,tuner,second_input,equations/pid,equations/tuner}.rs crates/fspid-fuzzy/src/supervisor.rs)
 out="$PWD/target/mutation"
 mkdir -p "$out"
-PATH="$PWD/target/tools/bin:$PATH" cargo mutants --jobs 1 --baseline=skip --timeout 120 --no-shuffle --colors=never --output "$out" "${shard[@]}" \
+PATH="$PWD/target/tools/bin:$PATH" cargo mutants --workspace --jobs 1 --baseline=skip --timeout 120 --no-shuffle --colors=never --output "$out" "${shard[@]}" \
     $(printf -- '--file %s ' "${files[@]}") -- --lib --tests || true
+if [[ ! -s "$out/mutants.out/outcomes.json" ]]; then
+    echo "nothing was changed: are these files of the workspace? ${files[*]}" >&2
+    exit 1
+fi
 # A line of equivalent.txt: the change as cargo-mutants names it, without line and column, a tab, and why nothing can notice it.
 sed -E 's/^([^:]+):[0-9]+:[0-9]+: /\1: /' "$out/mutants.out/missed.txt" | sort | uniq -c | sed 's/^ *[0-9]* //' >"$out/survived"
 cut -f 1 checks/mutation/equivalent.txt | grep -v '^#' | sort -u >"$out/explained"

@@ -10,15 +10,17 @@
 #   avx512                   this machine as it is, where it has AVX-512
 #   sse2 sse4.2 avx2         this machine's program on an emulated processor that has no more: lanes choose as they run
 #   native                   built for this machine's processor alone (RUSTFLAGS="-C target-cpu=native")
-#   aarch64 riscv64 i686 powerpc    built for 64-bit ARM and RISC-V, 32-bit x86 and 32-bit big-endian PowerPC
+#   aarch64 riscv64 i686 powerpc64    built for 64-bit ARM and RISC-V, 32-bit x86 and 64-bit big-endian PowerPC; 32-bit PowerPC
+#                            has no atomic numbers of 64 bits, which fspid-scenario (apart.rs), -campaign and -external count with
 #   wasm                     the mathematics of the cockpit's page, in Node: what it has verbs for
 #
 # Needs Debian 12 or newer and the Rust toolchain for its cargo; installs Debian's compilers, libraries and emulators where they are
 # missing (root or sudo). The toolchain's own targets are not asked for: Debian has a compiler with its library's sources. A build for
-# another processor takes some eight minutes of CPU time, a lane in an emulator two to five.
+# another processor takes some eight minutes of CPU time (with CARGO_PROFILE_RELEASE_OPT_LEVEL=1 half of that, and another order of
+# what the compiler does), a lane in an emulator two to five.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
-lanes=(one-thread avx512 sse2 sse4.2 avx2 native aarch64 riscv64 i686 powerpc wasm)
+lanes=(one-thread avx512 sse2 sse4.2 avx2 native aarch64 riscv64 i686 powerpc64 wasm)
 if [[ "${1:-}" == --lanes ]]; then
     printf '%s\n' "${lanes[@]}"
     exit
@@ -79,9 +81,9 @@ lane() {
     aarch64) cross "$1" aarch64-unknown-linux-gnu aarch64-linux-gnu qemu-aarch64 libc6-dev-arm64-cross ;;
     riscv64) cross "$1" riscv64gc-unknown-linux-gnu riscv64-linux-gnu qemu-riscv64 libc6-dev-riscv64-cross ;;
     i686) cross "$1" i686-unknown-linux-gnu i686-linux-gnu qemu-i386 libc6-dev-i386-cross ;;
-    powerpc) cross "$1" powerpc-unknown-linux-gnu powerpc-linux-gnu qemu-ppc libc6-dev-powerpc-cross ;;
+    powerpc64) cross "$1" powerpc64-unknown-linux-gnu powerpc64-linux-gnu qemu-ppc64 libc6-dev-ppc64-cross ;;
     wasm)
-        [[ -f web/dist/fspid.wasm ]] || web/build.sh --wasm
+        web/build.sh --wasm
         node "$here/wasm.mjs" "$FSPID"
         ;;
     *)
