@@ -138,3 +138,64 @@ impl<R: Real> Default for Guard<R> {
         Self { limit: R::from_f64(1e9 * core::f64::consts::PI / 180.0) }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Faults, Guard, Sample};
+
+    /// Every set of faults that there can be.
+    fn all() -> impl Iterator<Item = Faults> {
+        (0..32).map(Faults)
+    }
+
+    #[test]
+    fn bits_come_back_as_the_same_faults_and_bits_of_no_fault_are_left_out() {
+        for bits in 0..=u8::MAX {
+            let faults = Faults::from_bits(bits);
+            assert_eq!(faults.bits(), bits % 32);
+            let named = Faults::NAMES.iter().filter(|(fault, _)| faults.contains(*fault));
+            assert_eq!(named.count(), (bits % 32).count_ones() as usize);
+        }
+    }
+
+    #[test]
+    fn faults_without_others_have_those_that_the_others_have_not() {
+        for these in all() {
+            for others in all() {
+                let left = these.without(others);
+                for (fault, _) in Faults::NAMES {
+                    let stays = these.contains(fault) && !others.contains(fault);
+                    assert_eq!(left.contains(fault), stays, "{these} without {others}");
+                }
+            }
+            assert_eq!(these.is_empty(), these == Faults::NONE);
+        }
+    }
+
+    #[test]
+    fn a_command_is_held_for_a_bad_sample_and_an_overflow_and_not_for_what_the_supervisor_met() {
+        let holding = [Faults::NOT_FINITE, Faults::IMPLAUSIBLE, Faults::OVERFLOW];
+        for faults in all() {
+            let expected = holding.iter().any(|fault| faults.contains(*fault));
+            assert_eq!(faults.is_held(), expected, "{faults}");
+        }
+    }
+
+    #[test]
+    fn an_angle_is_believed_up_to_the_limit_and_not_beyond() {
+        let guard: Guard<f64> = Guard::new(2.0).expect("a limit");
+        assert_eq!(guard.limit_rad().to_bits(), 2.0_f64.to_bits());
+        assert_eq!(Guard::new_unchecked(2.0), guard);
+        for believed in [0.0, 2.0, -2.0] {
+            assert_eq!(guard.fault_of(believed), None);
+            let sample = Sample { setpoint_rad: believed, measurement_rad: 0.0, rate_rad_s: 0.0 };
+            assert_eq!(guard.fault(sample), None);
+        }
+        for beyond in [2.0_f64.next_up(), -3.0, f64::MAX] {
+            assert_eq!(guard.fault_of(beyond), Some(Faults::IMPLAUSIBLE));
+        }
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            assert_eq!(guard.fault_of(bad), Some(Faults::NOT_FINITE));
+        }
+    }
+}
