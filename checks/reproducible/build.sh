@@ -6,8 +6,12 @@ cd "$(dirname "$0")/../.."
 profile="${1:-dist}"
 cargo_home="${CARGO_HOME:-$HOME/.cargo}"
 
-# What a panic tells of a line of a dependency, of this repository and of the library has its path; here they get names.
-flags=("--remap-path-prefix=$PWD=/fspid" "--remap-path-prefix=$cargo_home=/cargo" "--remap-path-prefix=$(rustc --print sysroot)=/rust")
+target="$(realpath -m "${CARGO_TARGET_DIR:-$PWD/target}")"
+
+# What a panic tells of a line of a dependency, of this repository and of the library has its path; here they get names. So have
+# messages that are written while it is built (MAVLink's): the last rule that fits holds.
+flags=("--remap-path-prefix=$PWD=/fspid" "--remap-path-prefix=$cargo_home=/cargo" "--remap-path-prefix=$(rustc --print sysroot)=/rust"
+    "--remap-path-prefix=$target=/target")
 # Folders may have blanks in their names: the flags are parted by a sign that has none.
 CARGO_ENCODED_RUSTFLAGS="$(printf '%s\x1f' "${flags[@]}")"
 CARGO_ENCODED_RUSTFLAGS="${CARGO_ENCODED_RUSTFLAGS%$'\x1f'}"
