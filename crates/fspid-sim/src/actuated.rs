@@ -13,9 +13,10 @@ use crate::autopilot::Commands;
 use crate::error::SimError;
 use crate::generator::Generator;
 use crate::gust_response::PlantAir;
-use crate::law::{Law, LinearStep, StateVector};
+use crate::law::{INPUTS, Law, LinearStep, StateVector};
 use crate::math::dot;
 use crate::plant::LinearPlant;
+use crate::propagator::Propagator;
 
 /// What enters the plant beside the command, held over a sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -36,6 +37,7 @@ pub(crate) struct Actuated {
     actuator: Actuator,
     dt_s: f64,
     order: usize,
+    generator: Generator,
     follow: Law,
     ramp: Law,
     air: PlantAir,
@@ -74,7 +76,23 @@ impl Actuated {
             rate_row: generator.rate_row(),
             air: PlantAir::new(&generator.a, &by_gust),
             elevator_per_command: plant.elevator_sign().per_nose_up(),
+            generator,
         })
+    }
+
+    /// Plant and servo as one system in calm air, where the actuator is such a servo; what the air does is added to it,
+    /// whatever the servo does ([`gust_row`](Self::gust_row)).
+    pub(crate) fn as_one(&self) -> Option<Result<Propagator, SimError>> {
+        let calm = || self.generator.in_calm_air();
+        self.actuator.is_first_order_servo().then(|| {
+            Propagator::of_generator(&calm(), self.actuator, self.dt_s, self.elevator_per_command)
+        })
+    }
+
+    /// What the three gusts, held over a sample, add to a state of the plant at its end.
+    pub(crate) fn gust_row(&self, state: usize) -> &[f64] {
+        let width = self.order + 2 + INPUTS;
+        &self.follow.step[width * (state + 1) - 3..width * (state + 1)]
     }
 
     pub(crate) fn at_rest(&self) -> ActuatedState {

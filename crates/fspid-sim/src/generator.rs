@@ -45,6 +45,11 @@ impl Generator {
         Self { by_gust: Some(by_gust), ..self }
     }
 
+    /// The same in calm air, for a servo that is one system with the plant.
+    pub(crate) fn in_calm_air(&self) -> Self {
+        Self { by_gust: None, ..self.clone() }
+    }
+
     /// States of the plant.
     pub(crate) fn order(&self) -> usize {
         self.by_elevator.len()

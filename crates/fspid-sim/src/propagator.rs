@@ -130,15 +130,25 @@ fn product<const STATES: usize, const COLUMNS: usize>(
 
 impl Propagator {
     pub(crate) fn new(plant: &LinearPlant, servo: Actuator, dt_s: f64) -> Result<Self, SimError> {
-        let generator = Generator::of(plant);
+        let sign = plant.elevator_sign().per_nose_up();
+        Self::of_generator(&Generator::of(plant), servo, dt_s, sign)
+    }
+
+    /// The same of a plant's generator without gusts, and the elevator in its sign for each of a command.
+    pub(crate) fn of_generator(
+        generator: &Generator,
+        servo: Actuator,
+        dt_s: f64,
+        elevator_per_command: f64,
+    ) -> Result<Self, SimError> {
         Ok(Self {
             servo,
             dt_s,
-            order: plant.order(),
+            order: generator.order(),
             free: generator.follow(servo.lag(), dt_s)?,
             ramp: generator.ramp(dt_s)?,
             rate_row: generator.rate_row(),
-            elevator_per_command: plant.elevator_sign().per_nose_up(),
+            elevator_per_command,
         })
     }
 

@@ -9,13 +9,14 @@ use fspid_core::{
     AntiWindup, Fspid, GainCoupling, Gains, InputScale, Law, Pid, PidConfig, ReferenceModel,
     SecondInput, SelfTuner, SetCentres, TunerSettings,
 };
+use fspid_sim::air::{Follows, Intensity, Severity, Specification, Turbulence, WindKind};
 use fspid_sim::batch::{Entrant, Refusal};
 use fspid_sim::gradient::{Differentiated, NUMBERS, Weights, differentiate, names, numbers};
-use fspid_sim::sensor::{PITCH, Sensor, SensorModel};
+use fspid_sim::sensor::{PITCH, RATE, Sensor, SensorModel};
 use fspid_sim::signal::{Disturbance, Entry, Profile, Shape};
 use fspid_sim::{
-    Actuator, Controller, ElevatorSign, LinearPlant, Outcome, Prepared, Scenario, Surroundings,
-    Timing, fly,
+    Actuator, Controller, Course, ElevatorSign, LinearPlant, LongitudinalDerivatives, Outcome,
+    Prepared, Scenario, Surroundings, Timing, Weather, fly,
 };
 use proptest::prelude::*;
 
@@ -257,6 +258,91 @@ fn the_way_back_has_the_slopes_of_differences_for_every_option() {
     assert!(compared.good.iter().sum::<usize>() > 4 * compared.corners, "{compared:?}");
 }
 
+/// Nelson's rounded derivatives of the Navion, ft and s: a plant that feels gusts.
+const NAVION: LongitudinalDerivatives = LongitudinalDerivatives {
+    u0: 176.0,
+    gravity: 32.2,
+    x: [-0.045, 0.036, 0.0],
+    z: [-0.369, -2.02, 0.0, 0.0, -28.15],
+    m: [0.0, -0.05, -0.0051, -2.05, -11.874],
+};
+
+/// A sensor of noise, bias, drift and a scale error, with its own clock and delay where it has some.
+fn sensor(channel: u32, [period_s, delay_s]: [f64; 2]) -> Sensor {
+    let model = SensorModel {
+        noise_density: 2e-4,
+        bias: 2e-3,
+        drift: 2e-3,
+        drift_time_s: 0.5,
+        scale_error: 0.02,
+        period_s,
+        delay_s,
+        ..SensorModel::default()
+    };
+    Sensor::new(model, 7, channel).expect("allowed")
+}
+
+fn weather(gust: bool, rough: bool) -> Option<Weather> {
+    let airspeed_m_s = 53.6;
+    let course = Course {
+        airspeed_m_s,
+        height_m: 150.0,
+        climb_rad: 0.0,
+        heading_rad: 0.0,
+        start_m: [0.0; 2],
+    };
+    let turbulence = Turbulence {
+        specification: Specification::MilF8785c,
+        intensity: Intensity::new(10.0, Severity::Light).expect("allowed"),
+        height_m: 150.0,
+        airspeed_m_s,
+        wing_span_m: 10.0,
+        noise: 9.into(),
+        follows: Follows::Start,
+    };
+    let wind = WindKind::FullCycle.build(&[3.0, 0.0, -6.0, 40.0, 20.0]).expect("allowed");
+    let winds = if gust { vec![wind] } else { Vec::new() };
+    (gust || rough).then_some(Weather { course, winds, turbulence: rough.then_some(turbulence) })
+}
+
+#[test]
+fn through_sensors_and_in_moving_air_the_way_back_has_the_slopes_of_differences() {
+    let mut runner = proptest::test_runner::TestRunner::new_with_rng(
+        ProptestConfig::default(),
+        proptest::test_runner::TestRng::from_seed(
+            proptest::test_runner::RngAlgorithm::ChaCha,
+            &[21; 32],
+        ),
+    );
+    let drawn = (
+        fspid_options::any_controller(),
+        0..4_usize,
+        [prop::bool::ANY, prop::bool::ANY, prop::bool::ANY],
+        [0..4_usize, 0..4_usize],
+        0.05_f64..0.3,
+    );
+    let clocks = [[0.0, 0.0], [0.0, 0.013], [0.037, 0.0], [0.02, 0.051]];
+    let mut compared = Compared::default();
+    for _ in 0..700 {
+        let tree = drawn.new_tree(&mut runner).expect("a draw");
+        let (controller, delay, [limits, gust, rough], [pitch, rate], step_rad) =
+            proptest::strategy::ValueTree::current(&tree);
+        let servo = servo(0.1, limits.then_some([0.2, 0.6]), delay);
+        let calm = scenario(controller.config().dt_s, servo, [step_rad, 0.02]);
+        let seen = |channel, clock: usize| (clock > 0).then(|| sensor(channel, clocks[clock]));
+        let surroundings = Surroundings {
+            weather: weather(gust, rough),
+            pitch_sensor: seen(PITCH, pitch),
+            rate_sensor: seen(RATE, rate),
+        };
+        let plant = NAVION.plant(0.3048).expect("a plant").into();
+        let prepared = Scenario { plant, surroundings, ..calm }.prepare().expect("flies");
+        compare(&prepared, &controller, &mut compared);
+    }
+    assert!(compared.good.iter().all(|&count| count >= 5), "{compared:?}");
+    assert!(compared.good.iter().sum::<usize>() > 4 * compared.corners, "{compared:?}");
+}
+
 /// A self-tuner of numbers as the designs have it, and the PID that it is without.
 fn designs(seed: u64) -> [Controller; 2] {
     let dt_s = 0.01;
@@ -335,9 +421,14 @@ fn what_has_no_gradient_is_refused_by_name_and_what_is_lost_has_none() {
     let calm = || scenario(0.01, servo(0.1, None, 0), [0.05, 0.0]);
     let ideal = Scenario { actuator: Actuator::ideal(), ..calm() };
     assert!(refused(ideal).contains("a servo without lag"));
-    let sensor = Sensor::new(SensorModel::default(), 1, PITCH).expect("allowed");
+    let model = SensorModel { resolution: 1e-3, ..SensorModel::default() };
+    let sensor = Sensor::new(model, 1, PITCH).expect("allowed");
     let surroundings = Surroundings { pitch_sensor: Some(sensor), ..Surroundings::default() };
-    assert!(refused(Scenario { surroundings, ..calm() }).contains("a sensor"));
+    let told = refused(Scenario { surroundings, ..calm() });
+    assert!(told.contains("a sensor with a resolution"), "{told}");
+    let lag = fspid_sim::actuator::Lag::second_order(30.0, 0.7).expect("allowed");
+    let told = refused(Scenario { actuator: Actuator::new(lag), ..calm() });
+    assert!(told.contains("an actuator that is no first-order servo"), "{told}");
     let labels = fspid_options::labels(OutOfRange::Clamp);
     let Controller::SelfTuning(of_numbers) = fspid else { panic!("it tunes itself") };
     let tuner =

@@ -38,6 +38,12 @@ macro_rules! numbers {
         }
 
         impl<S> $name<S> {
+            /// Numbers from somewhere, one by one in the order of [`map`](Self::map).
+            #[inline(always)]
+            pub fn from_each(mut number: impl FnMut() -> S) -> Self {
+                $name { $($field: number(),)+ }
+            }
+
             /// The numbers as others, one by one.
             #[inline(always)]
             pub fn map<T>(&self, mut number: impl FnMut(&S) -> T) -> $name<T> {

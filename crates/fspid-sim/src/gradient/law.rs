@@ -27,83 +27,32 @@ const STILL: usize = PID + TUNER + 3 * GAIN;
 const BEFORE: usize = MEMORY + SAMPLE;
 const BEHIND: usize = MEMORY + SAMPLE + DELTAS;
 
-/// Where the numbers of `$name` come from, by their names.
-macro_rules! taken {
-    ($from:expr, $name:ident { $($field:ident),+ $(,)? }) => {{
-        let mut from = $from.iter().copied();
-        $name { $($field: from.next().unwrap_or(Scalar::zero())),+ }
-    }};
+/// Numbers in a row, one after the other; zero where the row has ended.
+fn each_of<S: Scalar>(numbers: &[S]) -> impl FnMut() -> S {
+    let mut numbers = numbers.iter().copied();
+    move || numbers.next().unwrap_or(Scalar::zero())
 }
 
 fn memory_of<S: Scalar>(numbers: &[S]) -> Memory<S> {
-    taken!(
-        numbers,
-        Memory {
-            command_rad,
-            integral,
-            derivative_rad_s,
-            error_rad,
-            derivative_input_rad,
-            kp,
-            ki,
-            kd,
-            model_rad,
-            model_rad_s
-        }
-    )
+    Memory::from_each(each_of(numbers))
 }
 
 fn sample_of<S: Scalar>(numbers: &[S]) -> Sample<S> {
-    taken!(numbers, Sample { setpoint_rad, measurement_rad, rate_rad_s })
+    let mut next = each_of(numbers);
+    Sample { setpoint_rad: next(), measurement_rad: next(), rate_rad_s: next() }
 }
 
 fn pid_of<S: Scalar>(structure: PidStructure, numbers: &[S]) -> PidEquations<S> {
-    let numbers = taken!(
-        numbers,
-        PidNumbers {
-            dt_s,
-            rate_gain_s,
-            rate_gain_per_kd,
-            proportional_weight,
-            weight_per_kp,
-            derivative_weight,
-            nominal_kp,
-            nominal_kd,
-            filter_s,
-            lower_rad,
-            upper_rad,
-            slew_rad,
-            term_lower_rad,
-            term_upper_rad,
-            tracking_s
-        }
-    );
-    PidEquations { structure, numbers }
+    PidEquations { structure, numbers: PidNumbers::from_each(each_of(numbers)) }
 }
 
 fn tuner_of<S: Scalar>(structure: TunerStructure, still: &[S]) -> TunerEquations<S> {
-    let numbers = taken!(
-        &still[TUNER_AT..],
-        TunerNumbers {
-            dt_s,
-            sign,
-            error_per_rad,
-            change_per_rad,
-            change_divisor,
-            zone_error_rad,
-            zone_change_rad,
-            leakage_per_s,
-            bandwidth_rad_s,
-            damping
-        }
-    );
+    let numbers = TunerNumbers::from_each(each_of(&still[TUNER_AT..]));
     TunerEquations { structure, numbers, gains: gains_of(still) }
 }
 
 fn gains_of<S: Scalar>(still: &[S]) -> [GainNumbers<S>; 3] {
-    [0, 1, 2].map(|gain| {
-        taken!(&still[GAINS_AT + GAIN * gain..], GainNumbers { nominal, scale, lower, upper })
-    })
+    [0, 1, 2].map(|gain| GainNumbers::from_each(each_of(&still[GAINS_AT + GAIN * gain..])))
 }
 
 fn row<S: Copy>(memory: &Memory<S>) -> Vec<S> {
@@ -122,7 +71,7 @@ const PLAIN: PidStructure = PidStructure {
 
 /// What a group of controllers has in common.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Structure {
+pub(super) struct Structure {
     pid: PidStructure,
     tuner: Option<TunerStructure>,
 }
@@ -130,7 +79,7 @@ struct Structure {
 impl Structure {
     /// Of a controller, with everything in it that does nothing by its numbers: what is zero has a slope as well, and more
     /// controllers are alike.
-    fn of(controller: &Controller) -> Self {
+    pub(super) fn of(controller: &Controller) -> Self {
         let tuner = match controller {
             Controller::Fixed(_) => None,
             Controller::SelfTuning(fspid) => Some(fspid.tuner_equations().structure),
@@ -330,6 +279,14 @@ pub(super) struct Laws<'a, const W: usize> {
 }
 
 impl<'a, const W: usize> Laws<'a, W> {
+    /// Refuses a controller that has no gradient.
+    pub(super) fn check(flight: usize, controller: &Controller) -> Result<(), Refusal> {
+        match controller {
+            Controller::Fixed(_) => Ok(()),
+            Controller::SelfTuning(fspid) => rules_of(flight, fspid).map(|_| ()),
+        }
+    }
+
     pub(super) fn new(controllers: &[&'a Controller]) -> Result<Self, Refusal> {
         let first = controllers.first().map(|it| Structure::of(it));
         let structure = first.unwrap_or(Structure { pid: PLAIN, tuner: None });

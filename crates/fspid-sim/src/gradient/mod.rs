@@ -18,8 +18,11 @@
 //! Limits have the derivative of the case that flew. At a kink that is one of Clarke's generalised gradient, and as good as
 //! any other; costs are continuous there.
 //!
-//! Refused by name: everything but linear plants behind a first-order servo with a lag, in calm air, seen as they are; rules
-//! that conclude labels.
+//! - **Sensors** show a straight line between two samples and what is known before the flight: noise, bias, drift.
+//! - **Moving air** adds what it adds whatever anybody does: it moves where the slopes are taken, and nothing else.
+//!
+//! Refused by name: everything but linear plants behind a first-order servo with a lag; sensors with a resolution, whose
+//! steps have no slope that helps anybody; rules that conclude labels.
 
 #![allow(
     clippy::needless_range_loop,
@@ -30,10 +33,15 @@ mod flight;
 mod law;
 mod numbers;
 mod plant;
+mod price;
 mod program;
+mod seeing;
 
-pub use flight::{Differentiated, Weights, differentiate, differentiate_by};
+pub use flight::{Kind, differentiate_prices};
 pub use numbers::{NUMBERS, names, numbers};
+pub use price::{
+    Differentiated, Flown, Slopes, Weights, add_variation, differentiate, differentiate_by, sign,
+};
 
 /// Samples between two that are kept.
 pub const SEGMENT: usize = 64;

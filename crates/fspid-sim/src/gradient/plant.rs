@@ -1,7 +1,12 @@
 //! Plants and servos of a group, forwards and backwards.
 
+use crate::actuated::Actuated;
+use crate::batch::Refusal;
 use crate::error::SimError;
+use crate::propagation::Propagation;
 use crate::propagator::{INPUTS, Propagator};
+use crate::scenario::Prepared;
+use crate::surroundings::held;
 
 /// What a sample does to a lane in which the rate limit acts: rows over the states, the arrived command, and what is added.
 #[derive(Clone, Debug)]
@@ -15,7 +20,9 @@ pub(super) struct Held {
 /// Discretised plants with their servos.
 #[derive(Clone, Debug)]
 pub(super) struct Plants<'a, const W: usize> {
-    propagators: Vec<&'a Propagator>,
+    propagators: Vec<Propagator>,
+    /// Moving air of a lane, if it has any.
+    air: Vec<Option<(&'a Actuated, &'a Prepared)>>,
     order: usize,
     /// Rows of one sample, entry by entry: those of a state, then its two inputs.
     rows: Vec<[f64; W]>,
@@ -26,7 +33,9 @@ pub(super) struct Plants<'a, const W: usize> {
 }
 
 impl<'a, const W: usize> Plants<'a, W> {
-    pub(super) fn new(propagators: Vec<&'a Propagator>) -> Self {
+    pub(super) fn new(lanes: Vec<Lane<'a>>) -> Self {
+        let (propagators, air): (Vec<Propagator>, Vec<_>) =
+            lanes.into_iter().map(|lane| (lane.propagator, lane.air)).unzip();
         let order = propagators.first().map_or(1, |it| it.order());
         let states = order + 1;
         let mut plants = Self {
@@ -37,6 +46,7 @@ impl<'a, const W: usize> Plants<'a, W> {
             elevator_per_command: [0.0; W],
             limits_rad: [[f64::NEG_INFINITY; W], [f64::INFINITY; W]],
             propagators,
+            air,
         };
         for (lane, propagator) in plants.propagators.iter().enumerate() {
             for (place, entry) in plants.rows.iter_mut().zip(&propagator.free.step) {
@@ -106,6 +116,21 @@ impl<'a, const W: usize> Plants<'a, W> {
             limited[lane] = below.max(self.limits_rad[0][lane]);
         }
         limited
+    }
+
+    /// What moving air adds to the states at the next sample, whatever the servo does.
+    #[inline(always)]
+    pub(super) fn add_air(&self, k: usize, next: &mut [[f64; W]]) {
+        for (lane, air) in self.air.iter().enumerate() {
+            let Some((actuated, prepared)) = air else { continue };
+            let of_air = (prepared.gusts(), prepared.gust_responses.as_deref());
+            let held = held(0.0, of_air, k);
+            for (state, next) in next.iter_mut().take(self.order).enumerate() {
+                let row = actuated.gust_row(state).iter();
+                let by_gust: f64 = row.zip(held.gust).map(|(entry, gust)| entry * gust).sum();
+                next[lane] += by_gust + held.added.get(state).copied().unwrap_or(0.0);
+            }
+        }
     }
 
     /// The states at the next sample, into their place; lanes that the rate limit holds are told.
@@ -225,5 +250,35 @@ impl Part {
             }
         }
         Ok(Held { lane: self.lane, rows, by_command, added })
+    }
+}
+
+/// The plant and the servo of a flight, with the air that moves around them.
+pub(super) struct Lane<'a> {
+    pub(super) propagator: Propagator,
+    air: Option<(&'a Actuated, &'a Prepared)>,
+}
+
+impl<'a> Lane<'a> {
+    /// The only plant of a flight, if it has a gradient here.
+    pub(super) fn of(flight: usize, prepared: &'a Prepared) -> Result<Self, Refusal> {
+        let refused = |what| Err(Refusal::Part { flight, what });
+        let [stage] = prepared.stages.as_slice() else {
+            return refused("a plant that changes");
+        };
+        let (propagator, air) = match &stage.propagation {
+            Propagation::AsOne(propagator) => (propagator.clone(), None),
+            Propagation::ByLegs(actuated) => match actuated.as_one() {
+                Some(Ok(propagator)) => (propagator, Some((actuated, prepared))),
+                Some(Err(_)) => return refused("a servo so quick that its matrix overflows"),
+                None => return refused("an actuator that is no first-order servo"),
+            },
+            Propagation::Aircraft(_) => return refused("a nonlinear aircraft"),
+            Propagation::External(_) => return refused("another simulator"),
+        };
+        match propagator.servo.is_at_once() {
+            true => refused("a servo without lag"),
+            false => Ok(Self { propagator, air }),
+        }
     }
 }

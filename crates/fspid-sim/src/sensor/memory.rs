@@ -16,6 +16,32 @@ pub struct Truth {
     pub apparent_vertical_rad: f64,
 }
 
+/// What a sensor shows at a sample of the loop, as a part of what there was: the values of two samples in a straight line,
+/// then what is added; without the resolution.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct View {
+    /// Samples of the loop between which it looks, and how far back from the newer one.
+    pub(crate) newer: usize,
+    pub(crate) older: usize,
+    pub(crate) part: f64,
+    /// Bias, drift and noise.
+    added: [f64; 3],
+}
+
+impl View {
+    /// What is seen of the values of the two samples.
+    fn between(&self, newer: f64, older: f64) -> f64 {
+        if self.part == 0.0 { newer } else { newer + self.part * (older - newer) }
+    }
+
+    /// What is shown of the values of the two samples, with a scale error.
+    pub(crate) fn shown(&self, newer: f64, older: f64, scale_error: f64) -> f64 {
+        let seen = self.between(newer, older);
+        let [bias, drift, noise] = self.added;
+        seen + scale_error * seen + bias + drift + noise
+    }
+}
+
 /// The memory of a sensor over one flight.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SensorState {
@@ -62,6 +88,24 @@ impl Sensor {
         )]
         let samples = samples as usize;
         Ok(samples)
+    }
+
+    /// How it looks at each sample of a flight, whatever there is to be seen of a linear plant, whose vertical is the true
+    /// one.
+    pub(crate) fn views(&self, dt_s: f64, rows: usize) -> Result<Vec<View>, SimError> {
+        let mut state = self.start(dt_s)?;
+        let mut views = Vec::with_capacity(rows);
+        let mut last = state.view(0, 0, true);
+        state.shown = Some(0);
+        for k in 0..rows {
+            let sample = state.sample_at(k);
+            while let Some(next) = state.shown.map(|shown| shown + 1).filter(|it| *it <= sample) {
+                last = state.view(k, next, next == sample);
+                state.shown = Some(next);
+            }
+            views.push(last);
+        }
+        Ok(views)
     }
 
     /// The memory for a flight that is sampled every `dt_s`; after this nothing is allocated.
@@ -139,23 +183,34 @@ impl SensorState {
 
     /// Takes sample `j` of the sensor: draws its drift and, if it is the one to `show`, its value.
     fn look(&mut self, k: usize, j: u64, show: bool) {
+        let view = self.view(k, j, show);
+        if show {
+            let value = |sample: usize| {
+                let place = sample % self.history.len();
+                self.history.get(place).copied().unwrap_or(0.0)
+            };
+            let model = &self.sensor.model;
+            let raw = view.shown(value(view.newer), value(view.older), model.scale_error);
+            self.value = quantised(raw, model.resolution);
+        }
+        self.shown = Some(j);
+    }
+
+    /// How sample `j` of the sensor looks, taken at sample `k` of the loop; its noise is drawn if it is shown.
+    fn view(&mut self, k: usize, j: u64, show: bool) -> View {
         let [kept, added] = self.drift_step;
         let (sensor, number) = (self.sensor, usize::try_from(j).unwrap_or(usize::MAX));
         let normal = |source: u64| standard_normal(sensor.seed, sensor.stream(source), number);
         if j > 0 && added > 0.0 {
             self.drift = kept * self.drift + added * normal(2);
         }
-        if show {
-            let noise = if self.noise > 0.0 { self.noise * normal(0) } else { 0.0 };
-            let seen = self.seen(k, j);
-            let raw = seen + sensor.model.scale_error * seen + self.bias + self.drift + noise;
-            self.value = quantised(raw, sensor.model.resolution);
-        }
-        self.shown = Some(j);
+        let noise = if show && self.noise > 0.0 { self.noise * normal(0) } else { 0.0 };
+        let (newer, older, part) = self.places(k, j);
+        View { newer, older, part, added: [self.bias, self.drift, noise] }
     }
 
-    /// The quantity at the time of sample `j`, between samples of the loop in a straight line.
-    fn seen(&self, k: usize, j: u64) -> f64 {
+    /// The samples of the loop between which sample `j` lies, and how far back from the newer one it does.
+    fn places(&self, k: usize, j: u64) -> (usize, usize, f64) {
         let delay_s = self.sensor.model.delay_s;
         let at_s = if self.sensor.model.period_s > 0.0 {
             j as f64 * self.period_s
@@ -165,24 +220,23 @@ impl SensorState {
         let age = (k as f64 - at_s.max(0.0) / self.dt_s).max(0.0);
         let whole = (age + SAME_SAMPLE).floor();
         let part = (age - whole).max(0.0);
-        let newer = self.value_before(k, whole);
+        let newer = sample_before(k, whole);
         if part <= SAME_SAMPLE {
-            return newer;
+            return (newer, newer, 0.0);
         }
-        newer + part * (self.value_before(k, whole + 1.0) - newer)
+        (newer, sample_before(k, whole + 1.0), part)
     }
+}
 
-    /// The value a whole number of `samples` before sample `k`; the first one before the start.
-    fn value_before(&self, k: usize, samples: f64) -> f64 {
-        #[allow(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "not negative, and the cast saturates"
-        )]
-        let samples = samples as usize;
-        let place = k.saturating_sub(samples) % self.history.len();
-        self.history.get(place).copied().unwrap_or(0.0)
-    }
+/// The sample a whole number of `samples` before sample `k`; the first one before the start.
+fn sample_before(k: usize, samples: f64) -> usize {
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "not negative, and the cast saturates"
+    )]
+    let samples = samples as usize;
+    k.saturating_sub(samples)
 }
 
 /// The nearest multiple of a resolution, ties away from zero.

@@ -29,6 +29,7 @@
 mod memory;
 mod preset;
 
+pub(crate) use memory::View;
 pub use memory::{SensorState, Truth};
 pub use preset::SensorPreset;
 
