@@ -7,6 +7,7 @@
     allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")
 )]
 
+mod bfgs;
 mod cma_es;
 mod cma_strategy;
 mod de;
@@ -26,6 +27,7 @@ mod sorting;
 mod space;
 mod variation;
 
+pub use bfgs::Bfgs;
 pub use cma_es::{CmaEs, Restarts};
 pub use de::DifferentialEvolution;
 pub use ga::Genetic;

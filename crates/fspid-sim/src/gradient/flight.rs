@@ -202,6 +202,8 @@ impl<'a, const W: usize> Group<'a, W> {
         }
     }
 
+    // Inlined with all below it, so that its loops are compiled for each set of instructions.
+    #[inline(always)]
     fn flown(
         &mut self,
         mut price: impl FnMut(usize, &Flown) -> Slopes,
@@ -216,12 +218,10 @@ impl<'a, const W: usize> Group<'a, W> {
             let passed = self.pass(k, &mut state)?;
             self.watch(&theta_rad, &passed.sample);
         }
-        let slopes: Vec<Slopes> = (0..self.prepared.len())
-            .map(|lane| match self.lost[lane] {
-                true => Slopes::default(),
-                false => price(lane, &self.seen(lane)),
-            })
-            .collect();
+        let mut slopes = vec![[[0.0; W]; 3]; self.rows];
+        for lane in (0..self.prepared.len()).filter(|lane| !self.lost[*lane]) {
+            put_slopes(&mut slopes, lane, &price(lane, &self.seen(lane)));
+        }
         self.back(kept, &slopes)?;
         let laws =
             std::mem::replace(&mut self.laws, Laws::new(&[]).map_err(|_| SimError::NotLinear)?);
@@ -244,7 +244,8 @@ impl<'a, const W: usize> Group<'a, W> {
     }
 
     /// All samples, the last first.
-    fn back(&mut self, kept: Vec<State<W>>, slopes: &[Slopes]) -> Result<(), SimError> {
+    #[inline(always)]
+    fn back(&mut self, kept: Vec<State<W>>, slopes: &[[Lanes<W>; 3]]) -> Result<(), SimError> {
         let mut worth = Worth::<W>::new(self.plants.states(), self.rows);
         let mut passed: Vec<Passed<W>> = Vec::new();
         for (segment, mut state) in kept.into_iter().enumerate().rev() {
@@ -254,7 +255,8 @@ impl<'a, const W: usize> Group<'a, W> {
                 passed.push(self.pass(k, &mut state)?);
             }
             for (place, at) in passed.iter().enumerate().rev() {
-                self.back_sample(from + place, at, slopes, &mut worth);
+                let k = from + place;
+                self.back_sample(k, at, &slopes[k], &mut worth);
             }
         }
         let setpoint_rad = self.at(0, |it| &it.setpoint_rad);
@@ -263,7 +265,13 @@ impl<'a, const W: usize> Group<'a, W> {
     }
 
     #[inline(always)]
-    fn back_sample(&mut self, k: usize, at: &Passed<W>, slopes: &[Slopes], worth: &mut Worth<W>) {
+    fn back_sample(
+        &mut self,
+        k: usize,
+        at: &Passed<W>,
+        [by_theta, by_elevator, by_command]: &[Lanes<W>; 3],
+        worth: &mut Worth<W>,
+    ) {
         // The values of the recorded equations at this sample.
         self.laws.step(&at.memory, &at.sample);
         let command = self.arriving(k);
@@ -274,25 +282,27 @@ impl<'a, const W: usize> Group<'a, W> {
                 worth.commands[sent][lane] += of_command[lane];
             }
         }
-        let own = |column: fn(&Slopes) -> &[f64]| {
-            let mut lanes = [0.0; W];
-            for (value, slopes) in lanes.iter_mut().zip(slopes) {
-                *value = column(slopes).get(k).copied().unwrap_or(0.0);
-            }
-            lanes
-        };
-        let (by_command, commanded) = (own(|it| &it.command_rad), worth.commands[k]);
+        let commanded = worth.commands[k];
         for lane in 0..W {
             worth.memory[0][lane] += commanded[lane] + by_command[lane];
         }
         let (memory, sample) = self.laws.back(&worth.memory);
         worth.memory = memory;
-        let [by_theta, by_rate] = self.seeing.back(k, [sample[1], sample[2]]);
-        let (priced, elevator) = (own(|it| &it.theta_rad), own(|it| &it.elevator_rad));
+        let [theta, rate] = self.seeing.back(k, [sample[1], sample[2]]);
         for lane in 0..W {
-            worth.plant[0][lane] += by_theta[lane] + priced[lane];
+            worth.plant[0][lane] += theta[lane] + by_theta[lane];
         }
-        self.plants.back_seen(&mut worth.plant, &by_rate, &elevator);
+        self.plants.back_seen(&mut worth.plant, &rate, by_elevator);
+    }
+}
+
+/// Puts the slopes of a lane by pitch, elevator and command beside those of the others.
+fn put_slopes<const W: usize>(lanes: &mut [[Lanes<W>; 3]], lane: usize, slopes: &Slopes) {
+    let columns = [&slopes.theta_rad, &slopes.elevator_rad, &slopes.command_rad];
+    for (column, values) in columns.into_iter().enumerate() {
+        for (row, value) in lanes.iter_mut().zip(values) {
+            row[column][lane] = *value;
+        }
     }
 }
 

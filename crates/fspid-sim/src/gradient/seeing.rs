@@ -64,17 +64,13 @@ impl<const W: usize> Quantity<W> {
     /// Takes what is worth what is shown at a sample, and answers what is worth what there was; later samples first.
     #[inline(always)]
     fn back(&mut self, k: usize, shown: Lanes<W>) -> Lanes<W> {
-        let mut worth = self.worth[k];
-        for lane in 0..W {
-            match self.sensors.get(lane) {
-                Some(Some((views, scale_error))) => {
-                    let (view, by) = (&views[k], (1.0 + scale_error) * shown[lane]);
-                    self.worth[view.newer][lane] += (1.0 - view.part) * by;
-                    self.worth[view.older][lane] += view.part * by;
-                    worth[lane] = self.worth[k][lane];
-                }
-                _ => worth[lane] = shown[lane],
-            }
+        let mut worth = shown;
+        for (lane, sensor) in self.sensors.iter().enumerate() {
+            let Some((views, scale_error)) = sensor else { continue };
+            let (view, by) = (&views[k], (1.0 + scale_error) * shown[lane]);
+            self.worth[view.newer][lane] += (1.0 - view.part) * by;
+            self.worth[view.older][lane] += view.part * by;
+            worth[lane] = self.worth[k][lane];
         }
         worth
     }
