@@ -218,7 +218,7 @@ impl<T: Sought> EnclosedFlight<T> {
     /// With $\delta = -(C_{m_1} + C_{m_\alpha} \alpha + C_{m_u} \hat u) / C_{m_\delta}$ and
     /// $T \cos\alpha = \bar q S C_D + m g \sin\gamma$ the forces across the flight path leave
     ///
-    /// $$ f(\alpha) = \bar q S\, C_L + (\bar q S\, C_D + m g \sin\gamma) \tan\alpha - m g \cos\gamma = 0 $$
+    /// $$ f(\alpha) = \bar q S C_L + (\bar q S C_D + m g \sin\gamma) \tan\alpha - m g \cos\gamma = 0 $$
     #[must_use]
     pub fn trim(&self) -> Option<EnclosedTrim<T>> {
         let [lift, drag, pitch] = self.coefficients();
@@ -279,7 +279,7 @@ impl<T: Sought> EnclosedFlight<T> {
     ///
     /// $$ m \dot V = -\bar q S C_D + T \cos\alpha - m g \sin(\theta - \alpha), \quad
     ///    m V (\dot\alpha - q) = -\bar q S C_L - T \sin\alpha + m g \cos(\theta - \alpha), \quad
-    ///    I_y \dot q = \bar q S \bar c\, C_m $$
+    ///    I_y \dot q = \bar q S \bar c C_m $$
     ///
     /// differentiated at $\dot V = \dot\alpha = q = 0$.
     #[must_use]

@@ -180,7 +180,7 @@ upper = 56.0
 name = "altitude"
 path = "aircraft.altitude_ft"
 distribution = "uniform"
-lower = 0.0
+lower = 100.0
 upper = 2000.0
 
 [[dispersion]]
@@ -199,8 +199,7 @@ fn an_aircraft_is_proved_for_any_mass_speed_and_altitude_between_limits() {
     let told = text(&output.stdout);
     assert_eq!(code(&output), 0, "{told}{}", text(&output.stderr));
     assert!(told.contains("mass (aircraft.mass_kg) from 1150 to 1300; speed"), "{told}");
-    let words =
-        ["certify", "--check", "proofs/pid.certificate.json", "--against", "drawn.toml"];
+    let words = ["certify", "--check", "proofs/pid.certificate.json", "--against", "drawn.toml"];
     let output = fspid(&words, folder.path());
     assert_eq!(code(&output), 0, "{}", text(&output.stdout));
 }

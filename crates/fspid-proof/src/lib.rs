@@ -31,8 +31,8 @@ pub use bearing::Bearing;
 pub use certificate::{BoundedRate, Certificate, Claim};
 pub use description::{LoopDescription, NotProvable};
 pub use family::{
-    CheckedFamily, Family, FamilyError, FamilyVerdict, MOST_PARAMETERS, MOST_PARTS, MakesPlant,
-    Parameter, Part as FamilyPart, Uncertain, numbers, prove_family,
+    CheckedFamily, Family, FamilyError, FamilyVerdict, MOST_PARAMETERS, MOST_PARTS, Parameter,
+    Part as FamilyPart, Uncertain, numbers, prove_family,
 };
 pub use limits::{AtLimit, pitch_within};
 pub use prove::{Effort, Largest, Outcome, Verdict, certify, is_proved};

@@ -95,9 +95,7 @@ fn counted_inference(supervisor: &Supervisor<f64>) -> f64 {
     let one = |k: u32| {
         let error = f64::from(k % 101) / 10.0 - 5.0;
         let change = f64::from(k % 97) / 10.0 - 4.8;
-        supervisor
-            .infer(black_box(error), black_box(change))
-            .map_or(0.0, |found| found.delta.kp)
+        supervisor.infer(black_box(error), black_box(change)).map_or(0.0, |found| found.delta.kp)
     };
     (0..TIMES).map(one).sum()
 }

@@ -28,6 +28,9 @@ pub const MOST_PARAMETERS: usize = 8;
 /// A number with its slopes by the parameters, all between bounds.
 pub type Sloped = Dual<Interval, MOST_PARAMETERS>;
 
+/// From the numbers of a box to a plant and its actuator.
+pub type MakesPlant<'a> = dyn Fn(&[Sloped]) -> Result<ContinuousPlant<Sloped>, NotProved> + 'a;
+
 /// A matrix row by row.
 type Rows = Vec<Vec<Interval>>;
 
@@ -53,10 +56,7 @@ impl PlantSet {
     ///
     /// # Errors
     /// That of the function.
-    pub fn of(
-        numbers: &[Interval],
-        plant: &dyn Fn(&[Sloped]) -> Result<ContinuousPlant<Sloped>, NotProved>,
-    ) -> Result<Self, NotProved> {
+    pub fn of(numbers: &[Interval], plant: &MakesPlant<'_>) -> Result<Self, NotProved> {
         let middles: Vec<Interval> =
             numbers.iter().map(|it| Interval::point(it.midpoint())).collect();
         let fixed: Vec<Sloped> = middles.iter().map(|&it| Sloped::fixed(it)).collect();

@@ -23,7 +23,7 @@ use crate::gain_set::{GainSet, KnownSlopes};
 use crate::recheck::{Recheck, RecheckError};
 use crate::scope::Range;
 
-pub use search::{FamilyVerdict, MakesPlant, Uncertain, prove_family};
+pub use search::{FamilyVerdict, Uncertain, prove_family};
 
 /// Most parts of a family.
 pub const MOST_PARTS: usize = 4096;

@@ -5,7 +5,7 @@ use fspid_sim::loop_model::LoopModel;
 
 use super::{Family, MOST_PARTS, Parameter, Part, models, numbers};
 use crate::certificate::Claim;
-use crate::check::{ContinuousPlant, NotProved, PlantSet, Sloped};
+use crate::check::{MakesPlant, NotProved, PlantSet};
 use crate::description::{LoopDescription, NotProvable};
 use crate::gain_set::GainSet;
 use crate::prove::{Effort, Prover, Verdict};
@@ -28,7 +28,7 @@ pub enum FamilyVerdict {
         /// The member, parameter by parameter.
         at: Vec<f64>,
         /// At which gains its loop grows, and how: a certificate, whose loop is the one as it is, and the member's plant.
-        claim: Claim,
+        claim: Box<Claim>,
     },
     /// Neither.
     Open {
@@ -77,8 +77,8 @@ pub fn prove_family(
     search.run()
 }
 
-/// From parameters to a plant and its actuator.
-pub type MakesPlant<'a> = dyn Fn(&[Sloped]) -> Result<ContinuousPlant<Sloped>, NotProved> + 'a;
+/// Plants of a box, and the loops between which theirs lie.
+type PlantsAndLoops = (PlantSet, Vec<LoopModel<Interval>>);
 
 struct Search<'a> {
     prover: Prover<'a>,
@@ -156,7 +156,7 @@ impl Search<'_> {
     }
 
     /// Plants of a box, and the loops between which theirs lie.
-    fn loops(&self, ends: &[[f64; 2]]) -> Result<(PlantSet, Vec<LoopModel<Interval>>), NotProved> {
+    fn loops(&self, ends: &[[f64; 2]]) -> Result<PlantsAndLoops, NotProved> {
         let plants = PlantSet::of(&numbers(self.parameters, ends), self.plant)?;
         let loops = models(&plants, self.prover.description())?;
         Ok((plants, loops))
@@ -178,7 +178,7 @@ impl Search<'_> {
         let Ok(prover) = self.member(&at) else { return Ok(()) };
         match prover.frozen_growth() {
             Some(Verdict::Refuted(certificate, _)) => {
-                Err(FamilyVerdict::Refuted { at, claim: certificate.claim })
+                Err(FamilyVerdict::Refuted { at, claim: Box::new(certificate.claim) })
             }
             _ => Ok(()),
         }
@@ -199,7 +199,7 @@ impl Search<'_> {
             let at = at_corner(&self.whole, corner);
             match self.member(&at).ok()?.frozen_growth()? {
                 Verdict::Refuted(certificate, _) => {
-                    Some(FamilyVerdict::Refuted { at, claim: certificate.claim })
+                    Some(FamilyVerdict::Refuted { at, claim: Box::new(certificate.claim) })
                 }
                 Verdict::Proved(..) | Verdict::Open => None,
             }
