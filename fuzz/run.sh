@@ -56,7 +56,7 @@ asks "PUT /api/scenarios/$id" "{\"text\":\"schema = 1\",\"digest\":\"$digest\"}"
 scenarios="$PWD/../scenarios"
 "$fspid" certify "$scenarios/747-pitch-step.toml" --out "$made/certificate" >/dev/null || true
 "$fspid" campaign plan "$scenarios/campaign.toml" --runs 50 --out "$made/plan" >/dev/null
-for optimiser in cma-es de l-shade pso ga nelder-mead nsga-ii; do
+for optimiser in cma-es de l-shade pso ga nelder-mead bfgs nsga-ii; do
     # A search that is killed leaves its first state, which is small. Without blanks more of it fits into an input.
     state="$made/$optimiser.toml.state.json"
     "$fspid" tune "$scenarios/gallery/tune-navion.toml" --optimiser "$optimiser" --budget 1000000 --quiet \

@@ -55,6 +55,16 @@ pub enum TuneError {
         /// Their names.
         names: Vec<String>,
     },
+    /// Something in a tuning that has no slope, for an optimiser that goes by slopes.
+    #[error(
+        "`{optimiser}` goes downhill by slopes, and there is none with {what}; another optimiser, such as cma-es, needs none"
+    )]
+    NoSlope {
+        /// Name of the optimiser.
+        optimiser: &'static str,
+        /// What has none.
+        what: String,
+    },
     /// A name that is not known.
     #[error("there is no {what} `{found}`{known}")]
     Unknown {

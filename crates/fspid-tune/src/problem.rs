@@ -119,9 +119,23 @@ impl TuningProblem {
     /// # Errors
     /// [`TuneError::Stopped`], and others who could not fly.
     pub fn scores_by(&self, points: &[Vec<f64>], crew: Crew<'_>) -> Result<Vec<Score>, TuneError> {
-        let flights = self.flights.flown(points, &|flight, s| self.read(flight, s), crew)?;
+        let flights = self.flights_of(points, crew)?;
+        Ok(flights.iter().map(|mine| self.score(mine)).collect())
+    }
+
+    /// What each flight of candidates is worth, in their order, whoever flies them.
+    pub(crate) fn flights_of(
+        &self,
+        points: &[Vec<f64>],
+        crew: Crew<'_>,
+    ) -> Result<Vec<Vec<FlightScore>>, TuneError> {
+        self.flights.flown(points, &|flight, s| self.read(flight, s), crew)
+    }
+
+    /// What a candidate with these flights is worth.
+    pub(crate) fn score(&self, flights: &[FlightScore]) -> Score {
         let weights: Vec<f64> = self.flights.jobs().map(|(case, _)| case.weight).collect();
-        Ok(flights.iter().map(|mine| Score::over(mine, &weights, &self.tuning)).collect())
+        Score::over(flights, &weights, &self.tuning)
     }
 
     /// Some flights of candidates, for whoever asks.
@@ -182,7 +196,7 @@ impl TuningProblem {
         crew: Crew<'_>,
     ) -> Result<Vec<String>, TuneError> {
         let points = [point.to_vec()];
-        let flights = self.flights.flown(&points, &|flight, s| self.read(flight, s), crew)?;
+        let flights = self.flights_of(&points, crew)?;
         let mut told = Vec::new();
         for ((case, run), flight) in self.flights.jobs().zip(flights.into_iter().flatten()) {
             let which = match case.runs() {

@@ -20,8 +20,8 @@ const LOST: f64 = 1e3;
 const REFUSED: f64 = 1e4;
 /// Least violation of a constant load that is not half gone: any that is above 0, as little may be left for good.
 const LEAST_OF_LOAD: f64 = 1e-3;
-/// Violation of a requirement that has no value.
-const UNKNOWN: f64 = 10.0;
+/// Violation of a requirement that has no value, and the most of any.
+pub(crate) const UNKNOWN: f64 = 10.0;
 
 /// What one flight is worth.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -96,7 +96,7 @@ impl FlightScore {
 }
 
 /// How much more of a constant load is left than is allowed, as a share of its largest effect.
-fn load_left(load: &ConstantLoad) -> f64 {
+pub(crate) fn load_left(load: &ConstantLoad) -> f64 {
     let beyond = load.share_left() - HALF_GONE;
     // Written so that NaN is all of it.
     if beyond <= 1.0 { beyond.max(LEAST_OF_LOAD) } else { 1.0 }
@@ -203,9 +203,9 @@ impl Score {
     }
 }
 
-/// How far a mean is beyond its limit, as a share of the limit.
-fn beyond_limit(limit: &Requirement, mean: f64) -> f64 {
-    if limit.is_met_by(mean) { 0.0 } else { share_beyond(limit, mean) }
+/// How far a value is beyond its limit, as a share of the limit; 0 where it is met.
+pub(crate) fn beyond_limit(limit: &Requirement, value: f64) -> f64 {
+    if limit.is_met_by(value) { 0.0 } else { share_beyond(limit, value) }
 }
 
 fn weighted(values: impl Iterator<Item = f64>, weights: &[f64]) -> f64 {
@@ -213,7 +213,7 @@ fn weighted(values: impl Iterator<Item = f64>, weights: &[f64]) -> f64 {
 }
 
 /// One number for many: their mean, the greatest, or the mean of the greatest by weight.
-fn brought_together(values: &[f64], weights: &[f64], over: Over) -> f64 {
+pub(crate) fn brought_together(values: &[f64], weights: &[f64], over: Over) -> f64 {
     let whole = weights.iter().sum::<f64>();
     let share = match over {
         Over::Mean => return weighted(values.iter().copied(), weights) / whole,
@@ -235,6 +235,30 @@ fn brought_together(values: &[f64], weights: &[f64], over: Over) -> f64 {
     sum / (share * whole)
 }
 
+/// What a unit of each value adds to what they are together.
+pub(crate) fn shares(values: &[f64], weights: &[f64], over: Over) -> Vec<f64> {
+    let whole = weights.iter().sum::<f64>();
+    let mut shares = vec![0.0; values.len()];
+    let share = match over {
+        Over::Mean => return weights.iter().map(|weight| weight / whole).collect(),
+        Over::Worst => {
+            let worst = (0..values.len()).reduce(|a, b| if values[b] > values[a] { b } else { a });
+            worst.into_iter().for_each(|worst| shares[worst] = 1.0);
+            return shares;
+        }
+        Over::Tail { share } => share,
+    };
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    order.sort_by(|&a, &b| values[b].total_cmp(&values[a]));
+    let mut left = share * whole;
+    for index in order {
+        let taken = weights[index].min(left).max(0.0);
+        shares[index] = taken / (share * whole);
+        left -= taken;
+    }
+    shares
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -249,5 +273,23 @@ mod tests {
         let cut = brought_together(&values, &weights, Over::Tail { share: 0.375 });
         assert!((cut - (4.0 + 0.5 * 3.0) / 1.5).abs() < 1e-15);
         assert_eq!(brought_together(&values, &[1.0, 3.0, 1.0, 1.0], Over::Mean), 3.0);
+    }
+
+    #[test]
+    fn shares_are_the_slopes_of_what_flights_are_together() {
+        let (values, weights) = ([1.0, 4.0, 2.0, 3.0], [1.0, 0.5, 2.0, 1.0]);
+        for over in [Over::Mean, Over::Worst, Over::Tail { share: 0.4 }, Over::Tail { share: 1.0 }]
+        {
+            let found = shares(&values, &weights, over);
+            for (index, share) in found.iter().enumerate() {
+                let moved = |by: f64| {
+                    let mut moved = values;
+                    moved[index] += by;
+                    brought_together(&moved, &weights, over)
+                };
+                let slope = (moved(1e-3) - moved(-1e-3)) / 2e-3;
+                assert!((share - slope).abs() < 1e-9, "{over:?} {index}: {share} {slope}");
+            }
+        }
     }
 }

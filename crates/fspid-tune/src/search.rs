@@ -14,6 +14,7 @@ use crate::crew::Crew;
 use crate::error::TuneError;
 use crate::problem::TuningProblem;
 use crate::score::Score;
+use crate::slopes::{Counted, Descents, Differentiable};
 use crate::source::Source;
 
 /// How wide the first candidates lie about the start, as a share of the cube. On the scenario of the gallery a
@@ -21,6 +22,8 @@ use crate::source::Source;
 const SPREAD: f64 = 0.1;
 /// Candidates of a generation of the front's optimiser, unless asked otherwise.
 const FRONT_POPULATION: usize = 40;
+/// Name of the optimiser that goes downhill by slopes.
+const BY_SLOPES: &str = "bfgs";
 
 /// How a search is made.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -70,7 +73,7 @@ impl Effort {
     /// Names of the optimisers.
     #[must_use]
     pub fn optimisers() -> Vec<&'static str> {
-        Kind::NAMES.iter().map(|(_, name)| *name).chain([NsgaII::NAME]).collect()
+        Kind::NAMES.iter().map(|(_, name)| *name).chain([BY_SLOPES, NsgaII::NAME]).collect()
     }
 
     /// The command that searches so, beside the scenario.
@@ -134,6 +137,7 @@ pub struct Trial {
 #[serde(rename_all = "kebab-case")]
 enum Engine {
     One(Box<Snapshot>),
+    Slopes(Box<Descents>),
     Front(NsgaII),
 }
 
@@ -154,8 +158,9 @@ pub struct State {
 
 const STATE_SCHEMA: u32 = 1;
 
-enum Running {
+enum Running<'a> {
     One(Box<dyn Optimiser>),
+    Slopes(Box<Descents>, Box<Differentiable<'a>>),
     Front(NsgaII),
 }
 
@@ -164,7 +169,7 @@ pub struct Search<'a> {
     problem: &'a TuningProblem,
     crew: Crew<'a>,
     effort: Effort,
-    running: Running,
+    running: Running<'a>,
     generation: u64,
     trials: Vec<Trial>,
     best: usize,
@@ -181,12 +186,19 @@ impl<'a> Search<'a> {
         crew: Crew<'a>,
     ) -> Result<Self, TuneError> {
         effort.check(problem.tuning().objectives.len())?;
+        let slopes = differentiable(problem, &effort)?;
         let start = problem.space().start();
         let score = problem.scores_by(std::slice::from_ref(&start), crew)?.pop();
         let Some(score) = score.filter(|score| effort.anywhere || !score.values.is_empty()) else {
             return Err(TuneError::Start { reasons: problem.reasons_of_loss(&start, crew)? });
         };
-        let running = started(problem, &effort, &start);
+        let running = match slopes {
+            Some(slopes) => {
+                let descents = Descents::new(&start, effort.seed, effort.anywhere);
+                Running::Slopes(Box::new(descents), Box::new(slopes))
+            }
+            None => started(problem, &effort, &start),
+        };
         let trials = vec![Trial { generation: 0, point: start, score }];
         Ok(Self { problem, crew, effort, running, generation: 0, trials, best: 0 })
     }
@@ -221,6 +233,14 @@ impl<'a> Search<'a> {
             Engine::One(snapshot) => {
                 Running::One(snapshot.resume().map_err(|error| wrong(error.to_string()))?)
             }
+            Engine::Slopes(descents) => {
+                let slopes = differentiable(problem, effort)?;
+                let slopes = slopes.filter(|_| descents.is_sound(dimension));
+                let slopes = slopes.ok_or_else(|| {
+                    wrong("the numbers of its descent do not fit together".to_owned())
+                })?;
+                Running::Slopes(descents, Box::new(slopes))
+            }
             Engine::Front(front) => {
                 Running::Front(front.resumed().map_err(|error| wrong(error.to_string()))?)
             }
@@ -249,6 +269,7 @@ impl<'a> Search<'a> {
             generation: self.generation,
             engine: match &self.running {
                 Running::One(optimiser) => Engine::One(Box::new(optimiser.snapshot())),
+                Running::Slopes(descents, _) => Engine::Slopes(descents.clone()),
                 Running::Front(front) => Engine::Front(front.clone()),
             },
             trials: self.trials.clone(),
@@ -267,6 +288,7 @@ impl<'a> Search<'a> {
         }
         let mut points = match &mut self.running {
             Running::One(optimiser) => optimiser.ask(),
+            Running::Slopes(..) => return self.descend(),
             Running::Front(front) => front.ask(),
         };
         if points.is_empty() {
@@ -278,6 +300,7 @@ impl<'a> Search<'a> {
             Running::One(optimiser) => {
                 optimiser.tell(&scores.iter().map(|score| score.cost).collect::<Vec<_>>());
             }
+            Running::Slopes(..) => {}
             Running::Front(front) => {
                 front
                     .tell(&scores.iter().map(|score| score.objectives.clone()).collect::<Vec<_>>());
@@ -292,6 +315,47 @@ impl<'a> Search<'a> {
         Ok((self.spent() >= self.effort.budget).then_some(Stop::Budget))
     }
 
+    /// Flies one more candidate of a descent, and follows its flights back where its slope is wanted.
+    fn descend(&mut self) -> Result<Option<Stop>, TuneError> {
+        let Running::Slopes(descents, slopes) = &self.running else { return Ok(None) };
+        let point = descents.ask();
+        let mut flights = self.problem.flights_of(std::slice::from_ref(&point), self.crew)?;
+        let flights = flights.pop().unwrap_or_default();
+        let score = self.problem.score(&flights);
+        let penalty = descents.penalty(slopes.merit(&flights, 0.0).value);
+        let merit = slopes.merit(&flights, penalty);
+        // The way back is flown here, whoever flies forwards.
+        if let Crew::Here(stops) = self.crew
+            && stops()
+        {
+            return Err(TuneError::Stopped);
+        }
+        let most = slopes.most_analyses(&merit.weights);
+        let left = self.effort.budget.saturating_sub(self.spent() + 1);
+        let wanted = descents.wants_slope(&merit)
+            && left >= Counted::of_slope(most).candidates(self.problem.flights());
+        let found = wanted.then(|| slopes.slope(&point, &merit.weights)).flatten();
+        self.generation += 1;
+        let (generation, from) = (self.generation, self.trials.len());
+        self.trials.push(Trial { generation, point, score });
+        self.find_best(from);
+        let best = &self.trials[self.best].point;
+        if let Running::Slopes(descents, _) = &mut self.running {
+            let found = found.map(|found| (found.slope, found.analyses));
+            descents.tell(&merit, penalty, found, best);
+        }
+        Ok((self.spent() >= self.effort.budget).then_some(Stop::Budget))
+    }
+
+    /// What a search by slopes has done beside flying candidates; none for another one.
+    #[must_use]
+    pub fn counted(&self) -> Option<Counted> {
+        match &self.running {
+            Running::Slopes(descents, _) => Some(descents.counted()),
+            Running::One(_) | Running::Front(_) => None,
+        }
+    }
+
     /// Who flies.
     pub(crate) fn crew(&self) -> Crew<'a> {
         self.crew
@@ -300,6 +364,7 @@ impl<'a> Search<'a> {
     fn stop(&self) -> Option<Stop> {
         match &self.running {
             Running::One(optimiser) => optimiser.stop(),
+            Running::Slopes(..) => None,
             Running::Front(front) => front.stop(),
         }
     }
@@ -318,10 +383,11 @@ impl<'a> Search<'a> {
         &self.effort
     }
 
-    /// Candidates flown so far, the start not counted.
+    /// Candidates flown so far, the start not counted; slopes count as the candidates whose flights they are worth.
     #[must_use]
     pub fn spent(&self) -> usize {
-        self.trials.len().saturating_sub(1)
+        let slopes = self.counted().map_or(0, |it| it.candidates(self.problem.flights()));
+        self.trials.len().saturating_sub(1) + slopes
     }
 
     /// Every candidate flown so far, the start first.
@@ -341,7 +407,7 @@ impl<'a> Search<'a> {
     #[must_use]
     pub fn front(&self) -> Vec<&Trial> {
         let allowed: Vec<&Trial> = self.trials.iter().filter(|it| it.score.is_allowed()).collect();
-        if matches!(self.running, Running::One(_)) {
+        if !matches!(self.running, Running::Front(_)) {
             return vec![self.best()];
         }
         let costs = |trial: &Trial| trial.score.objectives.clone();
@@ -383,7 +449,16 @@ impl<'a> Search<'a> {
     }
 }
 
-fn started(problem: &TuningProblem, effort: &Effort, start: &[f64]) -> Running {
+/// What a search by slopes goes by; none for another one.
+fn differentiable<'a>(
+    problem: &'a TuningProblem,
+    effort: &Effort,
+) -> Result<Option<Differentiable<'a>>, TuneError> {
+    let is_by_slopes = effort.optimiser == BY_SLOPES;
+    is_by_slopes.then(|| Differentiable::new(problem, BY_SLOPES)).transpose()
+}
+
+fn started<'a>(problem: &TuningProblem, effort: &Effort, start: &[f64]) -> Running<'a> {
     let dimension = problem.space().dimension();
     let kind = Kind::from_name(&effort.optimiser);
     let usual = kind.map_or(FRONT_POPULATION, |kind| kind.usual_population(dimension));

@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 use crate::error::TuneError;
 use crate::problem::TuningProblem;
 use crate::search::{Search, Trial, stop_in_words};
+use crate::slopes::Counted;
 
 /// How near to a bound a number counts as at it, as a share of the way between the bounds.
 const AT_BOUND: f64 = 1e-3;
@@ -33,6 +34,8 @@ pub struct Tuned {
     pub spent: usize,
     /// Flights of a candidate.
     pub flights: usize,
+    /// What a search by slopes has done beside flying candidates.
+    pub counted: Option<Counted>,
     /// The start.
     pub start: Trial,
     /// The best candidate.
@@ -99,6 +102,7 @@ impl Tuned {
             stop,
             spent: search.spent(),
             flights: problem.flights(),
+            counted: search.counted(),
             numbers: numbers(problem, &start, &best),
             front_numbers: front.iter().map(|it| problem.space().numbers(&it.point)).collect(),
             start,
@@ -134,6 +138,9 @@ impl Tuned {
             if self.flights == 1 { "" } else { "s" },
             stop_in_words(self.stop),
         );
+        if let Some(counted) = &self.counted {
+            out.push_str(&format!("  Of these, {}.\n", counted.in_words(self.flights)));
+        }
         let width = self.width();
         let heading = self.over_in_words();
         out.push_str(&format!("\n  {heading:<width$}{:>14}{:>14}\n", "start", "found"));
@@ -328,6 +335,7 @@ impl Tuned {
             "seed": effort.seed,
             "candidates": self.spent,
             "flights_per_candidate": self.flights,
+            "slopes": self.counted,
             "stop": self.stop,
             "measures": self.objectives.iter().map(|(name, _)| name).collect::<Vec<_>>(),
             "start": score(&self.start),

@@ -223,7 +223,8 @@ class Scenario:
         controller : str, optional
             Needed only where several have free numbers.
         optimiser : str, optional
-            ``cma-es``, ``de``, ``l-shade``, ``pso``, ``ga``, ``nelder-mead`` or ``nsga-ii``.
+            ``cma-es``, ``de``, ``l-shade``, ``pso``, ``ga``, ``nelder-mead``, ``bfgs`` or
+            ``nsga-ii``.
         budget, seed, population : int, optional
             Candidates to fly, seed, candidates of a generation; by default as the scenario says.
         anywhere : bool

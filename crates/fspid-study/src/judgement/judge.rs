@@ -93,7 +93,7 @@ impl Judgement {
 }
 
 /// The case that is nearest to its limits or farthest outside; the first of several.
-fn worst(requirement: &Requirement, cases: &[Case]) -> Result<Case, NotEvaluated> {
+pub(super) fn worst(requirement: &Requirement, cases: &[Case]) -> Result<Case, NotEvaluated> {
     let mut worst: Option<Case> = None;
     for case in cases {
         let slack = requirement.slack(case.value);

@@ -9,6 +9,7 @@ mod evidence;
 mod judge;
 mod own_flight;
 mod reason;
+mod slopes;
 
 pub use case::{Case, CasePlace, FrozenAt, PlantAt, StepAt};
 pub use evidence::Evidence;
@@ -16,3 +17,4 @@ pub(crate) use judge::is_of_aircraft;
 pub use judge::{AIRCRAFT, Judgement, judge};
 pub(crate) use own_flight::flown as flown_on_their_own;
 pub use reason::NotEvaluated;
+pub use slopes::{SlopeOf, Sloped, add_slopes, is_of_this_air, of_loop};

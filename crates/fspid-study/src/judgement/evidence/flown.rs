@@ -43,7 +43,10 @@ pub(super) fn require_measures(result: &ControllerResult) -> Result<(), NotEvalu
 }
 
 /// Refuses a flight in another air than the one that is asked for.
-fn check_air(study: &Study, conditions: &Conditions) -> Result<(), NotEvaluated> {
+pub(in crate::judgement) fn check_air(
+    study: &Study,
+    conditions: &Conditions,
+) -> Result<(), NotEvaluated> {
     let Some(asked) = conditions.air else {
         return Ok(());
     };
@@ -58,6 +61,38 @@ fn check_air(study: &Study, conditions: &Conditions) -> Result<(), NotEvaluated>
         _ => return Ok(()),
     };
     Err(NotEvaluated::OtherAir { asked, found })
+}
+
+/// Samples of the time that counts of a flight of so many; the whole flight where no end is given.
+pub(in crate::judgement) fn time_that_counts(
+    timing: Timing,
+    rows: usize,
+    conditions: &Conditions,
+) -> Result<RangeInclusive<usize>, NotEvaluated> {
+    let end_s = timing.end_s();
+    let (from_s, to_s) = (conditions.from_s.unwrap_or(0.0), conditions.to_s.unwrap_or(end_s));
+    let first = timing.first_sample_at(from_s);
+    // The sample at the end counts, and none after it.
+    let last = match conditions.to_s {
+        Some(to_s) => sample_up_to(timing, to_s),
+        None => Some(rows.saturating_sub(1)),
+    };
+    match last {
+        Some(last) if first <= last && last < rows => Ok(first..=last),
+        _ => Err(NotEvaluated::NotFlown { from_s, to_s, end_s }),
+    }
+}
+
+/// The last sample that is not after a time; none for a time after the end of the flight.
+fn sample_up_to(timing: Timing, time_s: f64) -> Option<usize> {
+    let next = timing.first_sample_at(time_s);
+    // A time a rounding before a sample is on it, as everywhere.
+    let allowance_s = 1e-6 * timing.dt_s();
+    match next < timing.rows() {
+        true if timing.time_s(next) <= time_s + allowance_s => Some(next),
+        true => next.checked_sub(1),
+        false => None,
+    }
 }
 
 struct Flown<'a> {
@@ -132,32 +167,8 @@ impl Flown<'_> {
         Ok(self.counted(conditions)?.iter().map(case).collect())
     }
 
-    /// Samples of the time that counts; the whole flight where no end is given.
     fn time(&self, conditions: &Conditions) -> Result<RangeInclusive<usize>, NotEvaluated> {
-        let end_s = self.timing.end_s();
-        let (from_s, to_s) = (conditions.from_s.unwrap_or(0.0), conditions.to_s.unwrap_or(end_s));
-        let first = self.timing.first_sample_at(from_s);
-        // The sample at the end counts, and none after it.
-        let last = match conditions.to_s {
-            Some(to_s) => self.sample_up_to(to_s),
-            None => Some(self.trace.rows().saturating_sub(1)),
-        };
-        match last {
-            Some(last) if first <= last && last < self.trace.rows() => Ok(first..=last),
-            _ => Err(NotEvaluated::NotFlown { from_s, to_s, end_s }),
-        }
-    }
-
-    /// The last sample that is not after a time; none for a time after the end of the flight.
-    fn sample_up_to(&self, time_s: f64) -> Option<usize> {
-        let next = self.timing.first_sample_at(time_s);
-        // A time a rounding before a sample is on it, as everywhere.
-        let allowance_s = 1e-6 * self.timing.dt_s();
-        match next < self.timing.rows() {
-            true if self.timing.time_s(next) <= time_s + allowance_s => Some(next),
-            true => next.checked_sub(1),
-            false => None,
-        }
+        time_that_counts(self.timing, self.trace.rows(), conditions)
     }
 
     fn recovery(&self, conditions: &Conditions) -> Result<Vec<Case>, NotEvaluated> {

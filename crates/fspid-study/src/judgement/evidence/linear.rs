@@ -98,9 +98,18 @@ pub(super) fn cases(
     requirement: &Requirement,
 ) -> Result<Vec<Case>, NotEvaluated> {
     let of_flight = diverged(result).filter(|_| requirement.measure == Measure::Stable);
+    let mut cases: Vec<Case> = of_flight.into_iter().collect();
+    cases.extend(rest_cases(loops, requirement)?);
+    Ok(cases)
+}
+
+/// The same of the loops alone.
+pub(super) fn rest_cases(
+    loops: &[PlantEvidence],
+    requirement: &Requirement,
+) -> Result<Vec<Case>, NotEvaluated> {
     let rests = loops.iter().flat_map(PlantEvidence::rests);
-    let of_rests = rests.map(|(rest, place)| of_rest(rest, place, requirement));
-    of_flight.map(Ok).into_iter().chain(of_rests).collect()
+    rests.map(|(rest, place)| of_rest(rest, place, requirement)).collect()
 }
 
 /// A flight that diverged is no flight of a stable loop.

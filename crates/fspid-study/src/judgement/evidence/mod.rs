@@ -19,6 +19,8 @@ use fspid_scenario::measure::{Family, Measure};
 use fspid_scenario::requirement::Requirement;
 use linear::PlantEvidence;
 
+pub(super) use flown::{check_air, time_that_counts};
+
 /// Everything that is known of one controller of a study. What a flight does not show is computed when it is first
 /// asked for.
 #[derive(Debug)]
@@ -32,6 +34,26 @@ pub struct Evidence<'a> {
     loops: OnceCell<Result<Vec<PlantEvidence>, NotEvaluated>>,
     /// The same with maps of frozen gains, which take a hundred times as long.
     mapped: OnceCell<Result<Vec<PlantEvidence>, NotEvaluated>>,
+}
+
+/// Cases of a measure of the linear loop of a study's first controller, without a flight.
+pub(super) fn loop_cases(
+    study: &Study,
+    requirement: &Requirement,
+) -> Result<Vec<Case>, NotEvaluated> {
+    let Some(named) = study.scenario.controllers.first() else {
+        return Err(NotEvaluated::External);
+    };
+    let is_mapped = requirement.measure.family() == Family::Frozen;
+    if is_mapped {
+        frozen::require_whole_map(&named.controller)?;
+    }
+    let points = if is_mapped { MAP_POINTS } else { 0 };
+    let loops = linear::loops(&study.scenario, named, points)?;
+    match is_mapped {
+        true => frozen::cases(&loops, requirement),
+        false => linear::rest_cases(&loops, requirement),
+    }
 }
 
 /// Points along each input of a map of frozen gains.
