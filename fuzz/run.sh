@@ -19,18 +19,14 @@ RUSTFLAGS="--cfg fuzzing -Cdebug-assertions -Cpasses=sancov-module -Cllvm-args=-
 tests="$PWD/../crates"
 made="$CARGO_TARGET_DIR/seeds" found="$CARGO_TARGET_DIR/found"
 rm -rf "$made" "$found"
-mkdir -p "$made"/{formula,toml,certificate,plan,state,csv,mavlink,server} "$found"
+mkdir -p "$made"/{formula,toml,certificate,plan,state,csv,set,fly,mavlink,server} "$found"
 echo 'max(0.5*x, error^2) - exp(-change)' >"$made/formula/one"
 cp "$tests"/fspid-scenario/src/file/templates/fuzzy-system.toml "$made/toml"
 printf 'a,b\n1,2\n-0.5,1e-3\n' >"$made/csv/one"
 printf 'a,b,"c,d"\n1,2,3\n-0.5,1e-3,"x"\n' >"$made/csv/two"
-# Readers that are asked at night alone.
-if [ "$seconds" -gt 60 ]; then
-    mkdir -p "$made"/{set,fly}
-    printf 'controller.CPID.kp=1.5\nactuator={time_constant_s=0.2,delay_samples=3}\n' >"$made/set/one"
-    printf 'plant.preset.numerator[0]=-1.7\nloop.duration_s=4.0\n' >"$made/set/two"
-    printf '# r, y, dt\n1,0,0.01\n1,0.5,0.01\nreset\n0,nan,0.01\n1,1e300,0.01\n' >"$made/fly/one"
-fi
+printf 'controller.CPID.kp=1.5\nactuator={time_constant_s=0.2,delay_samples=3}\n' >"$made/set/one"
+printf 'plant.preset.numerator[0]=-1.7\nloop.duration_s=4.0\n' >"$made/set/two"
+printf '# r, y, dt\n1,0,0.01\n1,0.5,0.01\nreset\n0,nan,0.01\n1,1e300,0.01\n' >"$made/fly/one"
 packets="$tests/fspid-mavlink/tests/data/packets.jsonl" at=0
 for digits in $(grep -o '"packets": \[[^]]*' "$packets" | grep -o '[0-9a-f]\{16,\}' | sort -u); do
     printf "$(sed 's/../\\x&/g' <<<"$digits")" >"$made/mavlink/$((at += 1))"

@@ -21,30 +21,13 @@ const SPEED: usize = 2;
 /// Most steps of Newton's method.
 const MOST_STEPS: usize = 40;
 
-/// One longitudinal coefficient, see [`LongitudinalCoefficient`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EnclosedCoefficient<T> {
-    /// At the reference.
-    pub reference: T,
-    /// By angle of attack.
-    pub alpha: T,
-    /// By its rate.
-    pub alpha_rate: T,
-    /// By pitch rate.
-    pub pitch_rate: T,
-    /// By relative change of speed.
-    pub speed: T,
-    /// By elevator.
-    pub elevator: T,
-}
-
 /// A straight flight of an aircraft of derivatives, every number between bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EnclosedFlight<T> {
     /// Mass.
     pub mass_kg: T,
     /// How the moment of inertia in pitch is known.
-    pub inertia: EnclosedMoment<T>,
+    pub inertia: Moment<T>,
     /// How far the centre of gravity is behind that of the derivatives, in chords.
     pub aft_chords: T,
     /// True airspeed.
@@ -53,28 +36,13 @@ pub struct EnclosedFlight<T> {
     pub altitude_m: T,
     /// Climb angle.
     pub flight_path_rad: T,
-    /// Lift about the centre of gravity of the derivatives.
-    pub lift: EnclosedCoefficient<T>,
-    /// Drag.
-    pub drag: EnclosedCoefficient<T>,
-    /// Pitching moment.
-    pub pitch: EnclosedCoefficient<T>,
-    /// Thrust by relative change of speed.
-    pub thrust_speed: T,
+    /// Coefficients about the centre of gravity of the derivatives.
+    pub longitudinal: Longitudinal<T>,
     geometry: Geometry,
     reference_airspeed_m_s: f64,
     alpha_rad: Interval,
     laws: Laws,
     environment: Environment,
-}
-
-/// [`Moment`] between bounds.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum EnclosedMoment<T> {
-    /// Itself, kg m².
-    Inertia(T),
-    /// By the radius of gyration, m.
-    Gyration(T),
 }
 
 /// The linear model of pitch: rates of θ, q, V and α by these and by the elevator (SI, elevator as the derivatives count it).
@@ -101,36 +69,16 @@ fn point<T: Scalar>(value: f64) -> T {
     T::constant(value)
 }
 
-impl<T: Scalar> EnclosedCoefficient<T> {
-    fn of(row: &LongitudinalCoefficient) -> Self {
-        let LongitudinalCoefficient { reference, alpha, alpha_rate, pitch_rate, speed, elevator } =
-            *row;
-        Self {
-            reference: point(reference),
-            alpha: point(alpha),
-            alpha_rate: point(alpha_rate),
-            pitch_rate: point(pitch_rate),
-            speed: point(speed),
-            elevator: point(elevator),
-        }
-    }
-
-    /// This one and a part of another.
-    fn and(&self, part: T, other: &Self) -> Self {
-        Self {
-            reference: self.reference + part * other.reference,
-            alpha: self.alpha + part * other.alpha,
-            alpha_rate: self.alpha_rate + part * other.alpha_rate,
-            pitch_rate: self.pitch_rate + part * other.pitch_rate,
-            speed: self.speed + part * other.speed,
-            elevator: self.elevator + part * other.elevator,
-        }
-    }
-
-    /// Seen from a place that lags behind in angle of attack, see [`Longitudinal::moved`].
-    fn lagging(self, aft_chords: T) -> Self {
-        let pitch_rate = self.pitch_rate - T::constant(2.0) * aft_chords * self.alpha;
-        Self { pitch_rate, ..self }
+/// Every number of a row as it is.
+fn fixed<T: Scalar>(row: LongitudinalCoefficient) -> LongitudinalCoefficient<T> {
+    let LongitudinalCoefficient { reference, alpha, alpha_rate, pitch_rate, speed, elevator } = row;
+    LongitudinalCoefficient {
+        reference: point(reference),
+        alpha: point(alpha),
+        alpha_rate: point(alpha_rate),
+        pitch_rate: point(pitch_rate),
+        speed: point(speed),
+        elevator: point(elevator),
     }
 }
 
@@ -147,9 +95,15 @@ impl<T: Sought> EnclosedFlight<T> {
         let own = DerivativeData { loading: crate::data::Loading::default(), ..*data };
         let Longitudinal { lift, drag, pitch, thrust_speed } = own.force_model(laws).longitudinal;
         let inertia = match data.loading.pitch {
-            Some(Moment::Gyration(radius_m)) => EnclosedMoment::Gyration(point(radius_m)),
-            Some(Moment::Inertia(value)) => EnclosedMoment::Inertia(point(value)),
-            None => EnclosedMoment::Inertia(point(data.inertia.iy_kg_m2)),
+            Some(Moment::Gyration(radius_m)) => Moment::Gyration(point(radius_m)),
+            Some(Moment::Inertia(value)) => Moment::Inertia(point(value)),
+            None => Moment::Inertia(point(data.inertia.iy_kg_m2)),
+        };
+        let longitudinal = Longitudinal {
+            lift: fixed(lift),
+            drag: fixed(drag),
+            pitch: fixed(pitch),
+            thrust_speed: point(thrust_speed),
         };
         let alpha = data.validity.alpha_rad;
         Self {
@@ -159,10 +113,7 @@ impl<T: Sought> EnclosedFlight<T> {
             airspeed_m_s: point(target.airspeed_m_s),
             altitude_m: point(target.altitude_m),
             flight_path_rad: point(target.flight_path_rad),
-            lift: EnclosedCoefficient::of(&lift),
-            drag: EnclosedCoefficient::of(&drag),
-            pitch: EnclosedCoefficient::of(&pitch),
-            thrust_speed: point(thrust_speed),
+            longitudinal,
             geometry: data.geometry,
             reference_airspeed_m_s: data.reference.airspeed_m_s,
             alpha_rad: Interval::between(alpha.min.max(-0.8), alpha.max.min(0.8)),
@@ -200,10 +151,8 @@ impl<T: Sought> EnclosedFlight<T> {
     }
 
     /// The coefficients about the centre of gravity that flies.
-    fn coefficients(&self) -> [EnclosedCoefficient<T>; 3] {
-        let aft = self.aft_chords;
-        let turned = self.pitch.and(aft, &self.lift);
-        [self.lift, self.drag, turned].map(|row| row.lagging(aft))
+    fn coefficients(&self) -> Longitudinal<T> {
+        self.longitudinal.moved(self.aft_chords)
     }
 
     /// $\bar q S$, N.
@@ -221,15 +170,15 @@ impl<T: Sought> EnclosedFlight<T> {
     /// $$ f(\alpha) = \bar q S C_L + (\bar q S C_D + m g \sin\gamma) \tan\alpha - m g \cos\gamma = 0 $$
     #[must_use]
     pub fn trim(&self) -> Option<EnclosedTrim<T>> {
-        let [lift, drag, pitch] = self.coefficients();
+        let Longitudinal { lift, drag, pitch, .. } = self.coefficients();
         let (scale, speed) = (self.scale_n()?, self.relative_speed());
         let weight = self.mass_kg * T::constant(self.environment.gravity_m_s2);
         let (along, across) =
             (weight * self.flight_path_rad.sin(), weight * self.flight_path_rad.cos());
         // What the elevator that balances the moments makes of lift and drag.
-        let per_moment = |row: &EnclosedCoefficient<T>| row.elevator / pitch.elevator;
+        let per_moment = |row: &LongitudinalCoefficient<T>| row.elevator / pitch.elevator;
         let still = pitch.reference + pitch.speed * speed;
-        let balanced = |row: &EnclosedCoefficient<T>| {
+        let balanced = |row: &LongitudinalCoefficient<T>| {
             let share = per_moment(row);
             [row.reference + row.speed * speed - share * still, row.alpha - share * pitch.alpha]
         };
@@ -257,7 +206,8 @@ impl<T: Sought> EnclosedFlight<T> {
         match self.laws.drag {
             DragLaw::Linear => T::zero(),
             DragLaw::Polar => {
-                T::constant(0.5) * self.drag.alpha / self.lift.reference * self.lift.alpha
+                let Longitudinal { lift, drag, .. } = self.longitudinal;
+                T::constant(0.5) * drag.alpha / lift.reference * lift.alpha
             }
         }
     }
@@ -267,9 +217,9 @@ impl<T: Sought> EnclosedFlight<T> {
         match self.laws.thrust {
             ThrustLaw::Constant => T::zero(),
             ThrustLaw::WithSpeed => {
-                let coefficient = self.drag.reference + self.thrust_speed * self.relative_speed();
-                let share =
-                    self.thrust_speed / T::constant(self.reference_airspeed_m_s) / coefficient;
+                let Longitudinal { drag, thrust_speed, .. } = self.longitudinal;
+                let coefficient = drag.reference + thrust_speed * self.relative_speed();
+                let share = thrust_speed / T::constant(self.reference_airspeed_m_s) / coefficient;
                 thrust_n * (T::constant(2.0) / self.airspeed_m_s + share)
             }
         }
@@ -285,7 +235,7 @@ impl<T: Sought> EnclosedFlight<T> {
     #[must_use]
     pub fn model(&self) -> Option<EnclosedModel<T>> {
         let (trim, scale) = (self.trim()?, self.scale_n()?);
-        let [lift, drag, pitch] = self.coefficients();
+        let Longitudinal { lift, drag, pitch, .. } = self.coefficients();
         let half_chord_s =
             T::constant(0.5) * T::constant(self.geometry.chord_m) / self.airspeed_m_s;
         let alpha_rate = self.alpha_rate_row(&trim, &lift, scale);
@@ -298,7 +248,8 @@ impl<T: Sought> EnclosedFlight<T> {
         moments[SPEED] = pitch.speed / T::constant(self.reference_airspeed_m_s);
         let moments = with_rate(moments, pitch.alpha_rate);
         let drags = with_rate(self.slopes(&trim, &drag, self.polar_bend()), drag.alpha_rate);
-        let per_inertia = scale * T::constant(self.geometry.chord_m) / self.inertia_kg_m2();
+        let per_inertia =
+            scale * T::constant(self.geometry.chord_m) / self.inertia.of(self.mass_kg);
         let theta_rate = [T::zero(), T::one(), T::zero(), T::zero(), T::zero()];
         let rows = [
             theta_rate,
@@ -313,15 +264,8 @@ impl<T: Sought> EnclosedFlight<T> {
         })
     }
 
-    fn inertia_kg_m2(&self) -> T {
-        match self.inertia {
-            EnclosedMoment::Inertia(inertia) => inertia,
-            EnclosedMoment::Gyration(radius) => self.mass_kg * radius.square(),
-        }
-    }
-
     /// A coefficient times the share of the dynamic pressure by θ, q, V, α and elevator, without the angle of attack's rate.
-    fn slopes(&self, trim: &EnclosedTrim<T>, row: &EnclosedCoefficient<T>, bend: T) -> [T; 5] {
+    fn slopes(&self, trim: &EnclosedTrim<T>, row: &LongitudinalCoefficient<T>, bend: T) -> [T; 5] {
         let alpha = trim.alpha_rad;
         let at_trim = row.reference
             + row.alpha * alpha
@@ -346,7 +290,7 @@ impl<T: Sought> EnclosedFlight<T> {
     fn alpha_rate_row(
         &self,
         trim: &EnclosedTrim<T>,
-        lift: &EnclosedCoefficient<T>,
+        lift: &LongitudinalCoefficient<T>,
         scale: T,
     ) -> [T; 5] {
         let (sin, cos) = (trim.alpha_rad.sin(), trim.alpha_rad.cos());

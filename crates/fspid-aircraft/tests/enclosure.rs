@@ -1,7 +1,7 @@
 //! Enclosed linear models against those of the flown equations.
 
 use fspid_aircraft::data::{DerivativeData, Laws, Loading, Moment};
-use fspid_aircraft::enclosure::{EnclosedFlight, EnclosedModel, EnclosedMoment};
+use fspid_aircraft::enclosure::{EnclosedFlight, EnclosedModel};
 use fspid_aircraft::{Environment, TrimTarget, VelocityForm};
 use fspid_numeric::scalar::Interval;
 
@@ -93,10 +93,10 @@ fn every_flight_in_a_box_lies_in_the_enclosure_of_the_box() {
             EnclosedFlight::<Interval>::of(&data, LAWS[1], Environment::STANDARD, target);
         let between = |[from, to]: [f64; 2]| Interval::between(from, to);
         enclosed.mass_kg = between(mass);
-        enclosed.inertia = EnclosedMoment::Gyration(between(radius));
+        enclosed.inertia = Moment::Gyration(between(radius));
         enclosed.airspeed_m_s = between(speed);
         enclosed.altitude_m = between(altitude);
-        enclosed.pitch.alpha = between(slope);
+        enclosed.longitudinal.pitch.alpha = between(slope);
         enclosed.aft_chords = Interval::between(-0.02, 0.01);
         let model = enclosed.model().expect("a trim");
         for number in 0..40 {
@@ -133,6 +133,6 @@ fn a_box_with_flights_that_cannot_be_trimmed_has_no_model() {
     enclosed.airspeed_m_s = Interval::between(5.0, 60.0);
     assert!(enclosed.model().is_none());
     enclosed.airspeed_m_s = Interval::between(50.0, 60.0);
-    enclosed.pitch.elevator = Interval::between(-0.5, 0.5);
+    enclosed.longitudinal.pitch.elevator = Interval::between(-0.5, 0.5);
     assert!(enclosed.model().is_none());
 }

@@ -4,15 +4,8 @@ use crate::common;
 
 use common::{code, fspid, json, text};
 
-const SCENARIO: &str = r#"
-schema = 1
-name = "Drawn"
-
-[plant]
-numerator = [1.151, 0.1774]
-denominator = [1.0, 0.739, 0.921, 0.0]
-elevator_sign = "nose-up-positive"
-
+/// What both loops have.
+const LOOP: &str = r#"
 [actuator]
 time_constant_s = 0.1
 
@@ -25,6 +18,18 @@ kind = "step"
 amplitude_deg = 3.0
 
 [[controller]]
+"#;
+
+const SCENARIO: &str = r#"
+schema = 1
+name = "Drawn"
+
+[plant]
+numerator = [1.151, 0.1774]
+denominator = [1.0, 0.739, 0.921, 0.0]
+elevator_sign = "nose-up-positive"
+
+LOOP
 name = "PID"
 kind = "pid"
 kp = 1.2
@@ -64,7 +69,8 @@ upper = 4.0
 
 fn folder(scenario: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a folder");
-    std::fs::write(folder.path().join("drawn.toml"), scenario).expect("written");
+    let text = scenario.replace("LOOP\n", LOOP);
+    std::fs::write(folder.path().join("drawn.toml"), text).expect("written");
     folder
 }
 
@@ -78,7 +84,9 @@ fn a_family_is_proved_written_checked_and_compared_with_what_the_scenario_draws(
     assert!(told.contains(box_in_words) && !told.contains("that a campaign draws"), "{told}");
     let output = fspid(&["certify", "--check", "proofs/pid.certificate.json"], folder.path());
     assert_eq!(code(&output), 0, "{}", text(&output.stderr));
-    assert!(text(&output.stdout).contains(box_in_words));
+    let alone = text(&output.stdout);
+    let unbound = "is computed by --against SCENARIO";
+    assert!(alone.contains(box_in_words) && alone.contains(unbound), "{alone}");
     let against = |setting: &str| {
         let words = [
             "certify",
@@ -91,7 +99,9 @@ fn a_family_is_proved_written_checked_and_compared_with_what_the_scenario_draws(
         ];
         fspid(&words, folder.path())
     };
-    assert_eq!(code(&against("setpoint.amplitude_deg=2.5")), 0);
+    let bound = against("setpoint.amplitude_deg=2.5");
+    assert_eq!(code(&bound), 0);
+    assert!(!text(&bound.stdout).contains(unbound), "{}", text(&bound.stdout));
     let wider = against("dispersion[1].upper=0.9");
     assert_eq!(code(&wider), 1);
     assert!(text(&wider.stdout).contains("from 0.65 to 0.9"), "{}", text(&wider.stdout));
@@ -116,6 +126,10 @@ fn what_no_family_can_hold_is_refused_by_name() {
     assert!(open_end.contains("has no ends"), "{open_end}");
     let gain = changed("path = \"plant.denominator[1]\"", "path = \"controller[0].kp\"");
     assert!(gain.contains("`controller[0].kp`: families know"), "{gain}");
+    let sensor = "[sensor]\npreset = \"ideal\"\npitch = { resolution_deg = 0.001 }\n";
+    let servo = "[[dispersion]]\nname = \"servo\"";
+    let steps = changed(servo, &format!("{sensor}\n{servo}"));
+    assert!(steps.contains("a sensor resolves in steps"), "{steps}");
 }
 
 #[test]
@@ -144,18 +158,7 @@ airspeed_m_s = 53.6
 altitude_ft = 1000.0
 mass_kg = 1240.0
 
-[actuator]
-time_constant_s = 0.1
-
-[loop]
-sample_period_s = 0.02
-duration_s = 8.0
-
-[setpoint]
-kind = "step"
-amplitude_deg = 3.0
-
-[[controller]]
+LOOP
 name = "PID"
 kind = "pid"
 kp = 1.0

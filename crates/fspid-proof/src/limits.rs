@@ -204,6 +204,11 @@ impl LoopDescription {
         [0.5 * self.pitch.resolution, rate]
     }
 
+    /// True if a sensor that the controller sees resolves in steps.
+    pub(crate) fn resolves_in_steps(&self) -> bool {
+        self.blurs().iter().any(|blur| *blur > 0.0)
+    }
+
     /// How far it may take the command off at once, rad.
     fn blur_of_command<T: Base + Magnitude>(&self, model: &LoopModel<T>, gains: Gains<T>) -> f64 {
         let sizes = model.command_by_seen(gains).map(|entry| Interval::point(entry.largest()));

@@ -122,6 +122,7 @@ fn every_member_of_a_proved_family_is_stable_and_the_certificate_says_so_alone()
     refused(&|it| it.parts[0].plants.slopes.truncate(2), "different states");
     // A wider reach than the forms hold for, and plants that are others.
     refused(&|it| it.parts[0].plants.reach[2] *= 30.0, "part 0 of the family");
+    refused(&|it| it.parts[0].plants.reach[1] *= 0.5, "do not reach its ends");
     let other = |it: &mut Family| it.parts[0].plants.middle[1][4] = Interval::between(-90.0, 90.0);
     refused(&other, "part 0 of the family");
 }
@@ -174,19 +175,47 @@ fn the_sampled_plant_of_every_member_lies_between_the_corners_of_its_set() {
 }
 
 #[test]
-fn a_loops_matrix_is_affine_in_what_its_plant_makes_of_a_sample() {
-    let description = member(NOMINAL, GAINS);
-    let closed = |rows: Vec<f64>| -> Matrix {
+fn a_loops_matrix_is_affine_in_what_its_plant_makes_of_a_sample_whatever_its_sensors() {
+    let delayed = |samples, part| Sensing { samples, part, scale: 1.02, ..Sensing::DIRECT };
+    for (pitch, rate) in [
+        (Sensing::DIRECT, Sensing::DIRECT),
+        (Sensing::DIRECT, delayed(0, 0.25)),
+        (delayed(0, 0.5), delayed(1, 0.0)),
+        (delayed(2, 0.75), delayed(3, 0.5)),
+    ] {
+        let mut description = member(NOMINAL, GAINS);
+        let Controller::Fixed(pid) = &description.controller else { panic!("fixed gains") };
+        let config = PidConfig { rate_gain_s: 0.3, ..*pid.config() };
+        description.controller = Controller::Fixed(Pid::new(GAINS, config).expect("allowed"));
+        (description.pitch, description.rate) = (pitch, rate);
         let model = description.enclosed().expect("a model").midpoint();
-        let SampledPlant { states, rate, .. } = model.plant().clone();
-        let plant = SampledPlant { states, rows, rate };
-        LoopModel::new(plant, description.settings()).closed_matrix(GAINS).expect("finite")
-    };
-    let rows = |at| member(at, GAINS).enclosed().expect("a model").midpoint().plant().rows.clone();
-    let (one, other) = (rows([1.0; 4]), rows([0.5, 1.5, 0.7, 0.05]));
-    let middle = one.iter().zip(&other).map(|(one, other)| 0.5 * (one + other)).collect();
-    let [one, other, middle] = [closed(one), closed(other), closed(middle)];
-    for ((one, other), middle) in one.data().iter().zip(other.data()).zip(middle.data()) {
-        assert!((0.5 * (one + other) - middle).abs() < 1e-14);
+        let closed = |rows: Vec<f64>| -> Matrix {
+            let SampledPlant { states, rate, .. } = model.plant().clone();
+            let plant = SampledPlant { states, rows, rate };
+            LoopModel::new(plant, description.settings()).closed_matrix(GAINS).expect("finite")
+        };
+        let rows =
+            |at| member(at, GAINS).enclosed().expect("a model").midpoint().plant().rows.clone();
+        let (one, other) = (rows([1.0; 4]), rows([0.5, 1.5, 0.7, 0.05]));
+        let middle = one.iter().zip(&other).map(|(one, other)| 0.5 * (one + other)).collect();
+        let [one, other, middle] = [closed(one), closed(other), closed(middle)];
+        for ((one, other), middle) in one.data().iter().zip(other.data()).zip(middle.data()) {
+            assert!((0.5 * (one + other) - middle).abs() < 1e-13, "{pitch:?} {rate:?}");
+        }
     }
+}
+
+#[test]
+fn a_family_of_loops_whose_sensor_resolves_in_steps_is_refused_by_name() {
+    let mut loop_ = member(NOMINAL, GAINS);
+    loop_.pitch = Sensing { resolution: 1e-4, ..Sensing::DIRECT };
+    let found = prove_family(&loop_, &parameters(BOX), &Effort::default(), &plant);
+    let FamilyVerdict::Open { because, .. } = found.expect("provable") else { panic!("an answer") };
+    assert!(because.to_string().contains("resolves in steps"), "{because}");
+    // Nor is a certificate believed that says it all the same.
+    let outcome = certify(&loop_, &Asked::rest(), &Effort::default()).expect("provable");
+    let Verdict::Proved(certificate, _) = outcome.verdict else { panic!("{outcome:?}") };
+    let whole = Certificate { family: Some(proved(BOX)), ..certificate };
+    let refused = whole.check().expect_err("refused").to_string();
+    assert!(refused.contains("resolves in steps"), "{refused}");
 }

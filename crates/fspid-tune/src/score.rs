@@ -220,19 +220,21 @@ pub(crate) fn brought_together(values: &[f64], weights: &[f64], over: Over) -> f
         Over::Worst => return values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
         Over::Tail { share } => share,
     };
+    let taken = greatest(values, weights, share * whole);
+    taken.fold(0.0, |sum, (index, taken)| sum + taken * values[index]) / (share * whole)
+}
+
+/// The greatest values until so much weight is counted: which, and the weight of each. The last may count in part.
+fn greatest(values: &[f64], weights: &[f64], weight: f64) -> impl Iterator<Item = (usize, f64)> {
     let mut order: Vec<usize> = (0..values.len()).collect();
     order.sort_by(|&a, &b| values[b].total_cmp(&values[a]));
-    let (mut left, mut sum) = (share * whole, 0.0);
-    for index in order {
-        // The last flight that counts counts in part.
+    let mut left = weight;
+    order.into_iter().map_while(move |index| {
         let taken = weights[index].min(left);
-        sum += taken * values[index];
+        let counts = left > 0.0;
         left -= taken;
-        if !(left > 0.0) {
-            break;
-        }
-    }
-    sum / (share * whole)
+        counts.then_some((index, taken))
+    })
 }
 
 /// What a unit of each value adds to what they are together.
@@ -248,13 +250,8 @@ pub(crate) fn shares(values: &[f64], weights: &[f64], over: Over) -> Vec<f64> {
         }
         Over::Tail { share } => share,
     };
-    let mut order: Vec<usize> = (0..values.len()).collect();
-    order.sort_by(|&a, &b| values[b].total_cmp(&values[a]));
-    let mut left = share * whole;
-    for index in order {
-        let taken = weights[index].min(left).max(0.0);
+    for (index, taken) in greatest(values, weights, share * whole) {
         shares[index] = taken / (share * whole);
-        left -= taken;
     }
     shares
 }

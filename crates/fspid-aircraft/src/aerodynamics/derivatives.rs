@@ -15,19 +15,19 @@ use crate::vector::Vector3;
 /// $$ C = C_1 + C_\alpha \alpha + \frac{\bar c}{2V} \left( C_{\dot\alpha} \dot\alpha + C_q q \right) +
 ///      C_u \frac{V - u_0}{u_0} + C_{\delta_e} \delta_e $$
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct LongitudinalCoefficient {
+pub struct LongitudinalCoefficient<T = f64> {
     /// At the reference.
-    pub reference: f64,
+    pub reference: T,
     /// By angle of attack.
-    pub alpha: f64,
+    pub alpha: T,
     /// By its rate, made dimensionless with half a chord.
-    pub alpha_rate: f64,
+    pub alpha_rate: T,
     /// By pitch rate, made dimensionless with half a chord.
-    pub pitch_rate: f64,
+    pub pitch_rate: T,
     /// By relative change of speed.
-    pub speed: f64,
+    pub speed: T,
     /// By elevator.
-    pub elevator: f64,
+    pub elevator: T,
 }
 
 /// Derivatives of one lateral coefficient, all without unit, angles in rad.
@@ -50,15 +50,15 @@ pub struct LateralCoefficient {
 
 /// Lift, drag and pitching moment.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Longitudinal {
+pub struct Longitudinal<T = f64> {
     /// $C_L$, up across the flow.
-    pub lift: LongitudinalCoefficient,
+    pub lift: LongitudinalCoefficient<T>,
     /// $C_D$, back along the flow.
-    pub drag: LongitudinalCoefficient,
+    pub drag: LongitudinalCoefficient<T>,
     /// $C_m$, nose up.
-    pub pitch: LongitudinalCoefficient,
+    pub pitch: LongitudinalCoefficient<T>,
     /// $C_{T_{xu}}$: thrust by relative change of speed, made dimensionless with the dynamic pressure.
-    pub thrust_speed: f64,
+    pub thrust_speed: T,
 }
 
 /// Side force, rolling moment and yawing moment.

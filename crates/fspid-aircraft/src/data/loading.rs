@@ -1,5 +1,7 @@
 //! How an aircraft is loaded: mass, centre of gravity and inertia of a flight, apart from those of its source.
 
+use fspid_numeric::Scalar;
+
 use super::{DerivativeData, Inertia};
 use crate::aerodynamics::derivatives::{
     Geometry, Lateral, LateralCoefficient, Longitudinal, LongitudinalCoefficient,
@@ -26,16 +28,16 @@ pub struct Loading {
 
 /// A moment of inertia, in one of two ways.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Moment {
+pub enum Moment<T = f64> {
     /// Itself, kg m².
-    Inertia(f64),
+    Inertia(T),
     /// By the radius of gyration k, m: $I = m k^2$ with the mass that flies.
-    Gyration(f64),
+    Gyration(T),
 }
 
-impl Moment {
+impl<T: Scalar> Moment<T> {
     /// The moment of inertia of a mass, kg m².
-    fn of(self, mass_kg: f64) -> f64 {
+    pub(crate) fn of(self, mass_kg: T) -> T {
         match self {
             Self::Inertia(value_kg_m2) => value_kg_m2,
             Self::Gyration(radius_m) => mass_kg * radius_m * radius_m,
@@ -95,7 +97,7 @@ impl DerivativeData {
     }
 }
 
-impl Longitudinal {
+impl<T: Scalar> Longitudinal<T> {
     /// The derivatives about a centre of gravity that many chords further aft.
     ///
     /// With the centre of gravity $\Delta$ chords aft, the old place is that far ahead of it: lift there turns the nose
@@ -116,10 +118,10 @@ impl Longitudinal {
     /// J. Roskam, Airplane Flight Dynamics and Automatic Flight Controls, Part I, chapter 3. Derived anew from the
     /// geometry, and checked against it in the tests.
     #[must_use]
-    pub fn moved(&self, aft_chords: f64) -> Self {
+    pub fn moved(&self, aft_chords: T) -> Self {
         let Self { lift, drag, pitch, thrust_speed } = *self;
         // α where the derivatives belong is α less this much times q̂.
-        let lag = 2.0 * aft_chords;
+        let lag = T::constant(2.0) * aft_chords;
         let turned = LongitudinalCoefficient {
             reference: pitch.reference + aft_chords * lift.reference,
             alpha: pitch.alpha + aft_chords * lift.alpha,
@@ -128,7 +130,7 @@ impl Longitudinal {
             speed: pitch.speed + aft_chords * lift.speed,
             elevator: pitch.elevator + aft_chords * lift.elevator,
         };
-        let lagging = |row: LongitudinalCoefficient| LongitudinalCoefficient {
+        let lagging = |row: LongitudinalCoefficient<T>| LongitudinalCoefficient {
             pitch_rate: row.pitch_rate - lag * row.alpha,
             ..row
         };

@@ -71,7 +71,7 @@ impl PlantSet {
             let by = |row: &Vec<Sloped>| row.iter().map(|it| it.derivative[index]).collect();
             rows.iter().map(by).collect()
         };
-        let reach = numbers.iter().zip(&middles).map(|(&it, &middle)| (it - middle).magnitude());
+        let reach = numbers.iter().map(|&it| from_middle(it));
         let mut pitch_rate: Vec<Interval> = all.pitch_rate.iter().map(|it| it.value).collect();
         pitch_rate.resize(rows.len(), Interval::ZERO);
         Ok(Self {
@@ -175,6 +175,11 @@ impl PlantSet {
         let places = (0..states).flat_map(|row| (0..size).map(move |column| (row, size + column)));
         Ok(places.map(|(row, column)| moved.get(row, column).unwrap_or(Interval::ENTIRE)).collect())
     }
+}
+
+/// How far a number may be from its middle.
+pub(crate) fn from_middle(number: Interval) -> f64 {
+    (number - Interval::point(number.midpoint())).magnitude()
 }
 
 /// Rows over states and command.

@@ -5,8 +5,9 @@
 //! of its own decreases for every matrix inside and every gain of the controller. A member lies in one part, and that
 //! part's form is its proof.
 //!
-//! Claimed is the return to rest around the trim of each member, without limits; the claim for the loop as it is may say
-//! more. That the enclosures are those of what a user calls a mass is no part of a certificate: who has the scenario
+//! Claimed is the return to rest around the trim of each member, with the set-point there, without a load and without
+//! limits; the claim for the loop as it is may say more. What sensors that resolve in steps leave is bounded sample by
+//! sample for one loop alone, so that a family of such loops is refused. That the enclosures are those of what a user calls a mass is no part of a certificate: who has the scenario
 //! encloses them anew and compares.
 
 mod cover;
@@ -17,10 +18,10 @@ use fspid_sim::loop_model::LoopModel;
 
 use crate::certificate::{Certificate, Claim};
 pub use crate::check::MOST_PARAMETERS;
-use crate::check::{NotProved, PlantSet};
+use crate::check::{NotProved, PlantSet, from_middle};
 use crate::description::LoopDescription;
 use crate::gain_set::{GainSet, KnownSlopes};
-use crate::recheck::{Recheck, RecheckError};
+use crate::recheck::{Kept, Recheck, RecheckError, Rechecked};
 use crate::scope::Range;
 
 pub use search::{FamilyVerdict, Uncertain, prove_family};
@@ -105,6 +106,12 @@ pub enum FamilyError {
 }
 
 impl Part {
+    /// True if its plants are told for parameters as far from their middle as its ends are.
+    fn reaches(&self, parameters: &[Parameter]) -> bool {
+        let numbers = numbers(parameters, &self.ends);
+        numbers.iter().zip(&self.plants.reach).all(|(it, reach)| from_middle(*it) <= *reach)
+    }
+
     /// The claim as a certificate of its own, about the return to rest.
     fn alone(&self, certificate: &Certificate) -> Certificate {
         Certificate {
@@ -132,13 +139,21 @@ impl Family {
         set: &GainSet,
         stops: fn() -> bool,
     ) -> Result<CheckedFamily, FamilyError> {
-        self.is_whole().map_err(|what| FamilyError::Malformed { what })?;
+        let malformed = |what| FamilyError::Malformed { what };
+        self.is_whole().map_err(malformed)?;
+        if certificate.description.resolves_in_steps() {
+            return Err(malformed("its loops have a sensor that resolves in steps"));
+        }
         let known = KnownSlopes::default();
         for (place, part) in self.parts.iter().enumerate() {
             let alone = part.alone(certificate);
             let proved = || -> Result<(), RecheckError> {
                 for model in models(&part.plants, &certificate.description)? {
-                    Recheck::with(&alone, model, set.clone(), &known)?.until(stops).run()?;
+                    let recheck = Recheck::with(&alone, model, set.clone(), &known)?;
+                    if !bears(&alone.claim, &recheck.until(stops).run()?) {
+                        let what = "the law is not shown to keep to the rate that is claimed";
+                        return Err(RecheckError::Malformed { what });
+                    }
                 }
                 Ok(())
             };
@@ -168,6 +183,9 @@ impl Family {
                 return Err("the plants of its parts have different states");
             }
         }
+        if !self.parts.iter().all(|part| part.reaches(&self.parameters)) {
+            return Err("a part's plants do not reach its ends");
+        }
         let whole: Vec<[f64; 2]> = self.parameters.iter().map(|one| one.ends).collect();
         let all = self.parts.iter().map(|part| &part.ends).chain([&whole]).flatten();
         // Written so that NaN is not in order.
@@ -177,6 +195,12 @@ impl Family {
         let parts: Vec<&[[f64; 2]]> = self.parts.iter().map(|part| part.ends.as_slice()).collect();
         cover::covers(&whole, &parts).then_some(()).ok_or("its parts leave a part of it out")
     }
+}
+
+/// True if a proved claim bears on the flights of a loop: one about gains of bounded rate says something only of laws that
+/// keep to it everywhere.
+fn bears(claim: &Claim, rechecked: &Rechecked) -> bool {
+    !matches!(claim, Claim::BoundedRate(_)) || rechecked.kept == Some(Kept::Everywhere)
 }
 
 /// Loops between which those of plants lie. A loop's matrix is affine in what its plant makes of a sample, and

@@ -3,7 +3,7 @@
 use fspid_numeric::scalar::Interval;
 use fspid_sim::loop_model::LoopModel;
 
-use super::{Family, MOST_PARTS, Parameter, Part, models, numbers};
+use super::{Family, MOST_PARTS, Parameter, Part, bears, models, numbers};
 use crate::certificate::Claim;
 use crate::check::{MakesPlant, NotProved, PlantSet};
 use crate::description::{LoopDescription, NotProvable};
@@ -51,6 +51,11 @@ pub enum Uncertain {
     /// The work that is allowed is done.
     #[error("as many parts were tried as are allowed; narrower limits ask for fewer")]
     Work,
+    /// What steps of a sensor leave is bounded for one loop, not for those between.
+    #[error(
+        "a sensor resolves in steps, and what they leave of a motion is bounded for the loop as it is alone; families need resolution_deg and resolution_deg_s of 0"
+    )]
+    Resolution,
     /// No plant can be enclosed there.
     #[error("{0}")]
     Plant(NotProved),
@@ -68,10 +73,13 @@ pub fn prove_family(
     effort: &Effort,
     plant: &MakesPlant<'_>,
 ) -> Result<FamilyVerdict, NotProvable> {
+    let whole: Vec<[f64; 2]> = parameters.iter().map(|one| one.ends).collect();
+    if description.resolves_in_steps() {
+        return Ok(FamilyVerdict::Open { ends: whole, because: Uncertain::Resolution });
+    }
     let asked = Asked::rest();
     let prover = Prover::new(description, &asked, effort)?;
     let set = prover.set(1.0);
-    let whole: Vec<[f64; 2]> = parameters.iter().map(|one| one.ends).collect();
     let stops = effort.stops;
     let mut search = Search { prover, set, parameters, plant, whole, searches: 0, stops };
     search.run()
@@ -218,7 +226,8 @@ impl Search<'_> {
     /// True if a claim is proved of each of some loops.
     fn holds(&self, claim: &Claim, loops: &[LoopModel<Interval>]) -> bool {
         loops.iter().all(|model| {
-            self.prover.of(model.clone()).rechecked(claim.clone(), 1.0, None).is_some()
+            let found = self.prover.of(model.clone()).rechecked(claim.clone(), 1.0, None);
+            found.is_some_and(|(_, rechecked)| bears(claim, &rechecked))
         })
     }
 

@@ -54,7 +54,7 @@ impl Prover<'_> {
 
     /// True where something of bounded size may never cease.
     fn needs_a_rate(&self) -> bool {
-        let blurred = self.description.blurs().iter().any(|blur| *blur > 0.0);
+        let blurred = self.description.resolves_in_steps();
         blurred || self.rest(&self.set(1.0)).is_ok_and(|rest| !rest.held.is_none())
     }
 
@@ -77,7 +77,7 @@ impl Prover<'_> {
         let fspid = self.tuned().filter(tied).filter(|_| self.effort.cones > 0)?;
         let rest = self.rest(set).ok()?;
         // With a steady error, or one that is seen in steps, gains are tied to something else.
-        if rest.error_rad > 0.0 || self.description.blurs().iter().any(|blur| *blur > 0.0) {
+        if rest.error_rad > 0.0 || self.description.resolves_in_steps() {
             return None;
         }
         let held = self.held(set, factor, &rest).ok()?;

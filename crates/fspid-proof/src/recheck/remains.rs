@@ -63,7 +63,7 @@ impl fmt::Display for Remains {
 impl Recheck<'_> {
     /// True with a sensor that resolves in steps.
     pub(super) fn is_blurred(&self) -> bool {
-        self.certificate.description.blurs().iter().any(|blur| *blur > 0.0)
+        self.certificate.description.resolves_in_steps()
     }
 
     /// Whether so little remains that the claim says where flights end.

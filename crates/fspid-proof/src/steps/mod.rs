@@ -92,7 +92,7 @@ pub(crate) fn not_covered(description: &LoopDescription) -> Option<&'static str>
     if let Some(what) = limits::not_covered(description) {
         return Some(what);
     }
-    if description.blurs().iter().any(|blur| *blur > 0.0) {
+    if description.resolves_in_steps() {
         return Some("a sensor that resolves in steps is not flown in sets");
     }
     if description.controller.config().integral == IntegralForm::Literal {

@@ -40,7 +40,7 @@ mod seeing;
 pub use flight::{Kind, differentiate_prices};
 pub use numbers::{NUMBERS, names, numbers};
 pub use price::{
-    Differentiated, Flown, Slopes, Weights, add_variation, differentiate, differentiate_by, sign,
+    Differentiated, Flown, Slopes, Weights, add_variation, differentiate, differentiate_by,
 };
 
 /// Samples between two that are kept.

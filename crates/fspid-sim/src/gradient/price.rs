@@ -1,6 +1,6 @@
 //! What flights cost, and what a little more of each of their samples costs.
 
-use fspid_numeric::InstructionSet;
+use fspid_numeric::{InstructionSet, Scalar};
 
 use super::flight::differentiate_prices;
 use crate::batch::{Entrant, Refusal};
@@ -105,7 +105,7 @@ impl Weights {
         for (slope, error_rad) in slopes.theta_rad.iter_mut().zip(errors) {
             iae += error_rad.abs();
             ise += error_rad * error_rad;
-            let by_error = self.iae_rad_s * sign(error_rad) + 2.0 * self.ise_rad2_s * error_rad;
+            let by_error = self.iae_rad_s * error_rad.sign() + 2.0 * self.ise_rad2_s * error_rad;
             *slope = -dt_s * by_error;
         }
         let travel_rad =
@@ -120,21 +120,9 @@ pub fn add_variation(values: &[f64], weight: f64, slopes: &mut [f64]) -> f64 {
     for (k, pair) in values.windows(2).enumerate() {
         let moved = pair[1] - pair[0];
         sum += moved.abs();
-        let by = weight * sign(moved);
+        let by = weight * moved.sign();
         slopes[k + 1] += by;
         slopes[k] -= by;
     }
     sum
-}
-
-/// The slope of a magnitude: 1, -1, or 0 at its corner.
-#[must_use]
-pub fn sign(value: f64) -> f64 {
-    if value > 0.0 {
-        1.0
-    } else if value < 0.0 {
-        -1.0
-    } else {
-        0.0
-    }
 }

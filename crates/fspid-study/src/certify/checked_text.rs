@@ -26,7 +26,7 @@ impl CheckedFile {
             push_kept(&mut out, certificate, rechecked);
             let [kp, ki, kd] = rechecked.bounds.map(range);
             out.push_str(&format!("  gains              kp {kp}, ki {ki}, kd {kd}\n"));
-            Told::of(certificate, rechecked).push(&mut out);
+            self.told(rechecked).push(&mut out);
         }
         push_seal(&mut out, &self.seal);
         if let Some(against) = &self.against {
@@ -34,6 +34,14 @@ impl CheckedFile {
         }
         self.push_answer(&mut out);
         out
+    }
+
+    /// What is said beside the verdict.
+    pub(super) fn told(&self, rechecked: &Rechecked) -> Told {
+        match self.against {
+            None => Told::read(&self.certificate, rechecked),
+            Some(_) => Told::of(&self.certificate, rechecked),
+        }
     }
 
     fn push_answer(&self, out: &mut String) {

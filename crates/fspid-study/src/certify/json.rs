@@ -13,7 +13,7 @@ use crate::json::{merged, present, with_null_reasons};
 const SCHEMA: u32 = 2;
 
 /// Why keys of these answers are null.
-const NULLS: [(&str, &str); 10] = [
+const NULLS: [(&str, &str); 12] = [
     (
         "law_keeps_to_the_rate",
         "the claim is about no rate, or it is not shown that the law keeps to it",
@@ -24,6 +24,8 @@ const NULLS: [(&str, &str); 10] = [
     ("steps_load_within_deg", "no step from rest is proved with limits acting"),
     ("steps_limited_until_s", "no step from rest is proved with limits acting"),
     ("open_because", "there is an answer, or nothing more is known of why there is none"),
+    ("at", "no question can be asked of the family, or the loop as it is is not proved"),
+    ("parts", "the family is not proved"),
     ("not_proved", "no factor was tried and not proved"),
     ("bearing", "the certificate does not hold"),
     ("bearing_in_words", "the certificate does not hold"),
@@ -121,7 +123,7 @@ impl CheckedFile {
                     "inequalities": rechecked.inequalities,
                     "boxes_of_gains": rechecked.cells,
                     "law_keeps_to_the_rate": kept(rechecked),
-                    "scope": Told::of(&self.certificate, rechecked).json(),
+                    "scope": self.told(rechecked).json(),
                     "gains": gains(rechecked.bounds),
                 }),
                 Err(doubt) => json!({ "reason": doubt.to_string() }),

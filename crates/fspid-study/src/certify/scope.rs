@@ -27,6 +27,17 @@ impl Told {
         Self { stable, left_out, family }
     }
 
+    /// As [`of`](Self::of) of a certificate that was read and held against no scenario: what its words make of its plants
+    /// nobody has computed.
+    pub(super) fn read(certificate: &Certificate, rechecked: &Rechecked) -> Self {
+        let mut told = Self::of(certificate, rechecked);
+        if !told.family.is_empty() {
+            let words = "proved are the plants in the file; that they are those of the numbers named is computed by --against SCENARIO";
+            told.family.push(words.to_owned());
+        }
+        told
+    }
+
     /// Sentences, each with what it is about.
     pub(super) fn sentences(&self) -> Vec<(&'static str, String)> {
         let mut sentences = Vec::new();

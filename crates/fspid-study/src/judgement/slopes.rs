@@ -5,12 +5,13 @@
 
 use std::ops::RangeInclusive;
 
+use fspid_numeric::Scalar;
 use fspid_scenario::file::Study;
 use fspid_scenario::measure::{Family, Measure};
 use fspid_scenario::requirement::Requirement;
 use fspid_scenario::units::degrees;
 use fspid_sim::Timing;
-use fspid_sim::gradient::{Flown, Slopes, add_variation, sign};
+use fspid_sim::gradient::{Flown, Slopes, add_variation};
 use fspid_sim::signal::Edge;
 
 use super::NotEvaluated;
@@ -100,7 +101,7 @@ pub fn add_slopes(
         }
         Measure::LargestCommand => {
             let (place, largest) = largest(flown.command_rad.iter().map(|it| it.abs()))?;
-            slopes.command_rad[place] += per_deg * sign(flown.command_rad[place]);
+            slopes.command_rad[place] += per_deg * flown.command_rad[place].sign();
             largest
         }
         Measure::CommandVariation => {
@@ -143,7 +144,7 @@ impl Sloped<'_> {
             let weight = if measure == Measure::ErrorIntegral { dt_s } else { dt_s * time };
             let error_rad = self.error_rad(sample);
             sum += weight * error_rad.abs();
-            slopes.theta_rad[sample] -= per_deg * weight * sign(error_rad);
+            slopes.theta_rad[sample] -= per_deg * weight * error_rad.sign();
         }
         degrees(sum)
     }
@@ -160,7 +161,7 @@ impl Sloped<'_> {
         let first = *time.start();
         if requirement.measure == Measure::LargestError {
             let (place, value) = largest(time.map(|sample| self.error_rad(sample).abs()))?;
-            slopes.theta_rad[first + place] -= per_deg * sign(self.error_rad(first + place));
+            slopes.theta_rad[first + place] -= per_deg * self.error_rad(first + place).sign();
             return Some(degrees(value));
         }
         let count = time.clone().count() as f64;
@@ -207,11 +208,11 @@ impl Sloped<'_> {
             }
             Measure::FinalError => {
                 let per_rad = 100.0 / step_rad.abs();
-                let by_theta = -per_rad * sign(left_rad);
+                let by_theta = -per_rad * left_rad.sign();
                 Step { value: per_rad * left_rad, sample: last, by_theta }
             }
             _ => {
-                let by_theta = -degrees(sign(left_rad));
+                let by_theta = -degrees(left_rad.sign());
                 Step { value: degrees(left_rad.abs()), sample: last, by_theta }
             }
         }
@@ -233,7 +234,7 @@ fn largest(values: impl Iterator<Item = f64>) -> Option<(usize, f64)> {
 /// Adds the slope of the largest change from sample to sample, and answers it without the weight.
 fn fastest(values: &[f64], weight: f64, slopes: &mut [f64]) -> Option<f64> {
     let (place, most) = largest(values.windows(2).map(|pair| (pair[1] - pair[0]).abs()))?;
-    let by = weight * sign(values[place + 1] - values[place]);
+    let by = weight * (values[place + 1] - values[place]).sign();
     slopes[place + 1] += by;
     slopes[place] -= by;
     Some(most)

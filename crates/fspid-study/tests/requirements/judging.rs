@@ -1,8 +1,11 @@
 //! How requirements are judged: the worst case, the limit itself, and what cannot be evaluated.
 
+use fspid_scenario::file;
 use fspid_scenario::measure::{Family, Measure};
+use fspid_sim::Trace;
+use fspid_sim::gradient::{Flown, Slopes};
 use fspid_study::analysis::{Analysis, Question};
-use fspid_study::judgement::{Judgement, NotEvaluated};
+use fspid_study::judgement::{Judgement, NotEvaluated, SlopeOf, Sloped, add_slopes};
 use fspid_study::metrics::Absent;
 use fspid_study::simulation::Simulation;
 
@@ -591,4 +594,44 @@ fn the_answer_says_that_the_cells_of_numbers_are_among_the_frozen_gains() {
     let cells = "the 49 cells where rules conclude numbers";
     assert!(told(&with_cells(JUMBO, &[])).contains(cells));
     assert!(!told(JUMBO).contains("49 cells"));
+}
+
+#[test]
+fn a_measure_that_is_differentiated_has_the_value_that_is_judged() {
+    let square =
+        JUMBO.replace("kind = \"step\"", "kind = \"square\"\nhalf_period_s = 5.0\nbipolar = true");
+    let mut compared = 0;
+    for (text, conditions) in
+        [(JUMBO, ""), (&square, ""), (&square, "step_deg = 10.0"), (&square, "from_s = 3.0")]
+    {
+        for measure in Measure::ALL {
+            if SlopeOf::measure(measure) != Some(SlopeOf::Flight) {
+                continue;
+            }
+            let asked = format!(
+                "{text}\n[[requirement]]\nmeasure = \"{}\"\nmost = 1.0\n{conditions}\n",
+                measure.name()
+            );
+            // A condition that the measure does not know.
+            let Ok(study) = file::parse(&asked, "test.toml", None, &[]) else { continue };
+            let prepared = study.scenario.prepare().expect("a loop");
+            let simulation = Simulation::of(&study).expect("it flies");
+            for (result, judgement) in simulation.results.iter().zip(&simulation.judgements) {
+                let Trace { setpoint_rad, theta_rad, elevator_rad, command_rad, .. } =
+                    result.trace.clone();
+                let flown = Flown { setpoint_rad, theta_rad, elevator_rad, command_rad };
+                let (edges, timing) = (prepared.edges(), prepared.timing());
+                let mut slopes = Slopes::zero(flown.theta_rad.len());
+                let flight = Sloped { flown: &flown, edges, timing };
+                let found =
+                    add_slopes(flight, &study.requirements[0], 1.0, &mut slopes).expect("a value");
+                let judged = judgement.found.as_ref().expect("evaluated").value;
+                let judged = measure.compared(judged);
+                let off = (found - judged).abs();
+                assert!(off <= 1e-12 * judged.abs(), "{measure:?} {conditions}: {found} {judged}");
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared >= 50, "{compared} values compared");
 }

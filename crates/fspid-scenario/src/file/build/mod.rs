@@ -80,9 +80,7 @@ pub(crate) fn scenario(
     files: &mut Files<'_>,
     section: &Section,
 ) -> Option<Built> {
-    if let Some(item) = section.get(keys::SET) {
-        overrides::check_listed(report, item);
-    }
+    section.get(keys::SET).into_iter().for_each(|item| overrides::check_listed(report, item));
     let timing = sound(section.get(keys::LOOP)).and_then(|part| timing::timing(report, part));
     let flown = flown(report, files, section);
     let actuator = actuator(report, section);

@@ -1,8 +1,8 @@
 //! The numbers of a loop's plant and actuator, with slopes, and the plant that they make.
 
-use fspid_aircraft::enclosure::{
-    EnclosedCoefficient, EnclosedFlight, EnclosedModel, EnclosedMoment,
-};
+use fspid_aircraft::aerodynamics::derivatives::LongitudinalCoefficient;
+use fspid_aircraft::data::Moment;
+use fspid_aircraft::enclosure::{EnclosedFlight, EnclosedModel};
 use fspid_lti::{Matrix, StateSpace};
 use fspid_numeric::scalar::Interval;
 use fspid_proof::LoopDescription;
@@ -209,8 +209,8 @@ fn put_in_flight(
 ) {
     match number {
         AircraftNumber::Mass => flight.mass_kg = value,
-        AircraftNumber::Inertia => flight.inertia = EnclosedMoment::Inertia(value),
-        AircraftNumber::Gyration => flight.inertia = EnclosedMoment::Gyration(value),
+        AircraftNumber::Inertia => flight.inertia = Moment::Inertia(value),
+        AircraftNumber::Gyration => flight.inertia = Moment::Gyration(value),
         AircraftNumber::CentreOfGravity => {
             flight.aft_chords = value - Sloped::fixed(printed(cg_mac));
         }
@@ -218,11 +218,12 @@ fn put_in_flight(
         AircraftNumber::Altitude => flight.altitude_m = value,
         AircraftNumber::Derivative(row, name) => {
             let row = match row {
-                Coefficient::Lift => &mut flight.lift,
-                Coefficient::Drag => &mut flight.drag,
-                Coefficient::Pitch => &mut flight.pitch,
+                Coefficient::Lift => &mut flight.longitudinal.lift,
+                Coefficient::Drag => &mut flight.longitudinal.drag,
+                Coefficient::Pitch => &mut flight.longitudinal.pitch,
             };
-            let EnclosedCoefficient { alpha, alpha_rate, pitch_rate, speed, elevator, .. } = row;
+            let LongitudinalCoefficient { alpha, alpha_rate, pitch_rate, speed, elevator, .. } =
+                row;
             *match name {
                 Derivative::Alpha => alpha,
                 Derivative::AlphaRate => alpha_rate,
