@@ -136,6 +136,35 @@ fn simulate_tells_the_shares_on_request() {
     assert!(text(&output.stdout).contains("of what is possible"), "{}", text(&output.stderr));
     let output = fspid(&["simulate", "pitch.toml", "--limit", "--format", "json"], folder.path());
     assert!(json(&output)["limit"]["controllers"][0]["of_possible_pct"].is_f64());
+    let words = ["simulate", "pitch.toml", "--limit", "--report", "page.html"];
+    fspid(&words, folder.path());
+    let page = std::fs::read_to_string(folder.path().join("page.html")).expect("a report");
+    assert!(page.contains("What is possible") && page.contains("of what is possible"), "{page}");
+}
+
+#[test]
+fn a_tuning_tells_how_near_each_design_comes_to_the_limit_in_the_flights_it_is_tuned_on() {
+    let folder = folder();
+    assert_eq!(code(&fspid(&["init", "--template", "contest", "c.toml"], folder.path())), 0);
+    let tune = |beside: &[&str]| {
+        let mut words = vec!["tune", "c.toml", "--budget", "12", "--quiet", "--limit"];
+        words.extend(["--set", "loop.sample_period_s=0.05"]);
+        words.extend(beside);
+        let output = fspid(&words, folder.path());
+        assert_ne!(code(&output), 2, "{}", text(&output.stderr));
+        output
+    };
+    let told = text(&tune(&["--all"]).stdout);
+    assert!(told.contains("of what is possible [%]"), "{told}");
+    let one = json(&tune(&["--controller", "PID", "--format", "json"]));
+    let limit = &one["limit"]["controllers"][0];
+    assert_eq!(limit["name"], "PID");
+    let each = limit["by_case_pct"].as_array().expect("one for each flight");
+    assert!(!each.is_empty());
+    for share in each {
+        let share = share.as_f64().expect("a share");
+        assert!((1.0..=100.0).contains(&share), "{one}");
+    }
 }
 
 /// A small contest of the template, with these words beside.

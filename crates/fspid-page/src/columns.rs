@@ -11,6 +11,16 @@ pub enum Align {
     Right,
 }
 
+/// At most so many characters, with an ellipsis where some are left out.
+#[must_use]
+pub fn cut(text: &str, most: usize) -> String {
+    if text.chars().count() <= most {
+        return text.to_owned();
+    }
+    let kept: String = text.chars().take(most.saturating_sub(1)).collect();
+    format!("{}\u{2026}", kept.trim_end())
+}
+
 /// Rows of texts below their headings, indented; every column is as wide as its widest cell.
 #[derive(Clone, Debug)]
 pub struct Columns {

@@ -26,6 +26,7 @@ pub mod front;
 pub mod history;
 mod kept;
 pub mod limit;
+mod near_limit;
 mod problem;
 pub mod rule;
 mod score;

@@ -2,6 +2,8 @@
 
 use fspid_diagnostics::digits::to_digits;
 use fspid_optimise::Stop;
+use fspid_page::columns::cut;
+use fspid_page::number::fixed;
 use fspid_scenario::requirement::Requirement;
 use fspid_scenario::tuning::{Free, Over};
 use serde::{Deserialize, Serialize};
@@ -197,12 +199,14 @@ impl Tuned {
         }
     }
 
-    /// Several controllers that were tuned alike, side by side.
+    /// Several controllers that were tuned alike, side by side, each with how much of what is possible it reaches, %, where
+    /// that is known.
     #[must_use]
-    pub fn side_by_side(all: &[Self]) -> String {
-        let Some(first) = all.first() else {
+    pub fn side_by_side(all: &[(&Self, Option<f64>)]) -> String {
+        let Some((first, _)) = all.first() else {
             return String::new();
         };
+        let (all, possible): (Vec<&Self>, Vec<Option<f64>>) = all.iter().copied().unzip();
         let names: Vec<String> = all.iter().map(|it| cut(&it.controller, MOST_OF_NAME)).collect();
         let width = names.iter().map(|name| name.chars().count()).max().unwrap_or(0).max(12) + 2;
         let row = |name: &str, cells: Vec<String>| {
@@ -213,20 +217,25 @@ impl Tuned {
         out.push_str(&row(&first.over_in_words(), names));
         for (index, (name, unit)) in first.objectives.iter().enumerate() {
             let name = if unit.is_empty() { name.clone() } else { format!("{name} [{unit}]") };
-            let value = |it: &Self| shown(it.best.score.values.get(index).copied());
+            let value = |it: &&Self| shown(it.best.score.values.get(index).copied());
             out.push_str(&row(&name, all.iter().map(value).collect()));
         }
         for (index, limit) in first.limits.iter().enumerate() {
             let name = format!("mean {}, {}", limit.measure.name(), limit.limits_in_words());
-            let value = |it: &Self| shown(it.best.score.limited.get(index).copied());
+            let value = |it: &&Self| shown(it.best.score.limited.get(index).copied());
             out.push_str(&row(&name, all.iter().map(value).collect()));
         }
-        let cost = |it: &Self| match it.is_allowed() {
+        let cost = |it: &&Self| match it.is_allowed() {
             true => shown(Some(it.best.score.cost)),
             false => "not allowed".to_owned(),
         };
         out.push_str(&row("cost", all.iter().map(cost).collect()));
-        let numbers = |it: &Self| it.numbers.len().to_string();
+        if possible.iter().any(Option::is_some) {
+            let share = |it: Option<f64>| it.map_or("\u{2013}".to_owned(), |it| fixed(it, 0));
+            let cells = possible.into_iter().map(share).collect();
+            out.push_str(&row("of what is possible [%]", cells));
+        }
+        let numbers = |it: &&Self| it.numbers.len().to_string();
         out.push_str(&row("free numbers", all.iter().map(numbers).collect()));
         out.push_str(&row("candidates", all.iter().map(|it| it.spent.to_string()).collect()));
         out.push_str(
@@ -364,13 +373,6 @@ fn numbers(problem: &TuningProblem, start: &Trial, best: &Trial) -> Vec<Number> 
         Number { path, start, value, bounds, at_bound: bounds.is_some() && is_at_end }
     })
     .collect()
-}
-
-fn cut(text: &str, most: usize) -> String {
-    match text.chars().count() > most {
-        true => text.chars().take(most - 1).chain(['\u{2026}']).collect(),
-        false => text.to_owned(),
-    }
 }
 
 /// A path without the step to its controller.

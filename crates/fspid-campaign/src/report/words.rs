@@ -1,5 +1,6 @@
 //! Numbers, probabilities and names in words.
 
+pub(super) use fspid_page::columns::cut;
 use fspid_page::number::{short, significant};
 
 use crate::summary::Probability;
@@ -25,15 +26,6 @@ pub(super) fn with_unit(value: f64, unit: &str) -> String {
 pub(super) fn probability(found: &Probability, confidence: f64) -> String {
     let words = found.in_words(confidence);
     words.split_once(": ").map_or("not judged", |(_, sure)| sure).to_owned()
-}
-
-/// At most so many characters, with an ellipsis where some are left out.
-pub(super) fn cut(text: &str, most: usize) -> String {
-    if text.chars().count() <= most {
-        return text.to_owned();
-    }
-    let kept: String = text.chars().take(most.saturating_sub(1)).collect();
-    format!("{}\u{2026}", kept.trim_end())
 }
 
 /// A measure's column in words: `elevator_rate_deg_s` in deg/s is "elevator rate".

@@ -1,6 +1,6 @@
 //! A summary for a terminal.
 
-use fspid_page::columns::{Align, Columns};
+use fspid_page::columns::{self, Align, Columns};
 
 use super::data::{
     Bad, ControllerSummary, Extreme, Head, Influence, MeasureSummary, QuantileSummary,
@@ -261,11 +261,7 @@ fn cut(name: &str) -> String {
 
 /// A text of at most so many characters on one line.
 fn shortened(text: &str, most: usize) -> String {
-    let text = text.replace(['\n', '\r', '\t'], " ");
-    if text.chars().count() <= most {
-        return text;
-    }
-    text.chars().take(most - 1).chain(['\u{2026}']).collect()
+    columns::cut(&text.replace(['\n', '\r', '\t'], " "), most)
 }
 
 /// A text in lines, the first of which begins with `mark`, the others as far right.

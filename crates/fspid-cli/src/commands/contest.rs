@@ -13,8 +13,9 @@ use crate::exit::{Failure, note, print};
 use fspid_diagnostics::digits::{counted, grouped};
 use fspid_scenario::count as counts;
 use fspid_study::output;
-use fspid_tune::contest::{Contest, NearLimit, Options, Progress, Then};
+use fspid_tune::contest::{Contest, Options, Progress, Then};
 use fspid_tune::front::{Asked, Front};
+use fspid_tune::limit::NearLimit;
 use fspid_tune::{Crew, Source, TuneError};
 
 /// How often the state of a search is saved.

@@ -82,10 +82,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         simulation.column_names().changed().for_each(note);
         output::write(path, simulation.csv())?;
     }
-    if let Some(path) = &arguments.report {
-        output::write(path, report::of_simulation(&study, &simulation))?;
-    }
     let limit = arguments.limit.then(|| near_limit(&study)).transpose()?;
+    if let Some(path) = &arguments.report {
+        let possible = limit.as_ref().map(|it| it.chapter().section("possible"));
+        output::write(path, report::of_simulation_with(&study, &simulation, possible))?;
+    }
     match arguments.format {
         Format::Text => {
             let near = limit.as_ref().map_or(String::new(), Answer::controllers_text);

@@ -4,9 +4,10 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use clap::Args;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::cluster::{Carrier, Cluster, with_crew};
+use super::limit::told;
 use super::progress::{Telling, answer_after, duration, tell};
 use super::{Format, interrupt, json_text};
 use crate::argument::{InFile, OutFile, count, is_standard, written};
@@ -16,6 +17,7 @@ use fspid_scenario::count as counts;
 use fspid_scenario::file::known_words;
 use fspid_study::output;
 use fspid_tune::baseline::Baseline;
+use fspid_tune::limit::NearLimit;
 use fspid_tune::rule::{Form, Options, Rule, Verdict};
 use fspid_tune::{
     AskedEffort, Beginning, Crew, Effort, Kept, Search, Source, Then, TuneError, Tuned,
@@ -82,6 +84,10 @@ pub(crate) struct Arguments {
     threads: usize,
     #[command(flatten)]
     cluster: Cluster,
+    /// Tell as well how much of what is possible at its own elevator travel each design reaches in each flight that it is
+    /// tuned on, as `fspid limit` does.
+    #[arg(long, conflicts_with = "rule")]
+    limit: bool,
     /// Say nothing of the progress.
     #[arg(long)]
     quiet: bool,
@@ -105,23 +111,50 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     match arguments.format {
         Format::Text => {
-            let mut answer = tuned.iter().map(Tuned::text).collect::<Vec<_>>().join("\n");
+            let mut answer = tuned.iter().map(Found::text).collect::<Vec<_>>().join("\n");
             if arguments.all {
-                answer.push_str(&Tuned::side_by_side(&tuned));
+                let columns: Vec<_> =
+                    tuned.iter().map(|it| (&it.tuned, it.of_possible_pct())).collect();
+                answer.push_str(&Tuned::side_by_side(&columns));
             }
             print(&answer)?;
         }
         Format::Json if arguments.all => {
-            let each: Vec<_> = tuned.iter().map(Tuned::json).collect();
+            let each: Vec<_> = tuned.iter().map(Found::json).collect();
             print(&json_text(&json!({ "schema": 1, "controllers": each })))?;
         }
         Format::Json => tuned.iter().try_for_each(|it| print(&json_text(&it.json())))?,
     }
-    match tuned.iter().all(Tuned::is_allowed) {
+    match tuned.iter().all(|it| it.tuned.is_allowed()) {
         true => Ok(()),
         false => Err(Failure::not_met(
             "no candidate came back from every flight and met every requirement",
         )),
+    }
+}
+
+/// What was found, and how near it comes to the limit, where that was asked.
+struct Found {
+    tuned: Tuned,
+    near: Option<NearLimit>,
+}
+
+impl Found {
+    fn text(&self) -> String {
+        self.tuned.text() + &self.near.as_ref().map_or(String::new(), NearLimit::text)
+    }
+
+    /// How much of what is possible it reaches in the mean, %.
+    fn of_possible_pct(&self) -> Option<f64> {
+        self.near.as_ref()?.of_possible_pct().first().copied().flatten()
+    }
+
+    fn json(&self) -> Value {
+        let mut answer = self.tuned.json();
+        if let Some(near) = &self.near {
+            answer["limit"] = near.json();
+        }
+        answer
     }
 }
 
@@ -134,7 +167,7 @@ struct Tuning<'a> {
 
 impl Tuning<'_> {
     /// Every controller with free numbers, one after the other, with the same effort.
-    fn all(&self) -> Result<Vec<Tuned>, Failure> {
+    fn all(&self) -> Result<Vec<Found>, Failure> {
         let names = fspid_tune::controllers_with_marks(self.source).map_err(failure)?;
         if names.is_empty() {
             return self.one(None).map(|tuned| vec![tuned]);
@@ -143,7 +176,7 @@ impl Tuning<'_> {
     }
 
     /// Tunes one controller, and writes its design.
-    fn one(&self, name: Option<&str>) -> Result<Tuned, Failure> {
+    fn one(&self, name: Option<&str>) -> Result<Found, Failure> {
         let Self { arguments, source, .. } = self;
         let problem = TuningProblem::new(source, name).map_err(failure)?;
         problem.warnings().iter().for_each(|it| note(format_args!("warning: {it}")));
@@ -164,11 +197,20 @@ impl Tuning<'_> {
             output::write(out, text)?;
             wrote(out);
         }
+        // The state is kept until all is told.
+        let near = arguments.limit.then(|| {
+            told(telling(arguments), |told| problem.near_limit(&best, told, interrupt::asked))
+        });
+        let near = near.transpose().map_err(failure)?;
         if let Err(path) = place.remove() {
             note(format_args!("warning: {} could not be removed", path.display()));
         }
-        Ok(tuned)
+        Ok(Found { tuned, near })
     }
+}
+
+fn telling(arguments: &Arguments) -> Telling {
+    if arguments.quiet { Telling::Nothing } else { Telling::for_standard_error() }
 }
 
 /// Where the design of a controller is written.
@@ -268,7 +310,7 @@ fn search(
             note(format_args!("warning: {why}; it stays as it is, and this search keeps no state"))
         }
     }
-    let telling = if arguments.quiet { Telling::Nothing } else { Telling::for_standard_error() };
+    let telling = telling(arguments);
     let begun = Begun { at: Instant::now(), spent: search.spent() };
     let (mut told, mut saved) = (Instant::now(), None::<Instant>);
     let stop = place.search(&mut search, &mut |search| {

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::context;
 use crate::html::render;
-use crate::page::{Cell, Figure, PageTable};
+use crate::page::{Cell, Figure, PageSection, PageTable};
 use fspid_plot::Svg;
 
 /// A chapter of a page.
@@ -155,6 +155,12 @@ impl ShownSection {
 }
 
 impl Chapter {
+    /// As a section of a report of flights.
+    #[must_use]
+    pub fn section(&self, id: &'static str) -> PageSection {
+        PageSection::of(id, &self.title, markup(&self.items, &mut Ids::default()))
+    }
+
     pub(crate) fn shown(&self, ids: &mut Ids) -> ShownSection {
         // Its own id before those of what is in it.
         let id = ids.take(&self.id);

@@ -19,12 +19,23 @@ mod user;
 use crate::analysis::Analysis;
 use crate::fuzzy_system::Audit;
 use crate::simulation::Simulation;
+use fspid_page::page::PageSection;
 use fspid_scenario::file::Study;
 
 /// The report of a user's scenario.
 #[must_use]
 pub fn of_simulation(study: &Study, simulation: &Simulation) -> String {
-    user::report(study, simulation)
+    of_simulation_with(study, simulation, None)
+}
+
+/// The same with a section of somebody who knows more, behind the measures.
+#[must_use]
+pub fn of_simulation_with(
+    study: &Study,
+    simulation: &Simulation,
+    further: Option<PageSection>,
+) -> String {
+    user::report(study, simulation, further)
 }
 
 /// The figure of the time responses in that report.

@@ -23,9 +23,14 @@ struct User<'a> {
 }
 
 /// The page.
-pub(super) fn report(study: &Study, simulation: &Simulation) -> String {
+pub(super) fn report(
+    study: &Study,
+    simulation: &Simulation,
+    further: Option<PageSection>,
+) -> String {
     let user = User { study, simulation };
     let mut sections = vec![user.verdicts(), user.responses(), user.measures()];
+    sections.extend(further);
     sections.extend(user.tuning());
     sections.extend([user.settings(), user.provenance()]);
     let context = context! {

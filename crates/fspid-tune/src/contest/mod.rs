@@ -50,7 +50,6 @@ pub use crate::kept::Then;
 pub use compare::{Comparison, Lost, Ratio, Standing};
 pub use flight::{Flight, MEASURES};
 pub use judged::{Case, CaseGroup, Contestant, Count, Design, Judged, Quantity};
-pub use near_limit::NearLimit;
 pub use outcome::{First, Outcome, Setting};
 pub use signed_rank::SignedRank;
 pub use summary::{Mirror, Part, Spread, Summary};

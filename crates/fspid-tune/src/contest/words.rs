@@ -1,5 +1,6 @@
 //! Numbers and findings in words.
 
+pub(super) use fspid_page::columns::cut;
 use fspid_page::number::{fixed, short};
 use fspid_scenario::requirement::Requirement;
 use fspid_scenario::tuning::{Over, Tuning};
@@ -511,13 +512,4 @@ fn loads_left(outcome: &Outcome, place: usize) -> Option<String> {
         count.of
     );
     (count.load_left > 0).then_some(words)
-}
-
-/// At most so many characters, with an ellipsis where some are left out.
-pub(super) fn cut(text: &str, most: usize) -> String {
-    if text.chars().count() <= most {
-        return text.to_owned();
-    }
-    let kept: String = text.chars().take(most.saturating_sub(1)).collect();
-    format!("{}\u{2026}", kept.trim_end())
 }

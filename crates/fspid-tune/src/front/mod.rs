@@ -20,9 +20,10 @@ use serde_json::Value;
 
 pub use band::{Band, Dominance};
 
-use crate::contest::{Contest, NearLimit, Options, Outcome, Progress, Then};
+use crate::contest::{Contest, Options, Outcome, Progress, Then};
 use crate::crew::Crew;
 use crate::error::TuneError;
+use crate::limit::NearLimit;
 use crate::source::Source;
 
 /// A ladder that nobody gave: shares of the limit that the scenario has.

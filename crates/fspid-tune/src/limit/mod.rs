@@ -4,6 +4,7 @@
 //! travels and at the travel that each controller took, and told.
 
 mod json;
+mod near;
 mod page;
 mod text;
 mod words;
@@ -15,6 +16,8 @@ use fspid_scenario::file::Study;
 use fspid_scenario::units::{degrees, radians};
 use fspid_sim::Scenario;
 use fspid_study::simulation::{ControllerResult, Simulation};
+pub use near::NearLimit;
+pub(crate) use near::{refusal, shares};
 
 /// Rungs of a ladder that nobody gave.
 const RUNGS: i32 = 7;
@@ -180,6 +183,12 @@ impl Answer {
     #[must_use]
     pub fn json(&self) -> serde_json::Value {
         json::json(self)
+    }
+
+    /// The limit and who flies, as a chapter of another page.
+    #[must_use]
+    pub fn chapter(&self) -> fspid_page::analysis::Chapter {
+        page::beside_flights(self)
     }
 
     /// As one HTML file; `command` is what made it.

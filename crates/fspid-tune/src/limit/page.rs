@@ -34,9 +34,6 @@ pub(super) fn page(answer: &Answer, command: &str) -> String {
             },
         }
     };
-    let caption = "Error over travel. At its corners the line is proved: nobody gets below it; between them the limit is a little below the line, which sags. Every controller is a sign; its distance from the line, upwards, is what is left to win at its travel.";
-    let figure =
-        Picture { name: "limit".to_owned(), svg: figure(answer), caption: caption.to_owned() };
     AnalysisPage {
         title: answer.lead_name(),
         heading: answer.lead_name(),
@@ -46,7 +43,7 @@ pub(super) fn page(answer: &Answer, command: &str) -> String {
         chapters: vec![Chapter {
             id: "limit".to_owned(),
             title: "Error over travel".to_owned(),
-            items: vec![Item::Figure(figure), Item::Table(table(answer))],
+            items: items(answer),
         }],
         provenance: Provenance {
             command: command.to_owned(),
@@ -56,6 +53,51 @@ pub(super) fn page(answer: &Answer, command: &str) -> String {
         ..AnalysisPage::default()
     }
     .render()
+}
+
+/// Figure and table.
+fn items(answer: &Answer) -> Vec<Item> {
+    let caption = "Error over travel. At its corners the line is proved: nobody gets below it; between them the limit is a little below the line, which sags. Every controller is a sign; its distance from the line, upwards, is what is left to win at its travel.";
+    let figure =
+        Picture { name: "limit".to_owned(), svg: figure(answer), caption: caption.to_owned() };
+    vec![Item::Figure(figure), Item::Table(table(answer))]
+}
+
+/// The chapter of a report whose controllers have flown: how much of what is possible each reaches.
+pub(super) fn beside_flights(answer: &Answer) -> Chapter {
+    let mut all = vec![Item::Text(lead(answer)), Item::Table(shares(answer))];
+    let lost = answer.controllers.iter().filter_map(|it| {
+        Some(format!("{}: {}; nothing to compare.", it.name, it.flown.as_ref().err()?))
+    });
+    all.extend(lost.map(Item::Text));
+    all.extend(items(answer).into_iter().take(1));
+    all.push(Item::List(beside(answer)));
+    Chapter { id: "limit".to_owned(), title: "What is possible".to_owned(), items: all }
+}
+
+/// The controllers at their travels.
+fn shares(answer: &Answer) -> DataTable {
+    let (name, unit) = (called(answer.options.measure), unit(answer.options.measure));
+    let row = |it: &super::Standing| {
+        let [value, way] = flown(answer, it);
+        let limit =
+            it.rung.as_ref().map_or("\u{2013}".to_owned(), |it| limits(answer, it)[0].clone());
+        let numbers = [value, way, limit, possible(it)].map(Datum::Number);
+        [vec![Datum::Text(it.name.clone())], numbers.to_vec()].concat()
+    };
+    DataTable {
+        caption: "How much of what is possible at its own travel each controller reaches"
+            .to_owned(),
+        head: vec![
+            "controller".to_owned(),
+            format!("{name} [{unit}]"),
+            "travel [deg]".to_owned(),
+            format!("limit there [{unit}]"),
+            "of what is possible".to_owned(),
+        ],
+        rows: answer.controllers.iter().map(row).collect(),
+        cards: true,
+    }
 }
 
 /// Rungs of the ladder and of the controllers, by travel.
