@@ -7,7 +7,7 @@ use std::process::{Command, Output};
 
 use serde_json::Value;
 
-use crate::common::{code, json, text};
+use crate::common::{answers, code, json, text};
 use crate::hostile_answers::{bare_null, unnumbered};
 
 pub(crate) const SCENARIOS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios");
@@ -120,7 +120,10 @@ pub(crate) fn asked(arguments: &[&str]) -> Output {
     };
     #[cfg(not(unix))]
     let mut command = Command::new(program);
-    command.args(arguments).current_dir(SCENARIOS).output().expect("the program starts")
+    let output = command.args(arguments).current_dir(SCENARIOS).output();
+    let output = output.expect("the program starts");
+    answers::hold(arguments, &output);
+    output
 }
 
 /// The numbers of a scenario, but for what is required of it.

@@ -1,5 +1,7 @@
 //! The program, run in a folder.
 
+pub(crate) mod answers;
+
 use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
 
@@ -16,7 +18,9 @@ pub(crate) fn with_input(arguments: &[&str], folder: &Path, input: &str) -> Outp
     // A program that reads nothing closes its end.
     let _ = stdin.write_all(input.as_bytes());
     drop(stdin);
-    child.wait_with_output().expect("it ends")
+    let output = child.wait_with_output().expect("it ends");
+    answers::hold(arguments, &output);
+    output
 }
 
 /// The program, running, with pipes to all its ends.

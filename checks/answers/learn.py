@@ -1,0 +1,63 @@
+"""Schemas of answers from the answers: `learn.py ANSWERS OUT`, where ANSWERS has a folder of JSON files for each command.
+
+What is always there is required; what may be null says so; an object whose keys are names that somebody gave (of controllers,
+of measures) is a map from any key. Numbers that were whole each time are whole."""
+
+import json
+import pathlib
+import re
+import sys
+
+DIALECT = "https://json-schema.org/draft/2020-12/schema"
+KEY = re.compile(r"^[a-z][a-z0-9_]*$")
+# Objects whose keys are names of measures, of inputs and outputs or of keys, by the key that they stand under.
+MAPS = {"null", "absent", "reasons", "domain", "findings", "inputs", "outputs", "rest", "shares"}
+TYPES = {type(None): "null", bool: "boolean", int: "integer", float: "number", str: "string", list: "array", dict: "object"}
+
+
+def learned(values, under):
+    types = {TYPES[type(value)] for value in values}
+    # What was never anything else may be anything one day.
+    if types == {"null"}:
+        return {}
+    if "number" in types:
+        types.discard("integer")
+    schema = {}
+    if types:
+        ordered = sorted(types - {"null"}) + (["null"] if "null" in types else [])
+        schema["type"] = ordered[0] if len(ordered) == 1 else ordered
+    items = [item for value in values if isinstance(value, list) for item in value]
+    if items:
+        schema["items"] = learned(items, under)
+    objects = [value for value in values if isinstance(value, dict)]
+    if objects:
+        schema |= of_objects(objects, under)
+    return schema
+
+
+def of_objects(objects, under):
+    keys = sorted({key for value in objects for key in value})
+    if under in MAPS or any(not KEY.match(key) for key in keys):
+        return {"additionalProperties": learned([it for value in objects for it in value.values()], "")}
+    below = {key: learned([value[key] for value in objects if key in value], key) for key in keys}
+    required = [key for key in keys if all(key in value for value in objects)]
+    return {"properties": below} | ({"required": required} if required else {})
+
+
+def main():
+    answers, out = map(pathlib.Path, sys.argv[1:])
+    out.mkdir(parents=True, exist_ok=True)
+    for old in out.glob("*.schema.json"):
+        old.unlink()
+    for folder in sorted(it for it in answers.iterdir() if it.is_dir()):
+        values = [json.loads(file.read_text()) for file in sorted(folder.glob("*.json"))]
+        title = "What every command answers that fails" if folder.name == "error" else f"What `fspid {folder.name.replace('-', ' ')} --format json` answers"
+        schema = {"$schema": DIALECT, "title": title} | learned(values, "")
+        versions = {value.get("schema") for value in values}
+        if len(versions) == 1 and None not in versions:
+            schema["properties"]["schema"] = {"const": versions.pop()}
+        (out / f"{folder.name}.schema.json").write_text(json.dumps(schema, indent=1, ensure_ascii=False) + "\n")
+        print(f"{folder.name}: of {len(values)} answers")
+
+
+main()
