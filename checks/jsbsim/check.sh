@@ -13,5 +13,5 @@ python3 -m venv "$work/python"
 "$work/python/bin/pip" install --quiet --disable-pip-version-check jsbsim==1.3.3
 export FSPID_PYTHON="$work/python/bin/python"
 "$FSPID_PYTHON" "$here/flights.py" "$fspid" "$work"
-(cd "$root" && cargo build --release --locked --workspace --example jsbsim)
-"$FSPID_PYTHON" "$here/tables.py" "$root/target/release/examples/jsbsim"
+(cd "$root" && cargo build --locked -p fspid-daveml --example jsbsim)
+"$FSPID_PYTHON" "$here/tables.py" "$root/target/debug/examples/jsbsim"

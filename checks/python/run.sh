@@ -6,8 +6,8 @@ cd "$(dirname "$0")/../.."
 
 work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
-# The module is built from the same crates as the program, where that is built with it.
-profile=release features=(--features as-the-program)
+# The module is built from the same crates as the program, where that is built with it, and by its profile.
+profile="${FSPID_PROFILE:-release}" features=(--features as-the-program)
 if [ "${1:-}" = --wheel ]; then profile=wheel features=(); fi
 
 pip=(python -m pip --disable-pip-version-check --quiet install)
