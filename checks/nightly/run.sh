@@ -12,7 +12,7 @@ export CARGO_INCREMENTAL=0 DEBIAN_FRONTEND=noninteractive
 # Name, what it asks, and the command, in the order in which they run: what is quick and what others need first.
 lanes() {
     cat <<'LANES'
-release-program|the program as it is handed out to the lanes below|web/build.sh && cargo build --release --locked
+release-program|the program as it is handed out, to the lanes below; the paper by it|web/build.sh && cargo build --release --locked && target/release/fspid reproduce --check --out target/nightly/paper
 instructions|instructions of a step, inference, margins, certificate|checks/instructions/check.py
 supply|licences, sources, budgets, bill of materials|checks/supply/check.sh
 packages|every crate compiles from what is packed|checks/packages/check.sh
@@ -24,6 +24,9 @@ exports|C on six emulated processors and an AVR|checks/export/check.sh --long
 fmu|FMUs in FMPy, under sanitizers|checks/export/fmu.sh
 evidence|evidence of exports, its verdicts held|checks/export/evidence.sh
 accepted|1500 drawn scenarios, every command|FSPID_ACCEPTED_DRAWS=1500 cargo test --workspace --locked --test all accepted
+whole-program|laws of every command over 1000 scenarios drawn from the schema|FSPID_WHOLE_DRAWS=1000 FSPID_WHOLE_FIRST="$(date +%Y%m%d)000" cargo test -p fspid-cli --locked --test all whole_program
+false-safe|100 000 loops that are bad by construction, none called good|cargo run --release --locked -p fspid-cli --example false_safe -- 100000 "$(date +%Y%m%d)"
+hostile|a hundred million bad samples through every structure of controller|cargo run --release --locked -p fspid-options --example hostile_samples -- 100000000 "$(date +%Y%m%d)"
 faults|a thousand disturbed writes|python3 checks/faults/matrix.py target/release/fspid --kills 72
 rare|intervals of rare failures|checks/rare/coverage.sh
 flood|the server, flooded for ten minutes|checks/serve/flood.sh
