@@ -292,11 +292,18 @@ async function sent(lines) {
   socket.close();
 }
 
+/** The view of telemetry once the page hears it: what came before is not told to it. */
+async function listening() {
+  const page = await opened("watch");
+  await page.waitForFunction(() => /on port \d/.test(document.querySelector("[data-test=counts]")?.innerText ?? ""));
+  return page;
+}
+
 const heard = (page, count) => page.waitForFunction((count) => Number(document.querySelector("[data-test=counts]")?.dataset.heard) >= count, count);
 const number = (page, name) => page.locator("[data-test=difference]").getAttribute(`data-${name}`).then(Number);
 
 test("Watch: what a loop tells is drawn beside the model that flies with its set-point, with the difference in numbers", async () => {
-  const page = await opened("watch");
+  const page = await listening();
   await page.getByText("Nothing has come yet").waitFor();
   await sent(Array.from({ length: 250 }, (_, at) => line(at)));
   await heard(page, 250);
@@ -333,7 +340,7 @@ test("Watch: the command of the guide sends a flight, and a model of the same sc
   const command = /```sh\n(fspid simulate pitch\.toml --trace - [\s\S]*?)```/.exec(guide)[1];
   const step = path("../../scenarios/747-pitch-step.toml");
   writeFileSync(join(folder, "pitch.toml"), readFileSync(step));
-  const page = await opened("watch");
+  const page = await listening();
   try {
     await page.selectOption("[data-test=scenario]", { label: "pitch.toml" });
     await page.waitForFunction(() => [...document.querySelectorAll("[data-test=model] option")].some((it) => it.text === "FSPID"));
@@ -353,7 +360,7 @@ test("Watch: the command of the guide sends a flight, and a model of the same sc
 });
 
 test("Watch: the picture pauses, a record is saved, a time that goes back is a new flight, and clear forgets all", async () => {
-  const page = await opened("watch");
+  const page = await listening();
   await page.locator("[data-test=record]").focus();
   await page.keyboard.press("Enter");
   await sent(Array.from({ length: 100 }, (_, at) => line(at, 0.5)));
@@ -379,7 +386,7 @@ test("Watch: the picture pauses, a record is saved, a time that goes back is a n
 });
 
 test("Watch: lines beyond those that are kept take no more memory", async () => {
-  const page = await opened("watch");
+  const page = await listening();
   await page.selectOption("[data-test=window]", "0");
   const memory = async () => {
     const session = await page.context().newCDPSession(page);
