@@ -87,7 +87,7 @@ fn is_test(path: &Path) -> bool {
 #[test]
 fn packages_outside_of_the_workspace_name_the_crates_that_they_use() {
     let mut used = 0;
-    for folder in ["fuzz", "checks/no-panic", "checks/firmware"] {
+    for folder in ["fuzz", "checks/no-panic", "checks/firmware", "checks/peers"] {
         let package = repository().join(folder);
         let manifest = read_to_string(package.join("Cargo.toml")).expect("a manifest");
         for source in files(&package, "rs") {
