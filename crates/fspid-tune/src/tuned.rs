@@ -192,6 +192,7 @@ impl Tuned {
             let (start, value) = (shown(Some(number.start)), shown(Some(number.value)));
             let bounds = number.bounds.map_or(String::new(), |[lower, upper]| {
                 let note = if number.at_bound { "; the bound is active" } else { "" };
+                let [lower, upper] = [lower, upper].map(|bound| shown(Some(bound)));
                 format!("{lower} to {upper}{note}")
             });
             let name = short(&number.path, &self.controller);
