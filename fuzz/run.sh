@@ -19,7 +19,7 @@ RUSTFLAGS="--cfg fuzzing -Cdebug-assertions -Cpasses=sancov-module -Cllvm-args=-
 tests="$PWD/../crates"
 made="$CARGO_TARGET_DIR/seeds" found="$CARGO_TARGET_DIR/found"
 rm -rf "$made" "$found"
-mkdir -p "$made"/{formula,toml,certificate,plan,state,csv,set,fly,mavlink,server} "$found"
+mkdir -p "$made"/{formula,toml,certificate,part,plan,state,csv,set,fly,mavlink,server} "$found"
 echo 'max(0.5*x, error^2) - exp(-change)' >"$made/formula/one"
 cp "$tests"/fspid-scenario/src/file/templates/fuzzy-system.toml "$made/toml"
 printf 'a,b\n1,2\n-0.5,1e-3\n' >"$made/csv/one"
@@ -56,6 +56,10 @@ asks "PUT /api/scenarios/$id" "{\"text\":\"schema = 1\",\"digest\":\"$digest\"}"
 scenarios="$PWD/../scenarios"
 "$fspid" certify "$scenarios/747-pitch-step.toml" --out "$made/certificate" >/dev/null || true
 "$fspid" campaign plan "$scenarios/campaign.toml" --runs 50 --out "$made/plan" >/dev/null
+# A merged file and a part, small enough for an input.
+"$fspid" campaign run "$scenarios/campaign.toml" --runs 3 --shard-runs 3 --threads 1 --quiet --out "$made/whole" >/dev/null
+cp "$made/whole/campaign.parquet" "$made/part/whole"
+cp "$made"/whole/shards/*.parquet "$made/part/part"
 for optimiser in cma-es de l-shade pso ga nelder-mead bfgs nsga-ii; do
     # A search that is killed leaves its first state, which is small. Without blanks more of it fits into an input.
     state="$made/$optimiser.toml.state.json"
@@ -78,7 +82,8 @@ seeds_of() {
 
 fuzz() {
     local words=() readers="$CARGO_TARGET_DIR/$host/quick/readers" read inputs
-    export FSPID_FUZZ_TARGET="$1"
+    # What a reader of files is given is gone with the seeds of the next run.
+    export FSPID_FUZZ_TARGET="$1" TMPDIR="$made"
     [[ -f "$1.dict" ]] && words=("-dict=$1.dict")
     # An input that takes longer than 20 s or more than 2 GiB is a finding too.
     words+=(-seed=22 -max_len=32768 -timeout=20 -rss_limit_mb=2048 "-artifact_prefix=$found/$1-")

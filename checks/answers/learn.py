@@ -12,10 +12,21 @@ DIALECT = "https://json-schema.org/draft/2020-12/schema"
 KEY = re.compile(r"^[a-z][a-z0-9_]*$")
 # Objects whose keys are names of measures, of inputs and outputs or of keys, by the key that they stand under.
 MAPS = {"null", "absent", "reasons", "domain", "findings", "inputs", "outputs", "rest", "shares"}
+# What an answer can have and no answer that is asked for has: a margin that is worst at a later plant, at gains without inputs that are
+# known, in a loop that grows there. By the key that it stands under.
+ALSO = {
+    "worst_case": [{"plant": {"index": 1, "from_s": 2.5}, "spectral_radius": 1.5}],
+    "frozen_gains": [{"kp": 0.5, "ki": 0.5, "kd": 0.5}],
+}
+# Why numbers are null stands where one is null; it is so in every answer of some commands that are asked for.
+SOMETIMES = {"null"}
+# What a scenario can have at a path: anything.
+ANYTHING = {("paths", "value")}
 TYPES = {type(None): "null", bool: "boolean", int: "integer", float: "number", str: "string", list: "array", dict: "object"}
 
 
 def learned(values, under):
+    values = values + ALSO.get(under, [])
     types = {TYPES[type(value)] for value in values}
     # What was never anything else may be anything one day.
     if types == {"null"}:
@@ -39,8 +50,9 @@ def of_objects(objects, under):
     keys = sorted({key for value in objects for key in value})
     if under in MAPS or any(not KEY.match(key) for key in keys):
         return {"additionalProperties": learned([it for value in objects for it in value.values()], "")}
-    below = {key: learned([value[key] for value in objects if key in value], key) for key in keys}
-    required = [key for key in keys if all(key in value for value in objects)]
+    of_key = lambda key: [value[key] for value in objects if key in value]
+    below = {key: {} if (under, key) in ANYTHING else learned(of_key(key), key) for key in keys}
+    required = [key for key in keys if key not in SOMETIMES and all(key in value for value in objects)]
     return {"properties": below} | ({"required": required} if required else {})
 
 

@@ -12,6 +12,7 @@ mod fly;
 mod fml;
 mod formula;
 mod mavlink;
+mod part;
 mod plan;
 mod scenario;
 mod server;
@@ -25,7 +26,7 @@ use std::sync::OnceLock;
 type Reader = fn(&[u8]) -> Option<()>;
 
 /// A module for each file in this folder but this one, by its name.
-const READERS: [(&str, Reader); 16] = [
+const READERS: [(&str, Reader); 17] = [
     ("certificate", certificate::read),
     ("csv", csv::read),
     ("daveml", daveml::read),
@@ -36,6 +37,7 @@ const READERS: [(&str, Reader); 16] = [
     ("fml", fml::read),
     ("formula", formula::read),
     ("mavlink", mavlink::read),
+    ("part", part::read),
     ("plan", plan::read),
     ("scenario", scenario::read),
     ("server", server::read),

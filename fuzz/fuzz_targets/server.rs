@@ -71,9 +71,10 @@ fn check(answer: &str) {
     let status = answer.get(2..5).unwrap_or_default();
     assert!(status != "500", "{answer}");
     let head = answer.split("\r\n\r\n").next().unwrap_or_default().to_ascii_lowercase();
-    let is_guarded = ["content-security-policy: default-src 'none';", "x-content-type-options: nosniff"]
-        .iter()
-        .all(|line| head.contains(line));
+    let is_guarded =
+        ["content-security-policy: default-src 'none';", "x-content-type-options: nosniff"]
+            .iter()
+            .all(|line| head.contains(line));
     let is_bare = head.contains("content-length: 0") && ["400", "414", "431"].contains(&status);
     // That a body may come now; it is no answer yet.
     assert!(is_guarded || is_bare || status == "100", "{answer}");

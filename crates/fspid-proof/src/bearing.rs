@@ -6,12 +6,15 @@ use fspid_sim::Controller;
 
 use crate::certificate::{Certificate, Claim};
 use crate::recheck::{Kept, Rechecked};
+use crate::scope::LeftOut;
 
 /// What proved inequalities bear on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bearing {
     /// The flown loop is stable, within the scope that the certificate states.
     Stable,
+    /// The pitch loop is stable, within the scope that the certificate states; outer loops fly around it, of which it says nothing.
+    PitchLoopStable,
     /// The flown loop grows: its gains are fixed, or these are the gains that it has at rest.
     Grows,
     /// Gains that stand still let the loop grow, and those at rest are not known to. In flight they move, and the loop may still settle.
@@ -35,10 +38,14 @@ impl Certificate {
         if self.output_factor.to_bits() != 1.0_f64.to_bits() {
             return Bearing::OtherScale { factor: self.output_factor };
         }
+        let stable = match self.left_out.contains(&LeftOut::OuterLoops) {
+            true => Bearing::PitchLoopStable,
+            false => Bearing::Stable,
+        };
         let is_fixed = matches!(self.description.controller, Controller::Fixed(_));
         match (&self.claim, rechecked.kept) {
-            (Claim::CommonQuadratic { .. } | Claim::SProcedure { .. }, _) => Bearing::Stable,
-            (Claim::BoundedRate(_), Some(Kept::Everywhere | Kept::WithinLevel)) => Bearing::Stable,
+            (Claim::CommonQuadratic { .. } | Claim::SProcedure { .. }, _) => stable,
+            (Claim::BoundedRate(_), Some(Kept::Everywhere | Kept::WithinLevel)) => stable,
             (Claim::BoundedRate(_), None) => Bearing::RateNotKept,
             (Claim::FrozenGrowth { .. } | Claim::SequenceGrowth { .. }, _) if is_fixed => {
                 Bearing::Grows
@@ -52,10 +59,10 @@ impl Certificate {
 }
 
 impl Bearing {
-    /// True if the flown loop is proved stable.
+    /// True if the flown loop is proved stable; where outer loops fly around it, the pitch loop.
     #[must_use]
     pub const fn is_stability(self) -> bool {
-        matches!(self, Self::Stable)
+        matches!(self, Self::Stable | Self::PitchLoopStable)
     }
 
     /// True if the claim says something, if only of gains that stand still: it was proved to refute.
@@ -69,6 +76,7 @@ impl Bearing {
     pub const fn name(self) -> &'static str {
         match self {
             Self::Stable => "flown-loop-stable",
+            Self::PitchLoopStable => "pitch-loop-stable",
             Self::Grows => "flown-loop-unstable",
             Self::GrowsStandingStill => "unstable-with-gains-standing-still",
             Self::GrowsInSomeOrder => "unstable-with-gains-in-some-order",
@@ -82,6 +90,9 @@ impl fmt::Display for Bearing {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Stable => f.write_str("the flown loop is stable"),
+            Self::PitchLoopStable => f.write_str(
+                "the pitch loop is stable; of the outer loops that fly around it nothing is claimed",
+            ),
             Self::Grows => f.write_str(
                 "these are the gains that it has at rest, so that the flown loop itself leaves rest",
             ),

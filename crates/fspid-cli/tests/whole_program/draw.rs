@@ -38,11 +38,12 @@ impl Parts {
     pub(super) fn draw(&self, drawn: &mut Drawn, schema: &Schema) -> Table {
         let mut document = drawn.one_of(&self.all).clone();
         for _ in 0..drawn.below(4) {
-            match drawn.below(6) {
+            match drawn.below(9) {
                 0 | 1 => self.exchange(drawn, &mut document),
                 2 => self.exchange_below(drawn, &mut document),
                 3 => leave_out(drawn, &mut document),
                 4 => other_word(drawn, &mut document, schema),
+                5..=7 => self.aim(drawn, &mut document, schema),
                 _ => one_key_more(drawn, &mut document, schema),
             }
         }
@@ -55,11 +56,8 @@ impl Parts {
     fn exchange(&self, drawn: &mut Drawn, document: &mut Table) {
         let other = drawn.one_of(&self.all);
         let keys: Vec<&String> = other.keys().filter(|key| *key != "schema").collect();
-        let key = (*drawn.one_of(&keys)).clone();
-        if FLYING.contains(&key.as_str()) {
-            FLYING.iter().for_each(|flying| drop(document.remove(*flying)));
-        }
-        document.insert(key.clone(), other[&key].clone());
+        let key = *drawn.one_of(&keys);
+        replace_part(document, key, &other[key]);
     }
 
     /// One key of a part of another.
@@ -78,6 +76,90 @@ impl Parts {
         let name = (*drawn.one_of(&names)).clone();
         own.insert(name.clone(), other[&name].clone());
     }
+
+    /// Any key or word of the schema, wherever it stands: as a document has it that has the key, or as the schema allows.
+    fn aim(&self, drawn: &mut Drawn, document: &mut Table, schema: &Schema) {
+        let target = *drawn.one_of(&schema.all().iter().collect::<Vec<_>>());
+        let (path, word) =
+            target.split_once('=').map_or((&**target, None), |it| (it.0, Some(it.1)));
+        let steps: Vec<&str> = steps(path).collect();
+        let Some(last) = steps.iter().rposition(|step| *step != LIST) else { return };
+        let (parent, key) = (&steps[..last], steps[last]);
+        // A document without the table that the key belongs to gets all of that part from one that has it.
+        if let (Some(top), true) = (parent.first(), below(document, parent).is_none()) {
+            let have = self.all.iter().filter(|it| below(it, parent).is_some());
+            let have: Vec<&Table> = have.collect();
+            if have.is_empty() {
+                return;
+            }
+            replace_part(document, top, &drawn.one_of(&have)[*top]);
+        }
+        let is_list = steps.len() > last + 1;
+        let value = match word {
+            Some(word) if is_list => Some(Toml::Array(vec![Toml::String(word.to_owned())])),
+            Some(word) => Some(Toml::String(word.to_owned())),
+            None => {
+                let known = |it: &Table| below(it, parent).and_then(|own| own.get(key).cloned());
+                let known: Vec<Toml> = self.all.iter().filter_map(known).collect();
+                match known.as_slice() {
+                    [] => schema.at(path).into_iter().find_map(|node| value(drawn, node)),
+                    _ => Some(drawn.one_of(&known).clone()),
+                }
+            }
+        };
+        if let (Some(value), Some(own)) = (value, below_mut(document, parent)) {
+            own.insert(key.to_owned(), value);
+        }
+    }
+}
+
+/// What stands for each of a list.
+const LIST: &str = "[]";
+
+/// `controller[].kp` as controller, each of the list, kp.
+fn steps(path: &str) -> impl Iterator<Item = &str> {
+    path.split('.').flat_map(|step| {
+        let name = step.trim_end_matches(LIST);
+        let lists = (step.len() - name.len()) / LIST.len();
+        core::iter::once(name).chain(core::iter::repeat_n(LIST, lists))
+    })
+}
+
+/// The table at a place, in the first of a list that has it.
+fn below<'a>(document: &'a Table, steps: &[&str]) -> Option<&'a Table> {
+    let Some((first, rest)) = steps.split_first() else { return Some(document) };
+    inside(document.get(*first)?, rest)
+}
+
+fn inside<'a>(value: &'a Toml, steps: &[&str]) -> Option<&'a Table> {
+    match (value, steps.split_first()) {
+        (Toml::Table(table), _) => below(table, steps),
+        (Toml::Array(list), Some((&LIST, rest))) => list.iter().find_map(|it| inside(it, rest)),
+        _ => None,
+    }
+}
+
+fn below_mut<'a>(document: &'a mut Table, steps: &[&str]) -> Option<&'a mut Table> {
+    let Some((first, rest)) = steps.split_first() else { return Some(document) };
+    inside_mut(document.get_mut(*first)?, rest)
+}
+
+fn inside_mut<'a>(value: &'a mut Toml, steps: &[&str]) -> Option<&'a mut Table> {
+    match (value, steps.split_first()) {
+        (Toml::Table(table), _) => below_mut(table, steps),
+        (Toml::Array(list), Some((&LIST, rest))) => {
+            list.iter_mut().find_map(|it| inside_mut(it, rest))
+        }
+        _ => None,
+    }
+}
+
+/// A part of another document; of what flies there is one.
+fn replace_part(document: &mut Table, key: &str, part: &Toml) {
+    if FLYING.contains(&key) {
+        FLYING.iter().for_each(|flying| drop(document.remove(*flying)));
+    }
+    document.insert(key.to_owned(), part.clone());
 }
 
 fn walk(folder: &Path, files: &mut Vec<PathBuf>) {

@@ -107,9 +107,11 @@ fn refuted(bearing: Bearing) -> &'static str {
     match bearing {
         Bearing::GrowsStandingStill => "\u{2717} refuted standing still",
         Bearing::GrowsInSomeOrder => "\u{2717} refuted in some order",
-        Bearing::Grows | Bearing::Stable | Bearing::OtherScale { .. } | Bearing::RateNotKept => {
-            "\u{2717} refuted"
-        }
+        Bearing::Grows
+        | Bearing::Stable
+        | Bearing::PitchLoopStable
+        | Bearing::OtherScale { .. }
+        | Bearing::RateNotKept => "\u{2717} refuted",
     }
 }
 

@@ -49,7 +49,7 @@ def bode(ax: Sequence[Axes] | None, loops: Mapping[str, Mapping[str, Any]]) -> S
 def boxes(ax: Axes | None, controllers: Sequence[Mapping[str, Any]]) -> Axes:
     """Ranges of gains over their middles, in the colour of the verdict; a gain that does not move is a mark."""
     ax = axes(ax)
-    colours = {"proved": "tab:green", "refuted": "tab:red"}
+    colours = {"proved": "tab:green", "refuted": "tab:red", "not proved as it flies": "tab:red"}
     for each in controllers:
         colour = colours.get(each["verdict"], "tab:gray")
         for gain, (lower, upper) in (each.get("gains") or {}).items():

@@ -24,7 +24,7 @@ impl AnalysedMode {
     ///
     /// # Errors
     /// As [`mode_poles`].
-    pub(super) fn all(
+    pub(crate) fn all(
         scenario: &Scenario,
         controller: &Controller,
         gains: Gains<f64>,

@@ -67,7 +67,7 @@ impl CheckedFile {
             return Answer::AnotherLoop;
         }
         match bearing {
-            Bearing::Stable => Answer::Holds,
+            Bearing::Stable | Bearing::PitchLoopStable => Answer::Holds,
             Bearing::Grows | Bearing::GrowsStandingStill | Bearing::GrowsInSomeOrder => {
                 Answer::Refutes(bearing)
             }

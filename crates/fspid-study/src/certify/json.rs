@@ -6,14 +6,15 @@ use serde_json::{Value, json};
 
 use super::scope::{Told, told_deg};
 use super::text::found;
-use super::{Certification, Certified, CheckedFile, Comparison, NotProvable, Seal, family};
+use super::{Around, Certification, Certified, CheckedFile, Comparison, NotProvable, Seal, family};
 use crate::json::{merged, present, with_null_reasons};
 
 /// Version of the answer's shape.
 const SCHEMA: u32 = 2;
 
 /// Why keys of these answers are null.
-const NULLS: [(&str, &str); 12] = [
+const NULLS: [(&str, &str); 13] = [
+    ("decay_per_sample", "the claim is one of growth, or no rate is proved"),
     (
         "law_keeps_to_the_rate",
         "the claim is about no rate, or it is not shown that the law keeps to it",
@@ -49,12 +50,15 @@ fn result(certified: &Certified) -> Value {
     let refused =
         |reason: &NotProvable| json!({ "verdict": "not provable", "reason": reason.to_string() });
     let family = certified.family.as_ref().map(family::in_json);
-    let family = present(json!({ "family": family }));
-    merged([of, certified.outcome.as_ref().map_or_else(refused, outcome), family])
+    let around = certified.around.as_ref().map(Around::json);
+    let besides = present(json!({ "family": family, "outer_loops": around }));
+    let proved = |found: &Outcome| outcome(found, certified.around.as_ref());
+    merged([of, certified.outcome.as_ref().map_or_else(refused, proved), besides])
 }
 
-fn outcome(outcome: &Outcome) -> Value {
+fn outcome(outcome: &Outcome, around: Option<&Around>) -> Value {
     let verdict = match &outcome.verdict {
+        Verdict::Proved(..) if around.is_some_and(|it| !it.is_held()) => "not proved as it flies",
         Verdict::Proved(..) => "proved",
         Verdict::Refuted(..) => "refuted",
         Verdict::Open => "open",

@@ -4,6 +4,7 @@
 //! itself; [`check_text`] proves its claim anew and trusts nothing in it but its numbers.
 
 mod against;
+mod around;
 mod checked;
 mod checked_text;
 mod comparison;
@@ -35,6 +36,7 @@ use fspid_scenario::file::{Study, Template};
 
 pub use fspid_proof::Effort;
 
+pub use around::Around;
 pub use checked::{Answer, CheckedFile, check_text};
 pub use comparison::{Comparison, Difference};
 pub use coverage::{COVERAGE, KeyCoverage, Treatment, coverage_table};
@@ -55,17 +57,21 @@ pub struct Certified {
     pub outcome: Result<Outcome, NotProvable>,
     /// What came of all that the dispersions can draw, where that was asked.
     pub family: Option<FamilyAnswer>,
+    /// What flies around the loop, where that is an autopilot.
+    pub around: Option<Around>,
     /// Where its certificates come from.
     pub origin: Origin,
 }
 
 impl Certified {
-    /// True if stability is proved, of the whole family where that was asked.
+    /// True if stability is proved, of the whole family where that was asked, and outer loops around it are held at rest.
     #[must_use]
     pub fn is_proved(&self) -> bool {
         let itself =
             matches!(&self.outcome, Ok(outcome) if matches!(outcome.verdict, Verdict::Proved(..)));
-        itself && self.family.as_ref().is_none_or(FamilyAnswer::is_proved)
+        itself
+            && self.family.as_ref().is_none_or(FamilyAnswer::is_proved)
+            && self.around.as_ref().is_none_or(Around::is_held)
     }
 
     /// The certificate of the verdict: of stability, or of growth; where the answer is neither for what the
@@ -125,6 +131,7 @@ impl Certification {
         let wanted = |name: &str| only.is_none_or(|only| only == name);
         for named in scenario.controllers.iter().filter(|named| wanted(&named.name)) {
             tell(&named.name);
+            let around = Around::of(scenario, &named.controller)?;
             for (from_s, plant) in &plants {
                 let described = LoopDescription::of(scenario, plant, &named.controller);
                 results.push(Certified {
@@ -133,6 +140,7 @@ impl Certification {
                     outcome: described
                         .and_then(|loop_| certify(&loop_, &asked(study, plant, &loop_), effort)),
                     family: None,
+                    around: around.clone(),
                     origin: Origin {
                         program: env!("CARGO_PKG_VERSION").to_owned(),
                         scenario: scenario.name.clone(),

@@ -465,3 +465,41 @@ fn a_refutation_says_nothing_of_set_points_that_move() {
     let told = refuted().text();
     assert!(!told.contains("constant set-points"), "{told}");
 }
+
+#[test]
+fn a_pitch_loop_is_not_called_proved_where_the_outer_loops_around_it_grow() {
+    // Its third mode doubles in 0.58 s; the pitch loop inside is held.
+    let grows = load("crates/fspid-scenario/tests/scenarios/every-key-autopilot.toml", &[]);
+    let found = Certification::of(&grows, None, &effort()).expect("certified");
+    assert!(!found.all_proved(), "{}", found.text());
+    let told = found.text();
+    assert!(
+        told.contains("NOT PROVED as it flies: UNSTABLE with the outer loops of mode"),
+        "{told}"
+    );
+    let answer = found.json();
+    assert_eq!(answer["controllers"][0]["verdict"], json!("not proved as it flies"));
+    assert_eq!(answer["controllers"][0]["bearing"], json!("pitch-loop-stable"));
+    assert_eq!(answer["controllers"][0]["outer_loops"]["held"], json!(false));
+
+    let held = load("scenarios/gallery/turn.toml", &[]);
+    let found = Certification::of(&held, None, &effort()).expect("certified");
+    assert!(found.text().contains("PROVED for the pitch loop alone: "), "{}", found.text());
+    assert!(!found.text().contains("the flown loop is stable"), "{}", found.text());
+    for certified in found.results.iter().filter(|it| it.is_proved()) {
+        let text = to_text(certified.certificate().expect("a certificate"), &certified.origin);
+        assert_eq!(checked(&text).bearing(), Some(Bearing::PitchLoopStable));
+    }
+}
+
+#[test]
+fn the_requirement_of_a_proof_is_not_met_where_outer_loops_grow() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fspid-scenario/tests/scenarios");
+    let text = std::fs::read_to_string(folder.join("every-key-autopilot.toml")).expect("a file");
+    let text = format!("{text}\n[[requirement]]\nmeasure = \"certified\"\n");
+    let study = file::parse(&text, "autopilot.toml", Some(&folder), &[]).expect("a scenario");
+    let flown = crate::simulation::Simulation::of(&study).expect("flown");
+    // A pitch loop that is proved, which alone would be a value of 1.
+    let [judgement] = flown.judgements.as_slice() else { panic!("one requirement") };
+    assert!(!judgement.met && judgement.found.as_ref().is_ok_and(|case| case.value == 0.0));
+}

@@ -29,7 +29,7 @@ fn push(out: &mut String, certified: &Certified) {
     match &certified.outcome {
         Err(reason) => out.push_str(&format!("\n{name}\n  NOT PROVABLE: {reason}\n")),
         Ok(outcome) => {
-            out.push_str(&format!("\n{name}\n  {}\n", headline(outcome)));
+            out.push_str(&format!("\n{name}\n  {}\n", headline(certified, outcome)));
             push_outcome(out, certified, outcome);
             // A proved one is among what the certificate says.
             if let Some(family) = certified.family.as_ref().filter(|it| !it.is_proved()) {
@@ -39,9 +39,18 @@ fn push(out: &mut String, certified: &Certified) {
     }
 }
 
-fn headline(outcome: &Outcome) -> String {
+fn headline(certified: &Certified, outcome: &Outcome) -> String {
     match (&outcome.verdict, &outcome.instead) {
-        (Verdict::Proved(certificate, _), _) => format!("PROVED: {}", sentence(certificate)),
+        (Verdict::Proved(certificate, _), _) => match &certified.around {
+            None => format!("PROVED: {}", sentence(certificate)),
+            Some(around) => match around.trouble() {
+                None => format!("PROVED for the pitch loop alone: {}", sentence(certificate)),
+                Some(trouble) => format!(
+                    "NOT PROVED as it flies: {trouble}; proved is the pitch loop alone: {}",
+                    sentence(certificate)
+                ),
+            },
+        },
         (Verdict::Refuted(certificate, rechecked), _) => {
             let bearing = certificate.bearing(rechecked);
             format!("{}: {}; {bearing}", refuted(bearing), sentence(certificate))
@@ -79,9 +88,11 @@ pub(super) fn refuted(bearing: Bearing) -> &'static str {
     match bearing {
         Bearing::GrowsStandingStill => "REFUTED FOR GAINS THAT STAND STILL",
         Bearing::GrowsInSomeOrder => "REFUTED FOR GAINS THAT MOVE IN ANY ORDER",
-        Bearing::Grows | Bearing::Stable | Bearing::OtherScale { .. } | Bearing::RateNotKept => {
-            "REFUTED"
-        }
+        Bearing::Grows
+        | Bearing::Stable
+        | Bearing::PitchLoopStable
+        | Bearing::OtherScale { .. }
+        | Bearing::RateNotKept => "REFUTED",
     }
 }
 

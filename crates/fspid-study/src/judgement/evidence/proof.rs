@@ -4,12 +4,18 @@ use fspid_proof::{Asked, Effort, LoopDescription, is_proved};
 use fspid_sim::NamedController;
 
 use crate::analysis::lasting_plants;
+use crate::certify::Around;
 use crate::judgement::{Case, CasePlace, NotEvaluated, PlantAt};
 use fspid_scenario::file::Study;
 
 /// A case for each plant that lasts: 1 where it is proved for all that the scenario commands, as `certify` proves it.
 pub(super) fn cases(study: &Study, named: &NamedController) -> Result<Vec<Case>, NotEvaluated> {
     let scenario = &study.scenario;
+    // A proof is one of the pitch loop: with outer loops that do not hold at rest it says nothing of the flight.
+    let around = Around::of(scenario, &named.controller)?;
+    if around.is_some_and(|around| !around.is_held()) {
+        return Ok(vec![Case { value: 0.0, place: CasePlace::default() }]);
+    }
     let plants = lasting_plants(scenario)?;
     let several = plants.len() > 1;
     let mut cases = Vec::new();

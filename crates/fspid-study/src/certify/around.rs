@@ -1,0 +1,72 @@
+//! What flies around the loop that a certificate is about: the outer loops of an autopilot.
+
+use fspid_diagnostics::digits::to_digits;
+use fspid_sim::{Controller, Scenario, SimError};
+use serde_json::{Value, json};
+
+use crate::analysis::{AnalysedMode, Stability, equilibrium};
+
+/// The modes of a scenario's autopilot around one controller, each around the trim with all that it engages.
+///
+/// A certificate is about the pitch loop alone. Whether the loops around it hold at rest is known from their poles, and a
+/// loop that is proved is not called so where one of them is not held: the flight would refute it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Around {
+    /// One for each mode; none where the controller has no gains at rest, which says nothing of any.
+    modes: Vec<AnalysedMode>,
+}
+
+impl Around {
+    /// Of a controller; none without an autopilot.
+    ///
+    /// # Errors
+    /// [`SimError`] where a mode has no linear model.
+    pub(crate) fn of(
+        scenario: &Scenario,
+        controller: &Controller,
+    ) -> Result<Option<Self>, SimError> {
+        if scenario.autopilot.is_none() {
+            return Ok(None);
+        }
+        let modes = match equilibrium(controller).gains() {
+            Some(gains) => AnalysedMode::all(scenario, controller, gains)?,
+            None => Vec::new(),
+        };
+        Ok(Some(Self { modes }))
+    }
+
+    /// True if every mode is held at rest.
+    pub(crate) fn is_held(&self) -> bool {
+        !self.modes.is_empty() && self.growing().next().is_none()
+    }
+
+    fn growing(&self) -> impl Iterator<Item = &AnalysedMode> {
+        self.modes.iter().filter(|mode| mode.stability() != Stability::Stable)
+    }
+
+    /// Which modes are not held, or that this is not known; none where all are.
+    pub(super) fn trouble(&self) -> Option<String> {
+        if self.modes.is_empty() {
+            return Some(
+                "its gains have no rest, so that nothing is known of the outer loops around it"
+                    .to_owned(),
+            );
+        }
+        let each = self.growing().map(|mode| {
+            let radius = to_digits(mode.poles.spectral_radius, 7);
+            format!("{} (spectral radius {radius})", mode.name)
+        });
+        let each: Vec<String> = each.collect();
+        let modes = if each.len() == 1 { "mode" } else { "modes" };
+        (!each.is_empty())
+            .then(|| format!("UNSTABLE with the outer loops of {modes} {}", each.join(", ")))
+    }
+
+    pub(super) fn json(&self) -> Value {
+        let mode = |mode: &AnalysedMode| {
+            let is_stable = mode.stability() == Stability::Stable;
+            json!({ "name": mode.name, "stable": is_stable, "spectral_radius": mode.poles.spectral_radius })
+        };
+        json!({ "held": self.is_held(), "modes": self.modes.iter().map(mode).collect::<Vec<_>>() })
+    }
+}
