@@ -307,3 +307,17 @@ fn a_model_with_hundreds_of_thousands_of_attributes_is_refused_at_its_place() {
         assert!(told.contains("2:1"), "{name}: {told}");
     }
 }
+
+/// A sensor of an outer loop that remembers for ever, or looks without end, was accepted and then not flown.
+#[test]
+fn sensors_of_outer_loops_are_refused_by_check_as_those_of_the_pitch_loop_are() {
+    let scenario =
+        concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/gallery/altitude-capture.toml");
+    for (key, value) in [("period_s", "1e15"), ("delay_s", "1e9"), ("period_s", "1e-12")] {
+        let set = format!("outer_loop[0].sensor={{{key}={value}}}");
+        let told = fspid(&["check", scenario, "--set", &set], Path::new("."));
+        assert_eq!(code(&told), 2, "{set}");
+        let text = text(&told.stderr);
+        assert!(text.contains(&format!("outer_loop[0].sensor.{key}")), "{text}");
+    }
+}

@@ -53,3 +53,13 @@ fn the_light_aircraft_flies_with_a_tenth_less_error_and_breaks_no_requirement() 
     assert_eq!(answer["ranking"][0], "FSPID", "{:#}", answer["ranking"]);
     assert_eq!([failed(&answer, "FSPID"), failed(&answer, "PID")], [0, 0]);
 }
+
+#[test]
+fn the_self_tuner_of_six_light_aircraft_has_a_tenth_less_error_at_less_travel_and_keeps_the_margins()
+ {
+    let answer = held("light-six");
+    let [error, travel] = ratios(&answer);
+    assert!(error <= 0.90 && travel <= 1.0, "{error} {travel}");
+    assert_eq!(answer["ranking"][0], "FSPID", "{:#}", answer["ranking"]);
+    assert_eq!([failed(&answer, "FSPID"), failed(&answer, "PID")], [3, 5]);
+}

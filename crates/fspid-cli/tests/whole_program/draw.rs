@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use fspid_scenario::file::{Extra, Template};
 use serde_json::Value;
 use toml::{Table, Value as Toml};
 
@@ -13,6 +14,8 @@ const EVERY_KEY: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../fspid-scenario/
 const FLYING: [&str; 3] = ["plant", "aircraft", "simulator"];
 /// What every scenario has.
 const ALWAYS: [&str; 5] = ["schema", "name", "loop", "setpoint", "controller"];
+/// Fewer changes than this are tried of a document.
+const CHANGES: usize = 13;
 /// Longest flight, s.
 const LONGEST_S: f64 = 12.0;
 
@@ -34,21 +37,26 @@ impl Parts {
         Self { all }
     }
 
-    /// One of them, changed in a few places.
-    pub(super) fn draw(&self, drawn: &mut Drawn, schema: &Schema) -> Table {
+    /// One of them, changed in a few places. What makes of a scenario none is taken back, so that most of what is drawn can be
+    /// asked, and a few changes come together; `folder` is where its files lie.
+    pub(super) fn draw(&self, drawn: &mut Drawn, schema: &Schema, folder: &Path) -> Table {
         let mut document = drawn.one_of(&self.all).clone();
-        for _ in 0..drawn.below(4) {
-            match drawn.below(9) {
-                0 | 1 => self.exchange(drawn, &mut document),
-                2 => self.exchange_below(drawn, &mut document),
-                3 => leave_out(drawn, &mut document),
-                4 => other_word(drawn, &mut document, schema),
-                5..=7 => self.aim(drawn, &mut document, schema),
-                _ => one_key_more(drawn, &mut document, schema),
+        made_short(&mut document);
+        for _ in 0..drawn.below(CHANGES) {
+            let mut changed = document.clone();
+            match drawn.below(12) {
+                0 | 1 => self.exchange(drawn, &mut changed),
+                2 => self.exchange_below(drawn, &mut changed),
+                3 => leave_out(drawn, &mut changed),
+                4 => other_word(drawn, &mut changed, schema),
+                5 => one_key_more(drawn, &mut changed, schema),
+                _ => self.aim(drawn, &mut changed, schema),
+            }
+            made_short(&mut changed);
+            if is_scenario(&changed, folder) {
+                document = changed;
             }
         }
-        shorten(&mut document);
-        without_waiting(&mut document);
         document
     }
 
@@ -291,6 +299,71 @@ fn value(drawn: &mut Drawn, node: &Value) -> Option<Toml> {
         }
         _ => None,
     }
+}
+
+/// True if `check` says so.
+fn is_scenario(document: &Table, folder: &Path) -> bool {
+    let Ok(template) =
+        Template::parse(&written(document), "draw.toml", Some(folder), &Extra::default())
+    else {
+        return false;
+    };
+    template.study().dispersions.is_empty() || template.check_dispersions().is_ok()
+}
+
+/// As a person writes it: a part is a table with a head, a list of tables has double brackets, and what stands inside is in
+/// braces, as marks of free numbers have to be.
+pub(super) fn written(document: &Table) -> String {
+    let is_part = |value: &Toml| value.is_table() || tables_of(value).is_some();
+    let (parts, alone): (Vec<_>, Vec<_>) = document.iter().partition(|(_, value)| is_part(value));
+    let mut text: String = alone.into_iter().map(|(key, value)| line(key, value)).collect();
+    for (key, value) in parts {
+        match (value, tables_of(value)) {
+            (Toml::Table(table), _) => part(&mut text, &format!("[{}]", quoted(key)), key, table),
+            (_, Some(list)) => {
+                for table in list {
+                    part(&mut text, &format!("[[{}]]", quoted(key)), key, table);
+                }
+            }
+            _ => {}
+        }
+    }
+    text
+}
+
+fn part(text: &mut String, head: &str, key: &str, table: &Table) {
+    text.push_str(&format!("\n{head}\n"));
+    let (lists, others): (Vec<_>, Vec<_>) = table.iter().partition(|it| tables_of(it.1).is_some());
+    text.extend(others.into_iter().map(|(key, value)| line(key, value)));
+    for (below, value) in lists {
+        for table in tables_of(value).unwrap_or_default() {
+            text.push_str(&format!("\n[[{}.{}]]\n", quoted(key), quoted(below)));
+            text.extend(table.iter().map(|(key, value)| line(key, value)));
+        }
+    }
+}
+
+/// The tables of a list that has nothing else, and something.
+fn tables_of(value: &Toml) -> Option<Vec<&Table>> {
+    let list = value.as_array().filter(|list| !list.is_empty())?;
+    list.iter().map(Toml::as_table).collect()
+}
+
+fn line(key: &str, value: &Toml) -> String {
+    format!("{} = {value}\n", quoted(key))
+}
+
+fn quoted(key: &str) -> String {
+    let bare = |letter: char| letter.is_ascii_alphanumeric() || "_-".contains(letter);
+    match !key.is_empty() && key.chars().all(bare) {
+        true => key.to_owned(),
+        false => Toml::String(key.to_owned()).to_string(),
+    }
+}
+
+fn made_short(document: &mut Table) {
+    shorten(document);
+    without_waiting(document);
 }
 
 /// Without controllers that wait for a flight stack at an address: nobody is there, and each flight would wait for that.

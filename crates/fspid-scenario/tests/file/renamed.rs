@@ -196,7 +196,7 @@ fn an_old_key_in_a_case_becomes_the_new_one_with_the_line_of_the_case() {
 
 #[test]
 fn nothing_that_is_shipped_has_an_old_key() {
-    let learned = ["light", "transport"].map(|name| {
+    let learned = ["light", "light-six", "transport"].map(|name| {
         let path = format!("data/designs/learned/{name}.toml");
         (path.clone(), text(&path))
     });

@@ -503,3 +503,23 @@ fn the_requirement_of_a_proof_is_not_met_where_outer_loops_grow() {
     let [judgement] = flown.judgements.as_slice() else { panic!("one requirement") };
     assert!(!judgement.met && judgement.found.as_ref().is_ok_and(|case| case.value == 0.0));
 }
+
+#[test]
+fn the_learned_self_tuner_of_six_light_aircraft_is_proved_around_the_trim_where_it_was_tuned() {
+    // Three of the twelve: the slowest, the fastest and the one that is proved with the least room.
+    for at in [("navion", "120", "0"), ("beech-99", "450", "20000"), ("twin-otter", "165", "0")] {
+        let (name, speed, altitude) = at;
+        let study = load(
+            "data/designs/learned/light-six.toml",
+            &[
+                &format!("aircraft.name={name}"),
+                &format!("aircraft.airspeed_ft_s={speed}"),
+                &format!("aircraft.altitude_ft={altitude}"),
+                "setpoint.amplitude_deg=0",
+            ],
+        );
+        let found = certified(&study);
+        assert!(found.all_proved(), "{at:?}: {}", found.text());
+        assert!(checked(&written(&found)).holds(), "{at:?}");
+    }
+}

@@ -10,6 +10,7 @@ use fspid_sim::autopilot::{
 use fspid_sim::sensor::{Sensor, SensorModel};
 use fspid_sim::{Controller, Plant, Simulator};
 
+use super::cost::check_times;
 use super::flown::Flown;
 use super::{controller, judged, rad};
 use crate::file::aircraft::{quantity, unit_size};
@@ -269,7 +270,7 @@ fn outer_loop(
         moves,
         controller: controller?,
         units,
-        sensor: sensor(report, part, (quantity, number))?,
+        sensor: sensor(report, part, (quantity, number), dt_s)?,
     })
 }
 
@@ -313,6 +314,7 @@ fn sensor(
     report: &mut Report,
     part: &Section,
     (quantity, number): (Quantity, usize),
+    dt_s: f64,
 ) -> Option<Option<Sensor>> {
     let Some(sensor) = part.get(keys::LOOP_SENSOR) else { return Some(None) };
     let size = |value: f64| if is_angle(quantity) { rad(value) } else { value };
@@ -327,7 +329,10 @@ fn sensor(
     };
     let seed = u64::try_from(sensor.get(keys::LOOP_SEED).unwrap_or(1)).ok()?;
     let channel = FIRST_CHANNEL + u32::try_from(number).ok()?;
-    judged(report, (sensor, keys::NOISE), Sensor::new(model, seed, channel)).map(Some)
+    let built = judged(report, (sensor, keys::NOISE), Sensor::new(model, seed, channel))?;
+    let slowest = if model.delay_s > model.period_s { keys::DELAY_S } else { keys::PERIOD_S };
+    check_times(report, (sensor, slowest.into()), &built, dt_s);
+    Some(Some(built))
 }
 
 fn total_energy(report: &mut Report, part: &Section, dt_s: f64) -> Option<TotalEnergy> {

@@ -63,29 +63,36 @@ fn check_sensor(
     sensor: &Sensor,
     timing: Timing,
 ) {
-    let (own, dt_s) = (part.get(channel), timing.dt_s());
+    let dt_s = timing.dt_s();
+    match part.get(channel) {
+        Some(own) if own.given(sensor::DELAY_S) => {
+            check_looks(report, (own, sensor::PERIOD_S.into()), sensor, dt_s);
+            judged(report, (own, sensor::DELAY_S), sensor.memory_samples(dt_s));
+        }
+        Some(own) => check_times(report, (own, sensor::PERIOD_S.into()), sensor, dt_s),
+        None => check_times(report, (part, sensor::PRESET.into()), sensor, dt_s),
+    }
+}
+
+/// How often a sensor looks, and how long it remembers, at one key.
+pub(super) fn check_times(
+    report: &mut Report,
+    at: (&Section, KeyName),
+    sensor: &Sensor,
+    dt_s: f64,
+) {
+    check_looks(report, at, sensor, dt_s);
+    judged(report, at, sensor.memory_samples(dt_s));
+}
+
+fn check_looks(report: &mut Report, (part, key): (&Section, KeyName), sensor: &Sensor, dt_s: f64) {
     let period_s = sensor.model().period_s;
     if period_s > 0.0 && dt_s / period_s > MOST_LOOKS {
         let message =
             "so short that a flight would not end: the sensor looks more often than it is asked";
         let allowed =
             format!("0, or at least {:e} s: {MOST_LOOKS} looks a sample", dt_s / MOST_LOOKS);
-        match own {
-            Some(own) => own.wrong(report, sensor::PERIOD_S, message, allowed),
-            None => part.wrong(report, sensor::PRESET, message, allowed),
-        }
-    }
-    let memory = sensor.memory_samples(dt_s);
-    match own {
-        Some(own) if own.given(sensor::DELAY_S) => {
-            judged(report, (own, sensor::DELAY_S), memory);
-        }
-        Some(own) => {
-            judged(report, (own, sensor::PERIOD_S), memory);
-        }
-        None => {
-            judged(report, (part, sensor::PRESET), memory);
-        }
+        part.wrong(report, key, message, allowed);
     }
 }
 
