@@ -2,9 +2,7 @@
 """Instructions of a step, an inference, a flight, margins and a certificate's check, against stored ones.
 
     check.py            fails where one takes 3 % more than stored, and names the function that grew most
-    check.py --tests    the same of the program that the tests of the workspace have built, by their profile: quick, and part
-                        of every `.ci/run`
-    check.py --record   stores what this machine counts, of both
+    check.py --record   stores what this machine counts
 
 Counted by valgrind's callgrind in one thread: the same program gives the same count, whatever else the machine does. A compiler of
 another version makes another program: then nothing is judged, and the script says so. Needs valgrind (Debian's, installed where it
@@ -22,8 +20,6 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 STORED = Path(__file__).with_name("counts.json")
-# How each program is built, and the folder of its profile. The tests have built theirs: with all packages asked, features are theirs.
-PROGRAMS = {"release": (["--release", "-p", "fspid-study"], "release"), "tests": (["--workspace"], "debug")}
 WORK = ("step-fspid", "step-pid", "inference", "flight", "margins", "certificate")
 TIMES = {"step-fspid": 2000, "step-pid": 2000, "inference": 2000}
 MOST = 0.03
@@ -101,27 +97,20 @@ def main() -> int:
         return 0
     compiler, tool = said("rustc", "--version").strip(), valgrind()
     stored = json.loads(STORED.read_text()) if STORED.exists() else {}
-    if "--record" in sys.argv[1:]:
-        counts = {name: all_counted(built(name)) for name in PROGRAMS}
+    record = "--record" in sys.argv[1:]
+    if not record and stored.get("compiler") != compiler:
+        print(f"not judged: counts are stored for {stored.get('compiler')}, and this is {compiler}")
+        return 0
+    subprocess.run(["cargo", "build", "--release", "--locked", "--quiet", "-p", "fspid-study", "--example", "instructions"], check=True, cwd=ROOT)
+    folder = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
+    counts = all_counted(folder / "release/examples/instructions")
+    if record:
         STORED.write_text(json.dumps({"compiler": compiler, "valgrind": tool, "counts": counts}, indent=1, ensure_ascii=False) + "\n")
         return 0
-    for what, now in (("compiler", compiler), ("valgrind", tool)):
-        if stored.get(what) != now:
-            print(f"not judged: counts are stored for {stored.get(what)}, and this is {now}")
-            return 0
-    name = "tests" if "--tests" in sys.argv[1:] else "release"
-    counts = all_counted(built(name))
-    failed = [why for work in WORK if (why := grown(work, counts[work], stored["counts"][name][work]))]
+    failed = [why for work in WORK if (why := grown(work, counts[work], stored["counts"][work]))]
     for why in failed:
         print(f"TOO MANY: {why}")
     return 1 if failed else 0
-
-
-def built(name: str) -> Path:
-    """The program that does the work, by one of the profiles."""
-    options, profile = PROGRAMS[name]
-    subprocess.run(["cargo", "build", "--locked", "--quiet", *options, "--example", "instructions"], check=True, cwd=ROOT)
-    return Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / profile / "examples/instructions"
 
 
 sys.exit(main())
