@@ -313,8 +313,13 @@ fn a_model_with_hundreds_of_thousands_of_attributes_is_refused_at_its_place() {
 fn sensors_of_outer_loops_are_refused_by_check_as_those_of_the_pitch_loop_are() {
     let scenario =
         concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/gallery/altitude-capture.toml");
-    for (key, value) in [("period_s", "1e15"), ("delay_s", "1e9"), ("period_s", "1e-12")] {
-        let set = format!("outer_loop[0].sensor={{{key}={value}}}");
+    for (key, numbers) in [
+        ("period_s", "period_s=1e15"),
+        ("delay_s", "delay_s=1e9"),
+        ("period_s", "period_s=1e-12"),
+        ("period_s", "period_s=1e-12,delay_s=0.1"),
+    ] {
+        let set = format!("outer_loop[0].sensor={{{numbers}}}");
         let told = fspid(&["check", scenario, "--set", &set], Path::new("."));
         assert_eq!(code(&told), 2, "{set}");
         let text = text(&told.stderr);

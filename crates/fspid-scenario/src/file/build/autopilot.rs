@@ -331,7 +331,7 @@ fn sensor(
     let channel = FIRST_CHANNEL + u32::try_from(number).ok()?;
     let built = judged(report, (sensor, keys::NOISE), Sensor::new(model, seed, channel))?;
     let slowest = if model.delay_s > model.period_s { keys::DELAY_S } else { keys::PERIOD_S };
-    check_times(report, (sensor, slowest.into()), &built, dt_s);
+    check_times(report, (sensor, [keys::PERIOD_S.into(), slowest.into()]), &built, dt_s);
     Some(Some(built))
 }
 

@@ -63,37 +63,33 @@ fn check_sensor(
     sensor: &Sensor,
     timing: Timing,
 ) {
-    let dt_s = timing.dt_s();
-    match part.get(channel) {
+    let own = part.get(channel);
+    let keys: [KeyName; 2] = match own {
         Some(own) if own.given(sensor::DELAY_S) => {
-            check_looks(report, (own, sensor::PERIOD_S.into()), sensor, dt_s);
-            judged(report, (own, sensor::DELAY_S), sensor.memory_samples(dt_s));
+            [sensor::PERIOD_S.into(), sensor::DELAY_S.into()]
         }
-        Some(own) => check_times(report, (own, sensor::PERIOD_S.into()), sensor, dt_s),
-        None => check_times(report, (part, sensor::PRESET.into()), sensor, dt_s),
-    }
+        Some(_) => [sensor::PERIOD_S.into(); 2],
+        None => [sensor::PRESET.into(); 2],
+    };
+    check_times(report, (own.unwrap_or(part), keys), sensor, timing.dt_s());
 }
 
-/// How often a sensor looks, and how long it remembers, at one key.
+/// How often a sensor looks, told at the first key, and how long it remembers, told at the second.
 pub(super) fn check_times(
     report: &mut Report,
-    at: (&Section, KeyName),
+    (part, [looks, memory]): (&Section, [KeyName; 2]),
     sensor: &Sensor,
     dt_s: f64,
 ) {
-    check_looks(report, at, sensor, dt_s);
-    judged(report, at, sensor.memory_samples(dt_s));
-}
-
-fn check_looks(report: &mut Report, (part, key): (&Section, KeyName), sensor: &Sensor, dt_s: f64) {
     let period_s = sensor.model().period_s;
     if period_s > 0.0 && dt_s / period_s > MOST_LOOKS {
         let message =
             "so short that a flight would not end: the sensor looks more often than it is asked";
         let allowed =
             format!("0, or at least {:e} s: {MOST_LOOKS} looks a sample", dt_s / MOST_LOOKS);
-        part.wrong(report, key, message, allowed);
+        part.wrong(report, looks, message, allowed);
     }
+    judged(report, (part, memory), sensor.memory_samples(dt_s));
 }
 
 /// Refuses what waits too long on its way around the loop, at the key that has most of it wait.
