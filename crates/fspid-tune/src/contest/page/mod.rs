@@ -69,16 +69,20 @@ fn answer(outcome: &Outcome) -> Vec<Item> {
     let told = headline(outcome).told;
     let found = ranking.iter().filter(|place| Some(**place) != told);
     let found = found.filter_map(|place| outcome.comparison(*place));
-    let sentences = found.take(MOST_SENTENCES).map(|it| sentence(outcome, it));
+    let sentences: Vec<String> =
+        found.take(MOST_SENTENCES).map(|it| sentence(outcome, it)).collect();
     let mut items = vec![Item::Heading("Who is how far from whom, by kind of case".to_owned())];
     items.extend(tables::by_group(outcome));
     items.extend([
         Item::Heading("The controllers".to_owned()),
         Item::Table(tables::controllers(outcome)),
         Item::Fold("More of everyone".to_owned(), vec![Item::Table(tables::more(outcome))]),
-        Item::Heading("The same in sentences".to_owned()),
-        Item::List(sentences.collect()),
     ]);
+    // Of two controllers the verdict above has said the one sentence that there is.
+    if !sentences.is_empty() {
+        items.push(Item::Heading("The same in sentences".to_owned()));
+        items.push(Item::List(sentences));
+    }
     items
 }
 
