@@ -139,7 +139,7 @@ export interface Moment {
   command_deg: number;
   command_before_limits_deg: number;
   saturated: boolean;
-  parts: Record<"proportional_deg" | "integral_deg" | "derivative_deg" | "rate_deg", number>;
+  parts: Record<"proportional_deg" | "integral_deg" | "derivative_deg" | "rate_deg" | "fed_forward_deg", number>;
   gains: Record<"nominal" | "used", Record<"kp" | "ki" | "kd", number>>;
   supervisor?: {
     error: number;

@@ -28,6 +28,8 @@ pub enum ControllerSetting {
     ProportionalWeight,
     /// Set-point weight of the derivative term.
     DerivativeWeight,
+    /// Command per set-point beside the gains.
+    Feedforward,
     /// Time constant of the derivative's filter.
     DerivativeFilter,
     /// Lowest and highest command.
@@ -94,6 +96,7 @@ impl ControllerSetting {
             Self::RateGain => "rate_gain, s",
             Self::ProportionalWeight => "set-point weight of the proportional term",
             Self::DerivativeWeight => "set-point weight of the derivative term",
+            Self::Feedforward => "command per set-point that is fed forward",
             Self::DerivativeFilter => "derivative filter, s",
             Self::OutputLimits => "output limits",
             Self::SlewLimit => "slew limit, rad/s",

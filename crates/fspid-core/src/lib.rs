@@ -26,9 +26,10 @@
 //! supervisor for the gains first ([`SelfTuner`]); then, with $T$ the sample period,
 //!
 //! $$ I_k = I_{k-1} + k_i e_k T, \qquad D_k = \frac{e_k - e_{k-1}}{T}, \qquad
-//!    u_k = k_p e_k + I_k + k_d D_k - k_r q_k $$
+//!    u_k = k_p e_k + I_k + k_d D_k - k_r q_k + k_f r_k $$
 //!
-//! where $q_k$ is the pitch rate and $k_r$ the gain of the rate-gyro loop. The command is limited
+//! where $q_k$ is the pitch rate and $k_r$ the gain of the rate-gyro loop, and $k_f$ what is
+//! fed forward from the set-point, which does not move with the gains. The command is limited
 //! and, if asked for, the integral follows the limit (anti-windup). A positive command means nose
 //! up; the sign of the elevator belongs to the plant.
 //!

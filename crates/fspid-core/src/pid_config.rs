@@ -79,6 +79,9 @@ pub struct PidConfig<R> {
     pub rate_gain_s: R,
     /// Set-point weights.
     pub setpoint_weights: SetpointWeights<R>,
+    /// Command per set-point $k_f$ beside the gains: adds $k_f r$, whatever the gains are. At gains that stand still it
+    /// is a set-point weight of $b + k_f / k_p$; where they move it does not move with them.
+    pub feedforward: R,
     /// Derivative filter.
     pub derivative: Derivative<R>,
     /// Bumpless or literal.
@@ -105,12 +108,13 @@ pub(crate) struct Moment<'a, R> {
 }
 
 impl<R: Real> PidConfig<R> {
-    /// Plain error feedback, no filter, no limits, no anti-windup, no rate loop.
+    /// Plain error feedback, no feed-forward, no filter, no limits, no anti-windup, no rate loop.
     pub fn sampled_every(dt_s: R) -> Self {
         Self {
             dt_s,
             rate_gain_s: R::ZERO,
             setpoint_weights: SetpointWeights { proportional: R::ONE, derivative: R::ONE },
+            feedforward: R::ZERO,
             derivative: Derivative { filter_s: R::ZERO },
             integral: IntegralForm::default(),
             anti_windup: AntiWindup::None,
@@ -127,6 +131,7 @@ impl<R: Real> PidConfig<R> {
             dt_s: _,
             rate_gain_s: _,
             setpoint_weights: _,
+            feedforward: _,
             derivative: _,
             integral: _,
             anti_windup,
@@ -143,6 +148,7 @@ impl<R: Real> PidConfig<R> {
         finite(ControllerSetting::RateGain, self.rate_gain_s)?;
         finite(ControllerSetting::ProportionalWeight, self.setpoint_weights.proportional)?;
         finite(ControllerSetting::DerivativeWeight, self.setpoint_weights.derivative)?;
+        finite(ControllerSetting::Feedforward, self.feedforward)?;
         not_negative(ControllerSetting::DerivativeFilter, self.derivative.filter_s)?;
         self.anti_windup.check(self.dt_s)?;
         if let Some(slew) = self.slew_rad_s {

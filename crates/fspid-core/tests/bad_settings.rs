@@ -64,9 +64,15 @@ fn every_bad_setting_of_the_configuration_is_refused_by_name_in_both_controllers
     /// Name, how to set it, what is refused and what is not.
     type Row = (&'static str, Set, &'static [f64], &'static [f64]);
     let not_positive: &[f64] = &[0.0, -0.0, -1.0, 5e-324];
-    let rows: [Row; 7] = [
+    let rows: [Row; 8] = [
         ("sample period, s", |s, v| s.dt_s = v, not_positive, &[1e-6, 1.0]),
         ("rate_gain, s", |s, v| s.rate_gain_s = v, &[], &[0.0, -1.0]),
+        (
+            "command per set-point that is fed forward",
+            |s, v| s.feedforward = v,
+            &[],
+            &[0.0, -1.0, 2.0],
+        ),
         (
             "set-point weight of the proportional term",
             |s, v| s.setpoint_weights.proportional = v,

@@ -61,6 +61,9 @@ fn by_hand(
             d = if tf > 0.0 { (tf * d + (x - x_prev)) / (tf + T) } else { (x - x_prev) / T };
         }
         commands.push(kp * (b * r - y) + integral + kd * d - config.rate_gain_s * q);
+        if config.feedforward != 0.0 {
+            *commands.last_mut().expect("one") += config.feedforward * r;
+        }
         (e_prev, x_prev) = (e, x);
     }
     commands
@@ -90,6 +93,15 @@ fn a_pid_is_its_definition_with_either_integral() {
     for integral in [IntegralForm::Bumpless, IntegralForm::Literal] {
         let config = PidConfig { integral, ..PidConfig::sampled_every(T) };
         assert_pid_as_by_hand(NOMINAL, config);
+    }
+}
+
+#[test]
+fn what_is_fed_forward_comes_on_top_whatever_the_gains_are() {
+    for feedforward in [0.7, -0.4] {
+        let config = PidConfig { feedforward, rate_gain_s: 0.2, ..PidConfig::sampled_every(T) };
+        assert_pid_as_by_hand(NOMINAL, config);
+        assert_pid_as_by_hand(Gains { kp: 0.0, ..NOMINAL }, config);
     }
 }
 

@@ -41,6 +41,7 @@ fn config(config: &PidConfig<f64>) -> PidConfig<f64> {
         dt_s,
         rate_gain_s,
         setpoint_weights,
+        feedforward,
         derivative,
         integral,
         anti_windup,
@@ -55,6 +56,7 @@ fn config(config: &PidConfig<f64>) -> PidConfig<f64> {
             proportional: LESS * setpoint_weights.proportional,
             derivative: LESS * setpoint_weights.derivative,
         },
+        feedforward: LESS * feedforward,
         derivative: Derivative { filter_s: LESS * derivative.filter_s },
         integral,
         anti_windup: match anti_windup {

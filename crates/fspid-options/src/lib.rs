@@ -122,13 +122,16 @@ fn config(structure: Structure) -> impl Strategy<Value = PidConfig<f64>> {
     let limits = (limits(0.5), any::<bool>())
         .prop_map(move |(limits, limited)| (limited || at_limits).then_some(limits));
     let rate_gain_s = prop_oneof![Just(0.0), 0.0..0.5];
-    let numbers = (rate_gain_s, weights, derivative, guard);
+    let feedforward = prop_oneof![3 => Just(0.0), 1 => -0.5..0.5];
+    let numbers = (rate_gain_s, weights, feedforward, derivative, guard);
     (numbers, like(structure.anti_windup, anti_windup()), limits, option::of(0.2..5.0)).prop_map(
-        move |((rate_gain_s, setpoint_weights, derivative, guard), anti_windup, limits, slew)| {
+        move |(numbers, anti_windup, limits, slew)| {
+            let (rate_gain_s, setpoint_weights, feedforward, derivative, guard) = numbers;
             PidConfig {
                 dt_s: DT_S,
                 rate_gain_s,
                 setpoint_weights,
+                feedforward,
                 derivative,
                 integral: structure.integral,
                 anti_windup,

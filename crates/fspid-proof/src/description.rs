@@ -238,6 +238,8 @@ impl LoopDescription {
             // Covered with fixed gains; with gains that move bounded, by the range of set-points and loads.
             setpoint_weights: _,
             integral: _,
+            // Covered: it stands still with the set-point, and the integral takes its place.
+            feedforward: _,
             anti_windup,
             limits,
             slew_rad_s,

@@ -122,6 +122,12 @@ impl<'a> Holding<'a> {
         (Interval::point(of_setpoint) + self.load).upper()
     }
 
+    /// Largest magnitude of what is fed forward, $k_f r$.
+    fn fed_forward(&self) -> Interval {
+        let size = self.description.controller.config().feedforward.abs();
+        Interval::point(size) * self.setpoint
+    }
+
     /// Largest magnitude of (b - 1) r.
     fn by_weight(&self) -> Interval {
         let weight = self.description.controller.config().setpoint_weights.proportional;
@@ -179,7 +185,10 @@ impl<'a> Holding<'a> {
         Rest {
             held: HeldCommand::NONE,
             command_rad,
-            integral_rad: (Interval::point(command_rad) + kp * self.by_weight()).upper(),
+            integral_rad: (Interval::point(command_rad)
+                + kp * self.by_weight()
+                + self.fed_forward())
+            .upper(),
             seen_rad,
             error_rad: 0.0,
             any_setpoint: true,
@@ -189,7 +198,7 @@ impl<'a> Holding<'a> {
 
     /// Command and error at rest without an integral, largest magnitudes:
     ///
-    /// $$ k_p (b r - y) = y / G + d, \qquad b r - y = \frac{b r / G + d}{k_p + 1 / G} $$
+    /// $$ k_p (b r - y) + k_f r = y / G + d, \qquad b r - y = \frac{b r / G + d - k_f r}{k_p + 1 / G} $$
     ///
     /// with G the pitch per command. Some rest there is, as kp is a continuous function of the error.
     fn proportional(&self, kp: Interval) -> Option<(f64, f64)> {
@@ -201,9 +210,11 @@ impl<'a> Holding<'a> {
         let weight = self.description.controller.config().setpoint_weights.proportional;
         let size = |value: Interval| Interval::point(value.magnitude());
         let known = !sum.contains(0.0) && sum.is_bounded();
-        let beyond = size(per) * Interval::point(weight.abs()) * self.setpoint + self.load;
+        let beyond = size(per) * Interval::point(weight.abs()) * self.setpoint
+            + self.load
+            + self.fed_forward();
         let driven = beyond / size_least(sum);
-        let command = size(kp) * driven;
+        let command = size(kp) * driven + self.fed_forward();
         known.then_some((command.upper(), driven.upper()))
     }
 
@@ -232,7 +243,7 @@ impl<'a> Holding<'a> {
         }
         let literal = fspid.config().integral == IntegralForm::Literal;
         let command_rad = self.command_rad();
-        let integral = Interval::point(command_rad) + self.of_weight_at_rest();
+        let integral = Interval::point(command_rad) + self.of_weight_at_rest() + self.fed_forward();
         let by_kp = self.weight_per_kp().upper();
         let mut rest = Rest {
             held: HeldCommand { by_kp, by_ki: 0.0, at_origin: true },

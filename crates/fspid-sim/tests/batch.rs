@@ -122,6 +122,7 @@ fn config(random: &mut Random, structure: Structure) -> PidConfig<f64> {
         return config;
     }
     config.rate_gain_s = if random.one_in(2) { random.between(0.0, 0.5) } else { 0.0 };
+    config.feedforward = if random.one_in(3) { random.between(-1.0, 1.0) } else { 0.0 };
     config.setpoint_weights = SetpointWeights {
         proportional: random.between(0.0, 1.0),
         derivative: random.between(0.0, 1.0),

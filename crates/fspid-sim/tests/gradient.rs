@@ -112,12 +112,13 @@ impl Parts {
 }
 
 /// How many directions there are.
-const DIRECTIONS: usize = 22;
+const DIRECTIONS: usize = 23;
 
 /// The controller with one of its settings moved; none where it has no such setting.
 fn moved(mut parts: Parts, direction: usize, by: f64) -> Option<Controller> {
     let config = &mut parts.config;
     match direction {
+        22 => config.feedforward += by,
         0 => parts.gains.kp += by,
         1 => parts.gains.ki += by,
         2 => parts.gains.kd += by,

@@ -24,7 +24,8 @@ fn the_parts_of_a_command_are_the_command_to_the_bit() {
                 let Ok(moment) = Moment::of(&study, &name, at_s) else { continue };
                 let parts = moment.parts;
                 let sum = parts.proportional_rad + parts.integral_rad + parts.derivative_rad
-                    - parts.rate_rad;
+                    - parts.rate_rad
+                    + parts.fed_forward_rad;
                 assert_eq!(sum.to_bits(), moment.free_rad.to_bits(), "{name} at {at_s} s");
                 asked += 1;
             }

@@ -38,6 +38,9 @@ macro_rules! numbers {
         }
 
         impl<S> $name<S> {
+            /// How many numbers there are.
+            pub const COUNT: usize = [$(stringify!($field)),+].len();
+
             /// Numbers from somewhere, one by one in the order of [`map`](Self::map).
             #[inline(always)]
             pub fn from_each(mut number: impl FnMut() -> S) -> Self {

@@ -42,6 +42,8 @@ pub struct PidStructure {
     pub anti_windup: AntiWindupKind,
     /// True if something moves with the gains.
     pub coupled: bool,
+    /// True if a part of the command is fed forward.
+    pub feeds_forward: bool,
     /// True if the command has limits or a slew limit.
     pub limited: bool,
 }
@@ -65,6 +67,8 @@ numbers! {
     nominal_kp,
     /// The nominal `kd`.
     nominal_kd,
+    /// Command per set-point beside the gains.
+    feedforward,
     /// Derivative filter, s.
     filter_s,
     /// Lower limit of the command, rad.
@@ -107,7 +111,8 @@ pub struct Free<S> {
     pub command_rad: S,
 }
 
-/// What a command is made of before any limit: the first three less the last, in this order, are it to the bit.
+/// What a command is made of before any limit: the first three less the rate's, and what is fed forward, in this order, are
+/// it to the bit.
 #[derive(Clone, Copy, Debug)]
 pub struct Parts<S> {
     /// $k_p (b r - y)$, rad.
@@ -118,6 +123,8 @@ pub struct Parts<S> {
     pub derivative_rad: S,
     /// $k_r q$, rad, which is taken off.
     pub rate_rad: S,
+    /// $k_f r$, rad.
+    pub fed_forward_rad: S,
 }
 
 /// A sample behind the limits.
@@ -139,6 +146,7 @@ impl<R: Real> PidEquations<R> {
             dt_s,
             rate_gain_s,
             setpoint_weights,
+            feedforward,
             derivative,
             integral,
             anti_windup,
@@ -153,6 +161,7 @@ impl<R: Real> PidEquations<R> {
         };
         let (term_lower_rad, term_upper_rad) = ends(term_limits);
         let coupled = coupling != GainCoupling::NONE;
+        let feeds_forward = feedforward != R::ZERO;
         let numbers = PidNumbers {
             dt_s,
             rate_gain_s,
@@ -160,6 +169,7 @@ impl<R: Real> PidEquations<R> {
             proportional_weight: setpoint_weights.proportional,
             weight_per_kp: coupling.setpoint_weight,
             derivative_weight: setpoint_weights.derivative,
+            feedforward,
             nominal_kp: nominal.kp,
             nominal_kd: nominal.kd,
             filter_s: derivative.filter_s,
@@ -175,7 +185,10 @@ impl<R: Real> PidEquations<R> {
         };
         let anti_windup = AntiWindupKind::of(anti_windup);
         let limited = limits.is_some() || slew_rad_s.is_some();
-        Self { structure: PidStructure { integral, anti_windup, coupled, limited }, numbers }
+        Self {
+            structure: PidStructure { integral, anti_windup, coupled, feeds_forward, limited },
+            numbers,
+        }
     }
 
     /// The same equations for numbers of another kind.
@@ -204,7 +217,7 @@ impl<S: Scalar> PidEquations<S> {
         }
     }
 
-    /// $$ u = k_p (b r - y) + I + k_d d - k_r q, \qquad
+    /// $$ u = k_p (b r - y) + I + k_d d - k_r q + k_f r, \qquad
     /// d_k = \frac{T_f d_{k-1} + x_k - x_{k-1}}{T_f + T}, \quad x = c r - y $$
     #[inline(always)]
     pub fn free(&self, memory: &Memory<S>, sample: &Sample<S>, gains: &Gains<S>) -> Free<S> {
@@ -224,6 +237,7 @@ impl<S: Scalar> PidEquations<S> {
 
         let command_rad =
             proportional_rad + term_rad + kd * derivative_rad_s - rate_gain_s * rate_rad_s;
+        let command_rad = self.fed_forward(command_rad, setpoint_rad);
         Free { error_rad, derivative_input_rad, derivative_rad_s, wound, term_rad, command_rad }
     }
 
@@ -235,7 +249,17 @@ impl<S: Scalar> PidEquations<S> {
             integral_rad: free.term_rad,
             derivative_rad: gains.kd * free.derivative_rad_s,
             rate_rad: rate_gain_s * sample.rate_rad_s,
+            fed_forward_rad: self.fed_forward(S::zero(), sample.setpoint_rad),
         }
+    }
+
+    /// A command with $k_f r$ on top.
+    #[inline(always)]
+    fn fed_forward(&self, command_rad: S, setpoint_rad: S) -> S {
+        if !self.structure.feeds_forward {
+            return command_rad;
+        }
+        command_rad + self.numbers.feedforward * setpoint_rad
     }
 
     /// The sample behind slew limit, limits and anti-windup, in this order.
@@ -312,7 +336,7 @@ impl<S: Scalar> PidEquations<S> {
     /// The integral's memory from which the next sample continues at `command_rad`, from the memory that a step
     /// to this sample has left: the term that fills what the other terms leave,
     ///
-    /// $$ I = u - k_p (b r - y) - k_d d + k_r q $$
+    /// $$ I = u - k_p (b r - y) - k_d d + k_r q - k_f r $$
     ///
     /// within the limits of the term. Where $k_i$ is zero the memory stays as it is: nothing would bring it back.
     #[inline(always)]
@@ -322,6 +346,7 @@ impl<S: Scalar> PidEquations<S> {
         let (weight, rate_gain_s) = self.coupled(&Gains { kp, ki, kd });
         let proportional_rad = kp * (weight * setpoint_rad - measurement_rad);
         let rest_rad = proportional_rad + kd * derivative_rad_s - rate_gain_s * rate_rad_s;
+        let rest_rad = self.fed_forward(rest_rad, setpoint_rad);
         let (n, term_rad) = (&self.numbers, command_rad - rest_rad);
         let term_rad = match self.structure.anti_windup {
             AntiWindupKind::Clamping => limited(term_rad, n.term_lower_rad, n.term_upper_rad),

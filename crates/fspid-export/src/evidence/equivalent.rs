@@ -10,7 +10,7 @@ use super::normal::normal;
 use super::ranges::{self, Known, Memory, Ranges, above, rounded};
 use super::{Finding, Subject};
 use crate::interpret::Branch;
-use crate::program::{Expression, Precision, Program, Statement, Value};
+use crate::program::{Expression, Precision, Program, Statement, Value, each_expression};
 
 /// A program and what is known of it.
 pub(super) struct Judge<'a> {
@@ -157,7 +157,7 @@ impl<'a> Judge<'a> {
         let ranges = self.ranges.as_ref()?;
         let mut found = Vec::new();
         for function in self.program.functions.iter().filter(|it| it.name == branch.function) {
-            equality::each(&function.body, &mut |value| {
+            each_expression(&function.body, &mut |value| {
                 if *value == branch.condition {
                     found.push(value);
                 }

@@ -6,12 +6,14 @@
 
 mod expression;
 mod statement;
+mod walk;
 
 pub use expression::{
     Argument, Expression, Operator, Part, Place, element, local, member, member_element, number,
     whole,
 };
 pub use statement::{Kind, Statement};
+pub(crate) use walk::{each_expression, reads};
 
 /// How many digits a real has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -10,7 +10,7 @@ use super::polygon::PIECE;
 use super::{Composer, Trouble, at, count_of, put};
 use crate::compose::precision_of;
 use crate::program::{
-    Argument, Expression, Kind, Operator, Statement, element, local, number, whole,
+    Argument, Expression, Kind, Operator, Statement, element, local, number, reads, whole,
 };
 
 /// Most samples that are kept for the bisector, which walks over them twice: 8 KiB of stack with 64 bits (assumed to be there).
@@ -75,7 +75,11 @@ impl Samples {
         [Statement::real(&self.name("cell"), cell), Statement::real(&self.name("x"), x)]
     }
 
+    /// A walk over the samples, with their places where the body asks for them: sets that are the same everywhere do not.
     fn each(&self, body: Vec<Statement>) -> Statement {
+        let placed = reads(&body, &self.name("x"));
+        let places = if placed { self.x().into() } else { Vec::new() };
+        let body = places.into_iter().chain(body).collect();
         repeat(&self.name("sample"), self.count as usize, body)
     }
 }
@@ -91,8 +95,7 @@ impl<R: Real> Composer<'_, R> {
         let name = self.names.outputs[index].clone();
         let ends = self.range(&name, universe);
         let samples = Samples::of(sampling, ends, index)?;
-        let mut sample: Vec<Statement> = samples.x().into();
-        sample.extend(self.joined(index, output, &samples)?);
+        let sample = self.joined(index, output, &samples)?;
         match output.defuzzifier {
             Defuzzifier::Bisector(_) => self.sampled_bisector(sampling, &samples, sample)?,
             method => self.sampled_in_one_walk(method, sampling, &samples, sample),
@@ -227,7 +230,6 @@ impl<R: Real> Composer<'_, R> {
         let mut walk = vec![
             samples.set("below", samples.real("below") + element(&kept, samples.real("sample"))),
         ];
-        walk.extend(samples.x());
         let open = at("found", 0).less(number(0.5));
         let reached = half.at_most(samples.real("below"));
         let found = vec![put("found", 0, number(1.0)), put("found", 1, samples.real("x"))];

@@ -128,6 +128,7 @@ fn pid_config<R: Real>(number: Number, config: &PidConfig<R>) -> String {
         dt_s,
         rate_gain_s,
         setpoint_weights: SetpointWeights { proportional, derivative: of_derivative },
+        feedforward,
         derivative: Derivative { filter_s },
         integral,
         anti_windup,
@@ -155,6 +156,7 @@ fn pid_config<R: Real>(number: Number, config: &PidConfig<R>) -> String {
             ("dt_s", number.positive(dt_s)),
             ("rate_gain_s", number.finite(rate_gain_s)),
             ("setpoint_weights", item("SetpointWeights", &weights)),
+            ("feedforward", number.finite(feedforward)),
             ("derivative", item("Derivative", &[("filter_s", number.not_negative(filter_s))])),
             ("integral", format!("IntegralForm::{integral:?}")),
             ("anti_windup", anti_windup),
@@ -173,6 +175,7 @@ fn pid_equations<R: Real>(number: Number, equations: &PidEquations<R>) -> String
             ("integral", format!("IntegralForm::{:?}", structure.integral)),
             ("anti_windup", format!("AntiWindupKind::{:?}", structure.anti_windup)),
             ("coupled", structure.coupled.to_string()),
+            ("feeds_forward", structure.feeds_forward.to_string()),
             ("limited", structure.limited.to_string()),
         ],
     );

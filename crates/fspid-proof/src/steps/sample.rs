@@ -291,6 +291,7 @@ impl Pass<'_, '_> {
         let mut free = Affine::sum([
             (point(kp), &driven),
             (point(-config.rate_gain_s), &seen.rate),
+            (point(config.feedforward), &self.now.setpoint),
             (Interval::ONE, term.as_ref().unwrap_or(&Affine::default())),
             (point(kd), seen.derivative.as_ref().unwrap_or(&Affine::default())),
         ]);

@@ -267,6 +267,7 @@ fn config(dice: &mut Dice, dt_s: f64, size: f64) -> PidConfig<f64> {
             proportional: dice.one_of(&[0.0, 0.0, 0.3, 0.7, 1.0, 1.0, 1.3, -0.5]),
             derivative: dice.one_of(&[0.0, 0.5, 1.0]),
         },
+        feedforward: if dice.happens(0.25) { dice.between(-size, size) } else { 0.0 },
         derivative: Derivative { filter_s: dice.one_of(&[0.0, 0.05, 0.1]) },
         integral: dice.one_of(&[
             IntegralForm::Bumpless,

@@ -45,6 +45,7 @@ fn full_config() -> PidConfig<f64> {
         dt_s: 0.01,
         rate_gain_s: 0.1,
         setpoint_weights: SetpointWeights { proportional: 0.8, derivative: 0.5 },
+        feedforward: 0.25,
         derivative: Derivative { filter_s: 0.05 },
         integral: IntegralForm::Bumpless,
         anti_windup: AntiWindup::Clamping(limits(-5.0 * DEG, 5.0 * DEG)),
@@ -120,6 +121,7 @@ fn regulator(anti_windup: AntiWindup<f64>) -> Controller {
         rate_gain_s: found.rate_s,
         anti_windup,
         setpoint_weights: SetpointWeights { proportional: 0.3, derivative: 1.0 },
+        feedforward: 0.0,
         derivative: Derivative { filter_s: 0.0 },
         ..full_config()
     };
@@ -128,7 +130,7 @@ fn regulator(anti_windup: AntiWindup<f64>) -> Controller {
 
 fn controllers() -> Vec<NamedController> {
     let isa = Gains { kp: 1.0, ki: 1.0 / 5.0, kd: 0.1 };
-    let p = PidConfig { rate_gain_s: 0.1, ..PidConfig::sampled_every(0.01) };
+    let p = PidConfig { rate_gain_s: 0.1, feedforward: 0.25, ..PidConfig::sampled_every(0.01) };
     vec![
         named("p", pid(Gains { kp: 1.0, ki: 0.0, kd: 0.0 }, p)),
         named("pid", pid(GAINS, full_config())),

@@ -130,15 +130,16 @@ impl<'a, const W: usize> Controllers<'a, W> {
         let differs = |what| Refusal::Differs { flight: lane, what };
         let controller = self.singles[lane];
         let PidEquations { structure, numbers } = *controller.equations();
-        let PidStructure { integral, anti_windup, coupled, limited } = structure;
+        let PidStructure { integral, anti_windup, coupled, feeds_forward, limited } = structure;
         if integral != self.structure.integral {
             return Err(differs("the form of its integral"));
         }
         if anti_windup != self.structure.anti_windup {
             return Err(differs("its anti-windup"));
         }
-        // Where nothing is coupled the factors are 0, where nothing limits the limits are infinite.
+        // Where nothing is coupled or fed forward the factors are 0, where nothing limits the limits are infinite.
         self.structure.coupled |= coupled;
+        self.structure.feeds_forward |= feeds_forward;
         self.structure.limited |= limited;
         match (controller, &mut self.tuners) {
             (Controller::Fixed(_), None) => {}

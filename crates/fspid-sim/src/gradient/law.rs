@@ -16,7 +16,7 @@ use crate::batch::Refusal;
 use crate::controller::Controller;
 
 /// Numbers of [`Memory`].
-pub(super) const MEMORY: usize = 10;
+pub(super) const MEMORY: usize = Memory::<f64>::COUNT;
 /// What a controller sees: set-point, pitch, pitch rate.
 const SAMPLE: usize = 3;
 /// What its supervisor adds to each gain, before any factor.
@@ -66,6 +66,7 @@ const PLAIN: PidStructure = PidStructure {
     integral: IntegralForm::Bumpless,
     anti_windup: AntiWindupKind::None,
     coupled: false,
+    feeds_forward: false,
     limited: false,
 };
 
@@ -85,7 +86,10 @@ impl Structure {
             Controller::SelfTuning(fspid) => Some(fspid.tuner_equations().structure),
         };
         let pid = controller.equations().structure;
-        Self { pid: PidStructure { coupled: true, limited: true, ..pid }, tuner }
+        Self {
+            pid: PidStructure { coupled: true, feeds_forward: true, limited: true, ..pid },
+            tuner,
+        }
     }
 
     /// What a supervisor would see, in its units.

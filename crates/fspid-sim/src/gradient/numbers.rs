@@ -7,9 +7,9 @@ use fspid_core::{Fspid, Gains, SetCentres};
 use crate::controller::Controller;
 
 /// Numbers of [`PidNumbers`], [`TunerNumbers`] and of one [`GainNumbers`].
-pub(super) const PID: usize = 15;
-pub(super) const TUNER: usize = 10;
-pub(super) const GAIN: usize = 4;
+pub(super) const PID: usize = PidNumbers::<f64>::COUNT;
+pub(super) const TUNER: usize = TunerNumbers::<f64>::COUNT;
+pub(super) const GAIN: usize = GainNumbers::<f64>::COUNT;
 /// Cells of one gain's rules.
 pub(super) const CELLS: usize = 49;
 /// Centres of the small and the medium sets of both inputs.

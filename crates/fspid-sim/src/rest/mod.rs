@@ -263,7 +263,9 @@ impl Holding<'_> {
         let gain_coupling = self.fspid.tuner().settings().gain_coupling;
         let pitch_rad = setpoint_rad - error_rad;
         let by_kp = config.setpoint_weights.proportional * setpoint_rad - pitch_rad;
-        let integral_rad = self.command_per_pitch * pitch_rad + load_rad - gains.kp * by_kp
+        let integral_rad = self.command_per_pitch * pitch_rad + load_rad
+            - gains.kp * by_kp
+            - config.feedforward * setpoint_rad
             + config.rate_gain_s * rate_rad_s;
         let held = Held {
             // The error's own part of kp e is in the gains.
@@ -318,6 +320,7 @@ impl Holding<'_> {
             let config = self.fspid.config_at(gains);
             let pitch_rad = setpoint_rad - error_rad;
             gains.kp * (config.setpoint_weights.proportional * setpoint_rad - pitch_rad)
+                + config.feedforward * setpoint_rad
                 - self.command_per_pitch * pitch_rad
                 - load_rad
                 - config.rate_gain_s * rate_rad_s

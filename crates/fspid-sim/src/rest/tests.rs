@@ -62,6 +62,7 @@ fn controller(dice: &mut Dice) -> Fspid<f64> {
     };
     let mut config = PidConfig::sampled_every(DT_S);
     config.setpoint_weights.proportional = dice.between(0.0, 1.3);
+    config.feedforward = dice.one_of(&[0.0, 0.6, -0.6]);
     config.derivative.filter_s = dice.one_of(&[0.0, 0.05]);
     config.rate_gain_s = 1.5;
     config.integral = dice.one_of(&[IntegralForm::Bumpless, IntegralForm::Literal]);

@@ -21,6 +21,9 @@ pub(super) struct ControllerFile {
     gains: GainsFile,
     rate_gain_s: f64,
     setpoint_weights: [f64; 2],
+    /// Left out where it is zero, as in certificates from before there was one.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    feedforward: f64,
     derivative_filter_s: f64,
     integral: IntegralFile,
     anti_windup: AntiWindupFile,
@@ -29,6 +32,10 @@ pub(super) struct ControllerFile {
     sample_guard_rad: f64,
     /// None for fixed gains.
     tuner: Option<TunerFile>,
+}
+
+fn is_zero(number: &f64) -> bool {
+    *number == 0.0
 }
 
 /// Lower and upper end; `null` for an open one.
@@ -175,6 +182,7 @@ impl ControllerFile {
             gains: GainsFile::of(controller.nominal()),
             rate_gain_s: config.rate_gain_s,
             setpoint_weights: [weights.proportional, weights.derivative],
+            feedforward: config.feedforward,
             derivative_filter_s: config.derivative.filter_s,
             integral: match config.integral {
                 IntegralForm::Bumpless => IntegralFile::Bumpless,
@@ -205,6 +213,7 @@ impl ControllerFile {
         let config = PidConfig {
             rate_gain_s: self.rate_gain_s,
             setpoint_weights: SetpointWeights { proportional, derivative },
+            feedforward: self.feedforward,
             derivative: Derivative { filter_s: self.derivative_filter_s },
             integral: match self.integral {
                 IntegralFile::Bumpless => IntegralForm::Bumpless,

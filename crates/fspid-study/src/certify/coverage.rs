@@ -252,6 +252,11 @@ pub const COVERAGE: &[KeyCoverage] = &[
         "other than 1 with gains that move: over the range of set-points",
     ),
     row(
+        "controller.feedforward",
+        Covered,
+        "it does not move with the gains, and acts while the set-point moves, which is left out",
+    ),
+    row(
         "controller.setpoint_weights.derivative",
         Covered,
         "it acts while the set-point moves, which is left out",

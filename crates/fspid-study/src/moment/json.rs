@@ -10,7 +10,7 @@ use crate::json::{finite, present};
 
 impl Moment {
     /// What was seen, which rules fired with what each added to which gain, and the parts of the command: the first
-    /// three less the last are the command before its limits.
+    /// three less the rate's, and what is fed forward, are the command before its limits.
     #[must_use]
     pub fn json(&self) -> Value {
         let triple = |Gains { kp, ki, kd }| json!({ "kp": kp, "ki": ki, "kd": kd });
@@ -28,6 +28,7 @@ impl Moment {
                 "integral_deg": degrees(self.parts.integral_rad),
                 "derivative_deg": degrees(self.parts.derivative_rad),
                 "rate_deg": degrees(self.parts.rate_rad),
+                "fed_forward_deg": degrees(self.parts.fed_forward_rad),
             },
             "gains": { "nominal": triple(self.nominal), "used": triple(self.step.gains) },
             "supervisor": self.fuzzy.as_ref().map(Fuzzy::json),

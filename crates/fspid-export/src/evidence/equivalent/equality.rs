@@ -1,7 +1,7 @@
 //! What a program does where the two sides of a comparison are the same number.
 
 use super::super::ranges::{Known, Range, Ranges, rounded};
-use crate::program::{Argument, Expression, Operator, Place, Precision, Program, Statement};
+use crate::program::{Expression, Operator, Place, Precision, Program, Statement, each_expression};
 
 /// A choice whose comparison is changed.
 enum Choice<'a> {
@@ -20,7 +20,7 @@ pub(super) fn is_the_same(program: &Program, changed: &Program, ranges: &Ranges<
     let (Choice::Value(asked, _) | Choice::Blocks(asked, _)) = &choice;
     let Expression::Binary(_, left, right) = asked else { return false };
     let mut reads = Vec::new();
-    each(&function.body, &mut |value| {
+    each_expression(&function.body, &mut |value| {
         if let (Expression::Read(_), Some(Known::Real(range))) = (value, ranges.of(value)) {
             reads.push((value.clone(), *range));
         }
@@ -76,63 +76,11 @@ fn in_values<'a>(a: &'a Expression, b: &Expression) -> Option<Choice<'a>> {
     {
         return Some(Choice::Value(asked, [then, otherwise]));
     }
-    children(a)
+    a.children()
         .into_iter()
-        .zip(children(b))
+        .zip(b.children())
         .find(|(a, b)| a != b)
         .and_then(|(a, b)| in_values(a, b))
-}
-
-/// What an expression is made of.
-fn children(value: &Expression) -> Vec<&Expression> {
-    match value {
-        Expression::Negative(inner)
-        | Expression::Magnitude(inner)
-        | Expression::Not(inner)
-        | Expression::ToReal(inner)
-        | Expression::PowerOfTwo(inner) => vec![inner],
-        Expression::Binary(_, left, right) => vec![left, right],
-        Expression::Select(condition, then, otherwise) => vec![condition, then, otherwise],
-        Expression::Call(_, given) => given_values(given),
-        Expression::Read(Place::Element(_, index) | Place::MemberElement(_, _, index)) => {
-            vec![index]
-        }
-        _ => Vec::new(),
-    }
-}
-
-fn given_values(given: &[Argument]) -> Vec<&Expression> {
-    let values = given.iter().filter_map(|it| match it {
-        Argument::Value(value) => Some(value),
-        Argument::Array(_) => None,
-    });
-    values.collect()
-}
-
-/// Every expression of a block, those within others too.
-pub(in crate::evidence) fn each<'a>(body: &'a [Statement], visit: &mut impl FnMut(&'a Expression)) {
-    for statement in body {
-        match statement {
-            Statement::Let(.., value)
-            | Statement::Set(_, value)
-            | Statement::Return(Some(value)) => within(value, visit),
-            Statement::If(condition, then, otherwise) => {
-                within(condition, visit);
-                each(then, visit);
-                each(otherwise, visit);
-            }
-            Statement::For(.., body) => each(body, visit),
-            Statement::Call(_, given) => {
-                given_values(given).into_iter().for_each(|value| within(value, visit));
-            }
-            Statement::Remark(_) | Statement::Array(..) | Statement::Return(None) => {}
-        }
-    }
-}
-
-fn within<'a>(value: &'a Expression, visit: &mut impl FnMut(&'a Expression)) {
-    visit(value);
-    children(value).into_iter().for_each(|value| within(value, visit));
 }
 
 /// The place at which the left side is the right one.

@@ -58,6 +58,7 @@ fn range(program: &Program, name: &str) -> Option<(f64, f64)> {
         | "term_upper_rad"
         | "proportional_weight"
         | "derivative_weight"
+        | "feedforward"
         | "weight_per_kp"
         | "error_per_rad"
         | "change_per_rad" => Some(any),

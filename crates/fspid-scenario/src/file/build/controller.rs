@@ -34,6 +34,7 @@ pub(super) fn controller(
             let gains = Gains { kp: section.get(keys::P_KP)?, ..Gains::ZERO };
             let config = PidConfig {
                 rate_gain_s: section.get(keys::RATE_GAIN)?,
+                feedforward: section.get(keys::FEEDFORWARD)?,
                 ..PidConfig::sampled_every(dt_s)
             };
             let (gains, config) = schedule::scaled(report, section, factor?, (gains, config))?;
@@ -124,6 +125,7 @@ fn config(
     Some(PidConfig {
         rate_gain_s: section.get(keys::RATE_GAIN)?,
         setpoint_weights: weights?,
+        feedforward: section.get(keys::FEEDFORWARD)?,
         derivative: Derivative { filter_s: filter_s? },
         integral: section.get(keys::INTEGRAL)?,
         ..ends?

@@ -77,7 +77,7 @@ fn limits(report: &mut Report, part: &Section) -> Option<(f64, f64)> {
     None
 }
 
-/// Gains and the gain of the rate loop, times the factor.
+/// Gains, the gain of the rate loop and what is fed forward, times the factor.
 pub(super) fn scaled(
     report: &mut Report,
     section: &Section,
@@ -87,5 +87,6 @@ pub(super) fn scaled(
     let Gains { kp, ki, kd } = gains;
     let scaled = Gains { kp: kp * factor, ki: ki * factor, kd: kd * factor }.checked();
     let gains = judged(report, (section, keys::SCHEDULE), scaled)?;
-    Some((gains, PidConfig { rate_gain_s: config.rate_gain_s * factor, ..config }))
+    let rate_gain_s = config.rate_gain_s * factor;
+    Some((gains, PidConfig { rate_gain_s, feedforward: config.feedforward * factor, ..config }))
 }

@@ -100,7 +100,7 @@ pub(super) static CONTROLLER_TABLE: Table = of_kinds(
             ControllerKind::P.name(),
             plain(
                 "Proportional, with an optional inner loop of pitch rate.",
-                &[&[&P_KP, &RATE_GAIN, &SCHEDULE]],
+                &[&[&P_KP, &RATE_GAIN, &FEEDFORWARD, &SCHEDULE]],
             ),
         ),
         variant(
@@ -290,6 +290,12 @@ pub(crate) const SETPOINT_WEIGHTS: Key<Section> = optional(
     table(&WEIGHTS_TABLE),
     "How much of the set-point each term sees.",
 );
+pub(crate) const FEEDFORWARD: Key<f64> = defaulted(
+    "feedforward",
+    finite(""),
+    0.0,
+    "Command per set-point beside the other terms; it does not move with the gains of a self-tuner.",
+);
 pub(crate) const DERIVATIVE_ON: Key<DerivativeOn> = defaulted(
     "derivative_on",
     word(),
@@ -310,7 +316,7 @@ pub(crate) const INTEGRAL: Key<IntegralForm> = defaulted(
 
 /// How the terms of a PID controller are formed.
 const TERMS: &[KeyRow] =
-    &[&RATE_GAIN, &SETPOINT_WEIGHTS, &DERIVATIVE_ON, &DERIVATIVE_FILTER_S, &INTEGRAL];
+    &[&RATE_GAIN, &SETPOINT_WEIGHTS, &FEEDFORWARD, &DERIVATIVE_ON, &DERIVATIVE_FILTER_S, &INTEGRAL];
 
 pub(crate) const ANTI_WINDUP: Key<Section> = optional(
     "anti_windup",

@@ -98,6 +98,7 @@ impl Autopilot {
         let gains = Gains { kp: kp * factor, ki: ki * factor, kd: kd * factor };
         let mut config = *controller.config();
         config.rate_gain_s *= factor;
+        config.feedforward *= factor;
         loop_spectral_radius(scenario, gains, &config).ok()
     }
 

@@ -155,6 +155,7 @@ const CONTROLLER: Shape = Object(&[
     key("gains", GAINS),
     key("rate_gain_s", REAL),
     key("setpoint_weights", List(&REAL, [2, 2])),
+    optional("feedforward", REAL),
     key("derivative_filter_s", DURATION),
     key("integral", Word(&["bumpless", "literal"])),
     key("anti_windup", ANTI_WINDUP),
