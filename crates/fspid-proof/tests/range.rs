@@ -115,6 +115,25 @@ fn with_a_weight_of_one_and_the_bumpless_integral_every_setpoint_and_load_is_pro
     assert!(rechecked.any_setpoint && rechecked.any_load);
 }
 
+/// A weight of 0.5 at the nominal gains, as a part that no gain moves: the integral takes it up once.
+#[test]
+fn what_is_fed_forward_leaves_every_setpoint_proved_where_a_weight_does_not() {
+    let fed = PidConfig { feedforward: -0.5 * NOMINAL.kp, ..config() };
+    for law in [Law::Memoryless, Law::Accumulating { leakage_per_s: 1.0 }] {
+        let (_, rechecked) = proved(answer(&tuned(fed, law, NOMINAL), &asked(300.0, 100.0)));
+        assert!(rechecked.any_setpoint && rechecked.any_load);
+        let (_, rechecked) = proved(answer(&tuned(weighted(0.5), law, NOMINAL), &asked(1.0, 0.0)));
+        assert!(!rechecked.any_setpoint);
+    }
+    // Without an integral it is an error that stays, which is stated.
+    let nominal = Gains { ki: 0.0, ..NOMINAL };
+    let error = |config| {
+        let description = tuned(config, Law::Memoryless, nominal);
+        proved(answer(&description, &asked(1.0, 0.0))).1.rest_error_rad
+    };
+    assert!(error(fed) > error(config()) + 0.1 * DEG);
+}
+
 /// It used to be proved for every load.
 #[test]
 fn the_literal_integral_is_proved_for_small_loads_and_not_for_large_ones() {
