@@ -79,7 +79,14 @@ pub fn structures() -> Vec<Structure> {
     let mut all = Vec::new();
     for integral in [IntegralForm::Bumpless, IntegralForm::Literal] {
         for anti_windup in kinds.into_iter().flatten() {
-            all.extend(tuners.iter().map(|&tuner| Structure { integral, anti_windup, tuner }));
+            for feeds_forward in [false, true] {
+                all.extend(tuners.iter().map(|&tuner| Structure {
+                    integral,
+                    anti_windup,
+                    feeds_forward,
+                    tuner,
+                }));
+            }
         }
     }
     all

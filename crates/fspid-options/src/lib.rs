@@ -28,6 +28,7 @@ pub const DT_S: f64 = 0.01;
 pub struct Structure {
     integral: IntegralForm,
     anti_windup: AntiWindup<f64>,
+    feeds_forward: bool,
     /// Of a self-tuning controller.
     tuner: Option<TunerStructure>,
 }
@@ -45,8 +46,16 @@ struct TunerStructure {
 /// Any structure.
 pub fn structure() -> impl Strategy<Value = Structure> {
     let integral = select(vec![IntegralForm::Bumpless, IntegralForm::Literal]);
-    (integral, anti_windup(), option::weighted(0.8, tuner_structure()))
-        .prop_map(|(integral, anti_windup, tuner)| Structure { integral, anti_windup, tuner })
+    let feeds_forward = prop::bool::weighted(0.25);
+    let tuner = option::weighted(0.8, tuner_structure());
+    (integral, anti_windup(), feeds_forward, tuner).prop_map(
+        |(integral, anti_windup, feeds_forward, tuner)| Structure {
+            integral,
+            anti_windup,
+            feeds_forward,
+            tuner,
+        },
+    )
 }
 
 fn tuner_structure() -> impl Strategy<Value = TunerStructure> {
@@ -122,7 +131,11 @@ fn config(structure: Structure) -> impl Strategy<Value = PidConfig<f64>> {
     let limits = (limits(0.5), any::<bool>())
         .prop_map(move |(limits, limited)| (limited || at_limits).then_some(limits));
     let rate_gain_s = prop_oneof![Just(0.0), 0.0..0.5];
-    let feedforward = prop_oneof![3 => Just(0.0), 1 => -0.5..0.5];
+    let feedforward: BoxedStrategy<f64> = if structure.feeds_forward {
+        prop_oneof![0.01..0.5, -0.5..-0.01].boxed()
+    } else {
+        Just(0.0).boxed()
+    };
     let numbers = (rate_gain_s, weights, feedforward, derivative, guard);
     (numbers, like(structure.anti_windup, anti_windup()), limits, option::of(0.2..5.0)).prop_map(
         move |(numbers, anti_windup, limits, slew)| {

@@ -238,7 +238,7 @@ impl LoopDescription {
             // Covered with fixed gains; with gains that move bounded, by the range of set-points and loads.
             setpoint_weights: _,
             integral: _,
-            // Covered: it stands still with the set-point, and the integral takes its place.
+            // Covered: it stands still with the set-point; the integral takes it up, without one it is in the error.
             feedforward: _,
             anti_windup,
             limits,

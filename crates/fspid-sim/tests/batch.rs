@@ -27,6 +27,7 @@ pub(super) struct Structure {
     /// Whether the rules conclude numbers, different ones in each flight.
     numbers: bool,
     literal: bool,
+    feeds_forward: bool,
     anti_windup: u8,
     accumulates: bool,
     /// What the supervisor sees: change, rate, model.
@@ -103,6 +104,9 @@ fn servo(random: &mut Random, wild: bool) -> Actuator {
 
 fn config(random: &mut Random, structure: Structure) -> PidConfig<f64> {
     let mut config = PidConfig::sampled_every(0.02);
+    if structure.feeds_forward {
+        config.feedforward = random.between(-1.0, 1.0);
+    }
     if structure.literal {
         config.integral = IntegralForm::Literal;
     }
@@ -122,7 +126,6 @@ fn config(random: &mut Random, structure: Structure) -> PidConfig<f64> {
         return config;
     }
     config.rate_gain_s = if random.one_in(2) { random.between(0.0, 0.5) } else { 0.0 };
-    config.feedforward = if random.one_in(3) { random.between(-1.0, 1.0) } else { 0.0 };
     config.setpoint_weights = SetpointWeights {
         proportional: random.between(0.0, 1.0),
         derivative: random.between(0.0, 1.0),
@@ -346,15 +349,16 @@ fn compare(structure: Structure, seed: u64, count: usize) {
 pub(super) fn structure() -> impl Strategy<Value = Structure> {
     let policy = prop::sample::select(OutOfRange::ALL.to_vec());
     let flags = (any::<bool>(), any::<bool>(), any::<bool>(), any::<bool>(), any::<bool>());
-    let kinds = (0_u8..4, 0_u8..3);
+    let kinds = (0_u8..4, 0_u8..3, any::<bool>());
     (1_usize..=5, flags, kinds, policy).prop_map(|(order, flags, kinds, policy)| {
         let (self_tuning, literal, accumulates, wild, numbers) = flags;
-        let (anti_windup, second_input) = kinds;
+        let (anti_windup, second_input, feeds_forward) = kinds;
         Structure {
             order,
             self_tuning,
             numbers,
             literal,
+            feeds_forward,
             anti_windup,
             accumulates,
             second_input,
@@ -385,6 +389,7 @@ pub(super) const PLAIN: Structure = Structure {
     self_tuning: true,
     numbers: false,
     literal: false,
+    feeds_forward: false,
     anti_windup: 0,
     accumulates: false,
     second_input: 0,
@@ -465,6 +470,9 @@ fn flights_that_cannot_fly_side_by_side_are_refused_by_name() {
     assert_eq!(refusal(&mixed), Refusal::Differs { flight: 3, what });
     mixed[3] = flights(Structure { literal: true, ..PLAIN }, 1, 1).remove(0);
     let what = "the form of its integral";
+    assert_eq!(refusal(&mixed), Refusal::Differs { flight: 3, what });
+    mixed[3] = flights(Structure { feeds_forward: true, ..PLAIN }, 1, 1).remove(0);
+    let what = "whether its set-point is fed forward";
     assert_eq!(refusal(&mixed), Refusal::Differs { flight: 3, what });
     mixed[3] = flights(Structure { policy: OutOfRange::Error, ..PLAIN }, 1, 1).remove(0);
     assert_eq!(refusal(&mixed), Refusal::Differs { flight: 3, what: "its supervisor" });

@@ -137,9 +137,12 @@ impl<'a, const W: usize> Controllers<'a, W> {
         if anti_windup != self.structure.anti_windup {
             return Err(differs("its anti-windup"));
         }
-        // Where nothing is coupled or fed forward the factors are 0, where nothing limits the limits are infinite.
+        // A product that is 0 would turn a command of -0 around.
+        if feeds_forward != self.structure.feeds_forward {
+            return Err(differs("whether its set-point is fed forward"));
+        }
+        // Where nothing is coupled the factors are 0, where nothing limits the limits are infinite.
         self.structure.coupled |= coupled;
-        self.structure.feeds_forward |= feeds_forward;
         self.structure.limited |= limited;
         match (controller, &mut self.tuners) {
             (Controller::Fixed(_), None) => {}
