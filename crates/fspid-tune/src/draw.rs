@@ -7,9 +7,9 @@ use rand_chacha::rand_core::{Rng as _, SeedableRng as _};
 pub(crate) struct Draw(ChaCha8Rng);
 
 impl Draw {
-    pub(crate) fn of(seed: u64, stream: usize) -> Self {
+    pub(crate) fn of(seed: u64, stream: u64) -> Self {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
-        generator.set_stream(stream as u64);
+        generator.set_stream(stream);
         Self(generator)
     }
 

@@ -259,7 +259,7 @@ pub(super) fn replayed(
     }
     for seed in (0..seeds).map(|place| seed.wrapping_add(place)) {
         watch.ask(Treatment::DRAWN.len())?;
-        let mut draw = Draw::of(seed, number);
+        let mut draw = Draw::of(seed, number as u64);
         let turned = turned(&record.gains, &mut draw);
         let order = draw.order(record.gains.len());
         let gains = shuffled(&record.gains, &order);

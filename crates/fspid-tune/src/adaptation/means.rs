@@ -11,7 +11,7 @@ pub(super) const FEWEST: usize = 5;
 /// Share of the draws beyond each end of an interval.
 const BEYOND: f64 = 0.025;
 /// Random stream of the draws, behind those of the flights.
-const STREAM: usize = 1 << 40;
+const STREAM: u64 = 1 << 40;
 
 /// A number with its interval, which is told for five plants and more.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,7 +54,7 @@ impl Draws {
     pub(super) fn new(plants: usize, seeds: usize, seed: u64) -> Self {
         let as_flown = Weights { plants: vec![1.0; plants], seeds: vec![1.0; seeds] };
         let drawn = |number: usize| {
-            let mut draw = Draw::of(seed, STREAM + number);
+            let mut draw = Draw::of(seed, STREAM + number as u64);
             let mut counts = |many: usize| {
                 let mut counts = vec![0.0; many];
                 for _ in 0..many {
