@@ -69,7 +69,7 @@ impl Axis {
     /// A logarithmic axis over the positive part of `range`.
     pub(super) fn logarithmic(range: Option<(f64, f64)>, margin: f64) -> Self {
         let (lo, hi) = range.filter(|(lo, hi)| *lo > 0.0 && hi >= lo).unwrap_or((0.5, 2.0));
-        let (mut lo, mut hi) = (lo.log10(), hi.log10());
+        let (mut lo, mut hi) = (libm::log10(lo), libm::log10(hi));
         if hi - lo < 0.2 {
             let middle = (lo + hi) / 2.0;
             (lo, hi) = (middle - 0.2, middle + 0.2);
@@ -80,7 +80,7 @@ impl Axis {
 
     fn exact(lo: f64, hi: f64, ticks: usize) -> Self {
         let raw = (hi - lo) / ticks.max(1) as f64;
-        let mut exponent = raw.log10().floor() as i32;
+        let mut exponent = libm::log10(raw).floor() as i32;
         let lead = raw / power_of_ten(exponent);
         // The nearest of 1, 2, 5 and 10 on a logarithmic scale.
         let mantissa = match lead {
@@ -110,7 +110,7 @@ impl Axis {
         if !value.is_finite() {
             return f64::NAN;
         }
-        let position = if self.log { value.log10() } else { value.clamp(-LIMIT, LIMIT) };
+        let position = if self.log { libm::log10(value) } else { value.clamp(-LIMIT, LIMIT) };
         self.position_to_unit(position)
     }
 
@@ -149,7 +149,7 @@ impl Axis {
             let decimals = usize::try_from(-self.exponent).unwrap_or(0).min(15);
             return with_minus(&format!("{value:.decimals$}"));
         }
-        let top = largest.log10().floor() as i32;
+        let top = libm::log10(largest).floor() as i32;
         let decimals = usize::try_from(top - self.exponent).unwrap_or(0).min(15);
         let mantissa = format!("{:.decimals$}", value / power_of_ten(top));
         with_minus(&format!("{mantissa}\u{d7}10{}", superscript(top)))
@@ -175,7 +175,7 @@ impl Axis {
             if self.log && hi - lo <= 4.0 {
                 let decade = (unit + self.origin()).round() as i32;
                 for lead in [2_u8, 3, 4, 5, 6, 7, 8, 9] {
-                    let unit = unit + f64::from(lead).log10();
+                    let unit = unit + libm::log10(f64::from(lead));
                     let named = all_named || lead == 2 || lead == 5;
                     let label = if named { times_power(lead, decade) } else { String::new() };
                     if within(&unit) {
@@ -255,7 +255,7 @@ pub(super) fn short_number(value: f64) -> String {
             superscript(exponent.parse().unwrap_or(0))
         ));
     }
-    let decimals = usize::try_from(2 - value.abs().log10().floor() as i32).unwrap_or(0);
+    let decimals = usize::try_from(2 - libm::log10(value.abs()).floor() as i32).unwrap_or(0);
     let text = format!("{value:.decimals$}");
     let text =
         if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
