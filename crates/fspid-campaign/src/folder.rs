@@ -17,6 +17,7 @@ use fspid_study::output::{self, is_unfinished};
 use crate::error::CampaignError;
 use crate::plan::Plan;
 use crate::range::Range;
+use crate::table;
 
 /// A campaign's folder.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -102,6 +103,7 @@ impl Folder {
     /// # Errors
     /// Another campaign or another process in the folder, or a folder that cannot be written.
     pub fn put_plan(&self, plan: &Plan) -> Result<(), CampaignError> {
+        table::supported()?;
         let path = self.plan_path();
         output::make_folder(&self.shards_path())?;
         // Two processes that begin at once would else each believe its own plan.

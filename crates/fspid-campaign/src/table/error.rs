@@ -13,6 +13,11 @@ use super::{Digest, Kind};
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum TableError {
+    /// A processor on which the Parquet library writes numbers the wrong way round.
+    #[error(
+        "tables are neither written nor read on processors that keep the most significant byte first: the Parquet library knows the others alone; fly the campaign on x86-64, ARM or RISC-V"
+    )]
+    BigEndian,
     /// A schema without columns.
     #[error("a table needs at least one column")]
     NoColumns,

@@ -64,3 +64,17 @@ pub const DIGEST_KEY: &str = "fspid.digest";
 
 /// Key of the metadata under which the digest of the metadata stands.
 pub const METADATA_DIGEST_KEY: &str = "fspid.metadata_digest";
+
+/// Whether tables can be written and read here.
+///
+/// The Parquet library writes the lengths of texts as the processor keeps them, and says of itself that it knows little-endian
+/// processors alone: on others it writes files that nobody can read.
+///
+/// # Errors
+/// [`TableError::BigEndian`].
+pub(crate) fn supported() -> Result<(), TableError> {
+    if cfg!(target_endian = "big") {
+        return Err(TableError::BigEndian);
+    }
+    Ok(())
+}

@@ -42,9 +42,10 @@ impl Reader {
     /// Opens a file and reads its footer.
     ///
     /// # Errors
-    /// [`TableError::Open`], [`TableError::NotParquet`], [`TableError::Foreign`],
-    /// [`TableError::Damaged`].
+    /// [`TableError::BigEndian`], [`TableError::Open`], [`TableError::NotParquet`],
+    /// [`TableError::Foreign`], [`TableError::Damaged`].
     pub fn open(path: impl AsRef<Path>) -> Result<Self, TableError> {
+        super::supported()?;
         let path = path.as_ref();
         let open = || {
             let (mut content, bytes) = Content::open(path)?;

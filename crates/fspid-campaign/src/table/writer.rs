@@ -35,13 +35,14 @@ impl<W: Write + Send> Writer<W> {
     /// Begins a file, with metadata of one's own.
     ///
     /// # Errors
-    /// [`TableError::KeyTaken`] for a key given twice or used by the file itself,
+    /// [`TableError::BigEndian`], [`TableError::KeyTaken`] for a key given twice or used by the file itself,
     /// [`TableError::Write`] if the sink does not take the first bytes.
     pub fn new(
         sink: W,
         schema: &Arc<Schema>,
         metadata: &[(String, String)],
     ) -> Result<Self, TableError> {
+        super::supported()?;
         let parquet_schema = layout::parquet_schema(schema).map_err(write_error)?;
         let properties = Arc::new(layout::properties(schema));
         let file =
