@@ -32,6 +32,7 @@ done
 for file in 747-pitch-step campaign limits square-accumulating plant-change; do
     also certify certify "$scenarios/$file.toml" --out "$work/proofs"
 done
+also certify-cases certify "$PWD/data/designs/learned/light-six.toml" --controller FSPID --cases tuning --set setpoint.amplitude_deg=0
 for proof in "$work"/proofs/*.json; do also certify-check certify --check "$proof"; done
 also campaign-run campaign run campaign.toml --runs 200 --quiet --out run
 also campaign-report campaign report run/campaign.parquet

@@ -67,11 +67,16 @@ def main():
     }
     # A run that is flown again is told as any flight is.
     flights = read.get("simulate", []) + [it["simulation"] for it in read.get("campaign-replay", [])]
+    # Of each case it is told what is told of a scenario alone.
+    certified = read.get("certify", []) + [case for it in read.get("certify-cases", []) for case in it["cases"]]
     for name, values in read.items():
         title = "What every command answers that fails" if name == "error" else f"What `fspid {name.replace('-', ' ')} --format json` answers"
         schema = {"$schema": DIALECT, "title": title} | learned(values, "")
         if name == "campaign-replay":
             schema["properties"]["simulation"] = learned(flights, "")
+        if name == "certify-cases":
+            of_each = learned([it["controllers"] for it in certified], "controllers")
+            schema["properties"]["cases"]["items"]["properties"]["controllers"] = of_each
         versions = {value.get("schema") for value in values}
         if len(versions) == 1 and None not in versions:
             schema["properties"]["schema"] = {"const": versions.pop()}
@@ -79,4 +84,5 @@ def main():
         print(f"{name}: of {len(values)} answers")
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -59,7 +59,7 @@ pub fn left_out_of(scenario: &Scenario) -> Vec<LeftOut> {
         LeftOut::Drift => sensors().any(|model| model.drift > 0.0),
         LeftOut::Disturbances => disturbances.iter().any(|one| !one.is_noise()),
         // Known to the study alone.
-        LeftOut::Dispersions => false,
+        LeftOut::Dispersions | LeftOut::OtherChoices => false,
         LeftOut::OuterLoops => autopilot.is_some(),
         LeftOut::Configurations => {
             plant.aircraft().is_some_and(|plant| !plant.changing().is_still())

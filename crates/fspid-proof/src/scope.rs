@@ -110,6 +110,8 @@ pub enum LeftOut {
     Disturbances,
     /// Numbers of the scenario that are drawn anew in campaigns.
     Dispersions,
+    /// What else the dispersions choose among.
+    OtherChoices,
     /// Outer loops, which command the pitch set-point from what the aircraft does.
     OuterLoops,
     /// Configurations that move in flight, and fuel that is burnt.
@@ -118,7 +120,7 @@ pub enum LeftOut {
 
 impl LeftOut {
     /// All of them.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Rounding,
         Self::MovingSetpoint,
         Self::NonlinearAircraft,
@@ -128,6 +130,7 @@ impl LeftOut {
         Self::Drift,
         Self::Disturbances,
         Self::Dispersions,
+        Self::OtherChoices,
         Self::OuterLoops,
         Self::Configurations,
     ];
@@ -145,6 +148,7 @@ impl LeftOut {
             Self::Drift => "drift",
             Self::Disturbances => "disturbances",
             Self::Dispersions => "dispersions",
+            Self::OtherChoices => "other-choices",
             Self::OuterLoops => "outer-loops",
             Self::Configurations => "configurations",
         }
@@ -187,6 +191,7 @@ impl fmt::Display for LeftOut {
             Self::Drift => "Wandering bias of sensors is left out: a bias stands still.",
             Self::Disturbances => "Disturbances count while they stand still, as loads.",
             Self::Dispersions => "The claim is about the nominal numbers, not about those that a campaign draws.",
+            Self::OtherChoices => "Of what the dispersions choose among, the claim is about one choice alone: others have certificates of their own.",
             Self::OuterLoops => "The claim is about the pitch loop alone, not about the outer loops around it and the set-points that they command.",
             Self::Configurations => {
                 "The claim is about the configuration and the fuel of the start, not about what moves or is burnt after it."

@@ -10,9 +10,11 @@ use super::progress::{Telling, alive, tell};
 use super::{Format, json_text};
 use crate::argument::{Folder, InFile};
 use crate::exit::{Failure, note, print};
-use fspid_scenario::file::{self, Template};
+use fspid_scenario::file::{self, Study, Template};
 use fspid_sim::SimError;
-use fspid_study::certify::{self, Answer, Certification, CheckedFile, Effort};
+use fspid_study::certify::{
+    self, Answer, Cases, Certification, CertifiedCases, Change, CheckedFile, Effort, Question,
+};
 use fspid_study::output;
 
 /// Prove or refute that a self-tuning loop is stable while its gains move.
@@ -23,7 +25,7 @@ use fspid_study::output;
 /// flies. Exit code 0 if every loop is proved, or the certificate proves the flown loop stable; 1 if not.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples:\n  fspid certify pitch.toml --out certificates\n  fspid certify --check certificates/fspid.certificate.json\n  fspid certify --check certificates/fspid.certificate.json --against pitch.toml"
+    after_help = "Examples:\n  fspid certify pitch.toml --out certificates\n  fspid certify --check certificates/fspid.certificate.json\n  fspid certify --check certificates/fspid.certificate.json --against pitch.toml\n  fspid certify design.toml --cases tuning"
 )]
 pub(crate) struct Arguments {
     /// The scenario file.
@@ -44,12 +46,38 @@ pub(crate) struct Arguments {
     /// Certify as well, at once, all plants and actuators that the scenario's dispersions can draw.
     #[arg(long, conflicts_with = "check")]
     family: bool,
+    /// Certify each case of a table in place of the scenario as it is: those it is tuned on, those its contest judges by, or
+    /// every combination of what its dispersions choose among (other aircraft, other delays). What `--set` gives holds in
+    /// every case.
+    #[arg(long, value_enum, value_name = "TABLE", conflicts_with = "check")]
+    cases: Option<Table>,
     /// Write the certificates into this folder.
     #[arg(long, value_name = "DIR")]
     out: Option<Folder>,
     /// How the answer is written.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
+}
+
+/// Which cases of a scenario.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum Table {
+    /// Those that it is tuned on.
+    Tuning,
+    /// Those that its contest judges by.
+    Contest,
+    /// What its dispersions choose among.
+    Choices,
+}
+
+impl From<Table> for Cases {
+    fn from(table: Table) -> Self {
+        match table {
+            Table::Tuning => Self::Tuning,
+            Table::Contest => Self::Contest,
+            Table::Choices => Self::Choices,
+        }
+    }
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -75,6 +103,9 @@ fn prove(path: &Path, arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::input(format_args!("there is no controller `{name}`{known}")));
     }
     let telling = Telling::for_standard_error();
+    if let Some(table) = arguments.cases {
+        return prove_cases(path, &template, table.into(), arguments);
+    }
     let certification = watched(&template, (only, arguments.family), telling);
     // The answer begins on an empty line.
     if telling == Telling::Line {
@@ -84,22 +115,77 @@ fn prove(path: &Path, arguments: &Arguments) -> Result<(), Failure> {
     if let Some(folder) = &arguments.out {
         write(&certification, folder)?;
     }
+    let answer = || (certification.text(), certification.json());
+    told(answer, study, arguments)?;
+    met(certification.all_proved())
+}
+
+/// Prints an answer about a scenario, with who is left out of it.
+fn told(
+    answer: impl Fn() -> (String, serde_json::Value),
+    study: &Study,
+    arguments: &Arguments,
+) -> Result<(), Failure> {
+    let (text, mut answer) = answer();
     match arguments.format {
-        Format::Text => print(&certification.text())?,
+        Format::Text => print(&text),
         Format::Json => {
-            let mut answer = certification.json();
             let left_out = study.scenario.externals.iter().map(|named| named.name.as_str());
-            let left_out: Vec<&str> = left_out.filter(|_| only.is_none()).collect();
+            let left_out: Vec<&str> = left_out.filter(|_| arguments.controller.is_none()).collect();
             if !left_out.is_empty() {
                 answer["left_out"] = left_out.into();
             }
-            print(&json_text(&answer))?;
+            print(&json_text(&answer))
         }
     }
-    if certification.all_proved() {
-        return Ok(());
+}
+
+fn met(all_proved: bool) -> Result<(), Failure> {
+    match all_proved {
+        true => Ok(()),
+        false => Err(Failure::not_met("a loop is not proved stable")),
     }
-    Err(Failure::not_met("a loop is not proved stable"))
+}
+
+/// Certifies a scenario as each of several changes makes it.
+fn prove_cases(
+    path: &Path,
+    template: &Template,
+    which: Cases,
+    arguments: &Arguments,
+) -> Result<(), Failure> {
+    let study = template.study();
+    let mut cases = CertifiedCases::new(study, which).map_err(Failure::input)?;
+    let telling = Telling::for_standard_error();
+    for change in cases.changes().to_vec() {
+        let changed = changed(path, &change, arguments)?;
+        let only = arguments.controller.as_deref();
+        let effort = Effort::default();
+        let question = Question { only, family: arguments.family, effort: &effort };
+        let added = certifying(telling, |tell| {
+            let mut tell = |name: &str| tell(&format!("{name} at {}", change.name));
+            cases.add(&change, &changed, question, &mut tell)
+        });
+        added.map_err(Failure::input)?;
+    }
+    if telling == Telling::Line {
+        tell(telling, "");
+    }
+    if let Some(folder) = &arguments.out {
+        output::make_folder(folder)?;
+        for case in cases.cases() {
+            write(&case.certification, &folder.join(cases.folder(&case.change)))?;
+        }
+    }
+    told(|| (cases.text(), cases.json()), study, arguments)?;
+    met(cases.all_proved())
+}
+
+/// The scenario with a change, and with what was set for all of them.
+fn changed(path: &Path, change: &Change, arguments: &Arguments) -> Result<Template, Failure> {
+    let overrides: Vec<String> = change.set.iter().chain(&arguments.overrides).cloned().collect();
+    Template::load(path, &overrides)
+        .map_err(|problems| Failure::input(format_args!("{}: {problems}", change.name)))
 }
 
 /// Certifies, and tells whom and for how long.
@@ -108,25 +194,31 @@ fn watched(
     (only, family): (Option<&str>, bool),
     telling: Telling,
 ) -> Result<Certification, SimError> {
-    let whom = Mutex::new(String::new());
-    let what = || {
-        let whom = whom.lock().map_or(String::new(), |name| name.clone());
-        format!("certifying {whom}; a self-tuning controller can take half a minute")
-    };
-    alive(telling, &what, || {
+    certifying(telling, |tell| {
         let effort = Effort::default();
-        let mut tell = |name: &str| {
-            if let Ok(mut whom) = whom.lock() {
-                name.clone_into(&mut whom);
-            }
-        };
-        let certification = Certification::watched(template.study(), only, &effort, &mut tell)?;
+        let certification = Certification::watched(template.study(), only, &effort, tell)?;
         match family {
             true => certification.with_families(template, &effort, &mut |name| {
                 tell(&format!("all that can be drawn of {name}"));
             }),
             false => Ok(certification),
         }
+    })
+}
+
+/// Does some work, and tells meanwhile whom it is about and for how long.
+fn certifying<T>(telling: Telling, work: impl FnOnce(&mut dyn FnMut(&str)) -> T) -> T {
+    let whom = Mutex::new(String::new());
+    let what = || {
+        let whom = whom.lock().map_or(String::new(), |name| name.clone());
+        format!("certifying {whom}; a self-tuning controller can take half a minute")
+    };
+    alive(telling, &what, || {
+        work(&mut |name: &str| {
+            if let Ok(mut whom) = whom.lock() {
+                name.clone_into(&mut whom);
+            }
+        })
     })
 }
 

@@ -14,8 +14,8 @@ use serde_json::Value;
 /// Commands with others below them.
 const GROUPS: [&str; 2] = ["aircraft", "campaign"];
 /// Options that ask for an answer of another shape.
-const VARIANTS: [&str; 7] =
-    ["--all", "--rule", "--check", "--list", "--paths", "--front", "--sets"];
+const VARIANTS: [&str; 8] =
+    ["--all", "--rule", "--check", "--list", "--paths", "--front", "--sets", "--cases"];
 
 /// Holds an answer against its schema, if it is one.
 pub(crate) fn hold(words: &[&str], output: &Output) {

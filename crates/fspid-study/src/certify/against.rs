@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use super::checked::CheckedFile;
 use super::controller_file::ControllerFile;
 use super::loop_file::LoopFile;
-use super::{asked, family};
+use super::{asked, cases, family};
 use crate::analysis::lasting_plants;
 use fspid_scenario::file::{Study, Template};
 
@@ -44,6 +44,9 @@ impl CheckedFile {
                 differences.push(Difference { path: path.to_owned(), certified, flown });
             }
         }
+        if self.is_of_one_choice() && cases::only_choices_differ(study) {
+            differences.retain(|it: &Difference| it.flown != quoted(LeftOut::Dispersions));
+        }
         let digests = [origin.digest.clone(), study.digest.clone()];
         self.against = Some(Comparison {
             scenario: study.scenario.name.clone(),
@@ -63,6 +66,7 @@ impl CheckedFile {
     pub fn compare_family(&mut self, template: &Template) -> Result<(), SimError> {
         let study = template.study();
         self.compare(study)?;
+        let of_one_choice = self.is_of_one_choice();
         let (Some(family), Some(against)) = (&self.certificate.family, &mut self.against) else {
             return Ok(());
         };
@@ -76,9 +80,11 @@ impl CheckedFile {
         });
         let differs = |plant| family::differs(family, template, (own, plant));
         let flown = loops.map(differs).next();
-        let dispersions = format!("\"{}\"", LeftOut::Dispersions.name());
         // What the family is about is left out of nothing.
-        against.differences.retain(|it| it.flown != dispersions);
+        against.differences.retain(|it| it.flown != quoted(LeftOut::Dispersions));
+        if cases::has_choices(study) && !of_one_choice {
+            against.differences.push(not_left_out(LeftOut::OtherChoices));
+        }
         let Some(flown) = flown.unwrap_or_else(|| Some("another loop".to_owned())) else {
             return Ok(());
         };
@@ -109,11 +115,24 @@ impl CheckedFile {
         short("range.setpoint_rad", scope.any_setpoint, range.setpoint_rad, flown.setpoint_rad);
         short("range.load_rad", scope.any_load, range.load_rad, flown.load_rad);
         for one in asked.left_out.iter().filter(|one| !scope.left_out.contains(one)) {
-            let path = "not_in_this_claim".to_owned();
-            let flown = format!("\"{}\"", one.name());
-            differences.push(Difference { path, certified: NOTHING.to_owned(), flown });
+            differences.push(not_left_out(*one));
         }
     }
+
+    /// True for a certificate that says that others are about other choices.
+    fn is_of_one_choice(&self) -> bool {
+        self.certificate.left_out.contains(&LeftOut::OtherChoices)
+    }
+}
+
+/// What a scenario has and a claim neither covers nor leaves out.
+fn not_left_out(what: LeftOut) -> Difference {
+    let path = "not_in_this_claim".to_owned();
+    Difference { path, certified: NOTHING.to_owned(), flown: quoted(what) }
+}
+
+fn quoted(what: LeftOut) -> String {
+    format!("\"{}\"", what.name())
 }
 
 /// What a scenario flies under a controller's name.

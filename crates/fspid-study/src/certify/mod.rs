@@ -5,6 +5,7 @@
 
 mod against;
 mod around;
+mod cases;
 mod checked;
 mod checked_text;
 mod comparison;
@@ -37,6 +38,7 @@ use fspid_scenario::file::{Study, Template};
 pub use fspid_proof::Effort;
 
 pub use around::Around;
+pub use cases::{Cases, CertifiedCase, CertifiedCases, Change, MOST_CASES, NoCases, Question};
 pub use checked::{Answer, CheckedFile, check_text};
 pub use comparison::{Comparison, Difference};
 pub use coverage::{COVERAGE, KeyCoverage, Treatment, coverage_table};
@@ -125,6 +127,18 @@ impl Certification {
         effort: &Effort,
         tell: &mut dyn FnMut(&str),
     ) -> Result<Self, SimError> {
+        let mut ask =
+            |description: &LoopDescription, asked: &Asked| certify(description, asked, effort);
+        Self::asking(study, only, &mut ask, tell)
+    }
+
+    /// As [`watched`](Self::watched), with the answer of a loop from whoever has it.
+    fn asking(
+        study: &Study,
+        only: Option<&str>,
+        ask: &mut dyn FnMut(&LoopDescription, &Asked) -> Result<Outcome, NotProvable>,
+        tell: &mut dyn FnMut(&str),
+    ) -> Result<Self, SimError> {
         let scenario = &study.scenario;
         let plants = lasting_plants(scenario)?;
         let mut results = Vec::new();
@@ -137,8 +151,7 @@ impl Certification {
                 results.push(Certified {
                     controller: named.name.clone(),
                     from_s: *from_s,
-                    outcome: described
-                        .and_then(|loop_| certify(&loop_, &asked(study, plant, &loop_), effort)),
+                    outcome: described.and_then(|loop_| ask(&loop_, &asked(study, plant, &loop_))),
                     family: None,
                     around: around.clone(),
                     origin: Origin {
@@ -164,9 +177,20 @@ impl Certification {
     /// # Errors
     /// [`SimError`] where a plant has no linear model; where the effort was stopped, the loop has no answer.
     pub fn with_families(
+        self,
+        template: &Template,
+        effort: &Effort,
+        tell: &mut dyn FnMut(&str),
+    ) -> Result<Self, SimError> {
+        self.with_families_of(template, effort, family::Chosen::AsABox, tell)
+    }
+
+    /// As [`with_families`](Self::with_families), with what becomes of choices.
+    fn with_families_of(
         mut self,
         template: &Template,
         effort: &Effort,
+        chosen: family::Chosen,
         tell: &mut dyn FnMut(&str),
     ) -> Result<Self, SimError> {
         let scenario = &template.study().scenario;
@@ -179,10 +203,11 @@ impl Certification {
             tell(&certified.controller);
             let described = LoopDescription::of(scenario, plant, &named.controller);
             let answer = described.and_then(|description| {
-                family::certified(template, (&description, plant), outcome, effort)
+                let subject = (template, chosen);
+                family::certified(subject, (&description, plant), outcome, effort)
             });
             match answer {
-                Ok(answer) => certified.family = Some(answer),
+                Ok(answer) => certified.family = answer,
                 Err(stopped) => certified.outcome = Err(stopped),
             }
         }

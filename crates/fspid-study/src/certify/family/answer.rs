@@ -66,6 +66,11 @@ impl FamilyAnswer {
     }
 }
 
+/// The answer in capitals, and why.
+pub(in super::super) fn in_words(answer: &FamilyAnswer) -> String {
+    answer.text()
+}
+
 /// A member's number.
 fn setting(parameter: &Parameter, value: f64) -> String {
     let times = if parameter.relative { " times as large" } else { "" };

@@ -9,9 +9,11 @@ use fspid_scenario::dispersion::{Dispersion, Distribution};
 use fspid_scenario::file::{NewValue, SettingPath, Study, Template};
 use fspid_sim::LinearPlant;
 
+use super::Chosen;
 use super::loop_number::LoopNumber;
 use super::source::Source;
 use crate::analysis::lasting_plants;
+use crate::certify::cases::is_chosen_apart;
 
 /// Why no question can be asked of a family.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -62,12 +64,13 @@ pub(super) struct Members {
 impl Members {
     /// Those that a scenario's dispersions can draw of one of its loops.
     pub(super) fn of(
-        template: &Template,
+        (template, chosen): (&Template, Chosen),
         (description, plant): (&LoopDescription, &LinearPlant),
     ) -> Result<Self, NoFamily> {
         let mut drawn = Vec::new();
         let asking = Asking { template, description, plant };
-        for dispersion in &template.study().dispersions {
+        let differs = |it: &&Dispersion| chosen == Chosen::AsABox || !is_chosen_apart(it);
+        for dispersion in template.study().dispersions.iter().filter(differs) {
             drawn.extend(asking.drawn(dispersion)?);
         }
         if drawn.is_empty() {
@@ -128,10 +131,10 @@ impl Asking<'_> {
             let first = target.paths.first().map_or("", SettingPath::text);
             let numbers: Option<Vec<_>> = target.paths.iter().map(LoopNumber::at).collect();
             let Some(numbers) = numbers else {
-                if target.paths.iter().all(is_outside_of_the_loop) {
+                if target.paths.iter().all(is_outside) {
                     continue;
                 }
-                let why = "families know coefficients of a [plant]; mass, inertia in pitch, centre of gravity, airspeed, altitude and longitudinal derivatives of an [aircraft] of derivatives to which nothing is added; time constant, natural frequency and damping of the [actuator]; certify other values one by one with --set";
+                let why = "families know coefficients of a [plant]; mass, inertia in pitch, centre of gravity, airspeed, altitude and longitudinal derivatives of an [aircraft] of derivatives to which nothing is added; time constant, natural frequency and damping of the [actuator]; other values are certified one by one: with --set, or, where a dispersion chooses among them, with --cases choices";
                 return Err(NoFamily::NotBounded { path: first.to_owned(), why });
             };
             let why = "what it draws has no ends; allowed are lower and upper of a normal distribution, or a uniform one";
@@ -211,8 +214,19 @@ impl Asking<'_> {
     }
 }
 
+/// True for a dispersion that no loop depends on.
+pub(in super::super) fn is_outside_of_the_loop(dispersion: &Dispersion) -> bool {
+    dispersion.targets.iter().flat_map(|target| &target.paths).all(is_outside)
+}
+
+/// True for a dispersion of which a box of the loop's numbers is made.
+pub(in super::super) fn is_in_a_box(dispersion: &Dispersion) -> bool {
+    let mut paths = dispersion.targets.iter().flat_map(|target| &target.paths);
+    paths.all(|path| LoopNumber::at(path).is_some()) && ends(dispersion).iter().all(Option::is_some)
+}
+
 /// True for places that have no way into the loop: what it is asked to do, what disturbs it, and noise.
-fn is_outside_of_the_loop(path: &SettingPath) -> bool {
+fn is_outside(path: &SettingPath) -> bool {
     let text = path.text();
     let table = text.split(['.', '[']).next().unwrap_or(text);
     let is_noise = || ["noise", "drift", "seed"].iter().any(|word| text.contains(word));

@@ -6,8 +6,9 @@ mod loop_number;
 mod members;
 mod source;
 
-pub(super) use answer::{box_in_words, in_json, sentences};
+pub(super) use answer::{box_in_words, in_json, in_words, sentences};
 pub use members::NoFamily;
+pub(super) use members::{is_in_a_box, is_outside_of_the_loop};
 
 use fspid_proof::check::{PlantSet, Sloped};
 use fspid_proof::{
@@ -46,33 +47,59 @@ impl FamilyAnswer {
     }
 }
 
-/// Certifies the family of a loop beside its own verdict, whose certificate then speaks of both.
+/// What becomes of dispersions that choose among values of which no box is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Chosen {
+    /// They are refused by name.
+    AsABox,
+    /// Each choice is certified on its own by whoever asks, so that here nothing differs by them.
+    Apart,
+}
+
+/// Certifies the family of a loop beside its own verdict, whose certificate then speaks of both. None where choices alone
+/// differ, each of which is certified on its own.
 ///
 /// # Errors
 /// [`NotProvable`] where the effort was stopped.
 pub(super) fn certified(
-    template: &Template,
+    (template, chosen): (&Template, Chosen),
     (description, plant): (&LoopDescription, &LinearPlant),
     outcome: &mut Outcome,
     effort: &Effort,
-) -> Result<FamilyAnswer, NotProvable> {
-    let Verdict::Proved(certificate, rechecked) = &outcome.verdict else {
-        return Ok(FamilyAnswer::NominalNotProved);
+) -> Result<Option<FamilyAnswer>, NotProvable> {
+    let Verdict::Proved(certificate, rechecked) = &mut outcome.verdict else {
+        return Ok(Some(FamilyAnswer::NominalNotProved));
     };
-    let members = match Members::of(template, (description, plant)) {
+    let members = match Members::of((template, chosen), (description, plant)) {
         Ok(members) => members,
-        Err(none) => return Ok(FamilyAnswer::None(none)),
+        Err(NoFamily::NothingDiffers) if chosen == Chosen::Apart => {
+            is_about_one_choice(certificate);
+            return Ok(None);
+        }
+        Err(none) => return Ok(Some(FamilyAnswer::None(none))),
     };
     let plant = |at: &[Sloped]| members.plant(at);
     let parameters = members.parameters().to_vec();
     let verdict = prove_family(description, &parameters, effort, &plant)?;
     if let FamilyVerdict::Proved(family) = &verdict {
         let mut whole = Certificate { family: Some(family.clone()), ..certificate.clone() };
-        whole.left_out.retain(|one| *one != LeftOut::Dispersions);
+        match chosen {
+            Chosen::AsABox => whole.left_out.retain(|one| *one != LeftOut::Dispersions),
+            Chosen::Apart => is_about_one_choice(&mut whole),
+        }
         let rechecked = Rechecked { family: Some(family.checked()), ..rechecked.clone() };
         outcome.verdict = Verdict::Proved(whole, rechecked);
     }
-    Ok(FamilyAnswer::Verdict { parameters, verdict: Box::new(verdict) })
+    Ok(Some(FamilyAnswer::Verdict { parameters, verdict: Box::new(verdict) }))
+}
+
+/// A certificate that leaves out other choices in place of all that differs.
+fn is_about_one_choice(certificate: &mut Certificate) {
+    for one in &mut certificate.left_out {
+        if *one == LeftOut::Dispersions {
+            *one = LeftOut::OtherChoices;
+        }
+    }
 }
 
 /// What of a certified family is not what a scenario's dispersions draw of a loop, in words; none where it is.
@@ -81,7 +108,7 @@ pub(super) fn differs(
     template: &Template,
     of: (&LoopDescription, &LinearPlant),
 ) -> Option<String> {
-    let members = match Members::of(template, of) {
+    let members = match Members::of((template, Chosen::Apart), of) {
         Ok(members) => members,
         Err(none) => return Some(none.to_string()),
     };

@@ -1,0 +1,128 @@
+//! Certified cases in words and for programs.
+
+use fspid_proof::Verdict;
+use serde_json::{Value, json};
+
+use super::{CertifiedCase, CertifiedCases};
+use crate::certify::scope::range_in_words;
+use crate::certify::text::{found, sentence};
+use crate::certify::{Certified, family};
+use crate::metrics::short;
+
+impl CertifiedCases {
+    /// The answer of `certify --cases --format text`: a line for each loop, and what all of them amount to.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let mut out = format!(
+            "{}: stability while the gains move, at {} {}\n",
+            self.scenario,
+            self.changes.len(),
+            self.which.words()
+        );
+        for case in &self.cases {
+            out.push_str(&format!("\n{}\n", case.change.name));
+            for certified in &case.certification.results {
+                out.push_str(&line(certified));
+            }
+        }
+        out.push_str(&format!("\n{}\n", self.verdict()));
+        out
+    }
+
+    /// What all of them amount to, in a sentence for each controller.
+    fn verdict(&self) -> String {
+        let mut names: Vec<&str> = Vec::new();
+        let results = || self.cases.iter().flat_map(|case| &case.certification.results);
+        for certified in results() {
+            if !names.contains(&certified.controller.as_str()) {
+                names.push(&certified.controller);
+            }
+        }
+        let sentences = names.iter().map(|name| {
+            let not_proved: Vec<&str> = self.not_proved(name).collect();
+            let count = self.cases.len();
+            match not_proved.len() {
+                0 => format!("{name}: PROVED at all {count} {}", self.which.words()),
+                missing => format!(
+                    "{name}: NOT PROVED at {missing} of {count} {}: {}",
+                    self.which.words(),
+                    not_proved.join("; ")
+                ),
+            }
+        });
+        sentences.collect::<Vec<_>>().join("\n")
+    }
+
+    /// Names of the cases at which a loop of a controller is not proved.
+    fn not_proved<'a>(&'a self, controller: &'a str) -> impl Iterator<Item = &'a str> {
+        let is_missing = move |case: &&CertifiedCase| {
+            let mut own =
+                case.certification.results.iter().filter(|it| it.controller == controller);
+            own.any(|it| !it.is_proved())
+        };
+        self.cases.iter().filter(is_missing).map(|case| case.change.name.as_str())
+    }
+
+    /// The answer of `certify --cases --format json`.
+    #[must_use]
+    pub fn json(&self) -> Value {
+        let mut null = serde_json::Map::new();
+        let mut schema = Value::Null;
+        let cases = self.cases.iter().map(|case| {
+            let mut answer = case.certification.json();
+            if let Some(reasons) = answer.get("null").and_then(Value::as_object) {
+                null.extend(reasons.clone());
+            }
+            schema = answer["schema"].take();
+            json!({
+                "name": case.change.name,
+                "set": case.change.set,
+                "controllers": answer["controllers"].take(),
+            })
+        });
+        let cases: Vec<Value> = cases.collect();
+        let mut answer = json!({
+            "schema": schema,
+            "scenario": self.scenario,
+            "of": self.which.words(),
+            "all_proved": self.all_proved(),
+            "cases": cases,
+        });
+        if !null.is_empty() {
+            answer["null"] = Value::Object(null);
+        }
+        answer
+    }
+}
+
+/// One loop in a line.
+fn line(certified: &Certified) -> String {
+    let name = match certified.from_s {
+        0.0 => certified.controller.clone(),
+        from_s => format!("{}, plant from {} s on", certified.controller, short(from_s)),
+    };
+    let told = match &certified.outcome {
+        Err(reason) => format!("NOT PROVABLE: {reason}"),
+        Ok(outcome) => {
+            let claimed = found(outcome).map(|(certificate, rechecked)| {
+                let range = range_in_words(&certificate.scope(rechecked));
+                format!("{}; {range}", sentence(certificate))
+            });
+            let because = outcome.open_because.as_ref().map(|it| format!(": {it}"));
+            let claimed = claimed.unwrap_or_else(|| "neither proved nor refuted".to_owned());
+            match outcome.verdict {
+                Verdict::Proved(..) if certified.is_proved() => format!("PROVED: {claimed}"),
+                Verdict::Proved(..) => {
+                    format!("NOT PROVED as a whole; the loop as it is: {claimed}")
+                }
+                Verdict::Refuted(..) => format!("REFUTED: {claimed}"),
+                Verdict::Open => format!("OPEN{}; {claimed}", because.unwrap_or_default()),
+            }
+        }
+    };
+    let mut out = format!("  {name}: {told}\n");
+    if let Some(family) = &certified.family {
+        out.push_str(&format!("    all that is drawn: {}\n", family::in_words(family)));
+    }
+    out
+}

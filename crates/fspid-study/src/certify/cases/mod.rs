@@ -1,0 +1,209 @@
+//! A scenario certified as each of several changes makes it: by the cases of its tuning or its contest, or by what its
+//! dispersions choose among. One answer about all of them, and a certificate for each loop.
+
+mod answer;
+mod choices;
+
+use fspid_proof::{Asked, LoopDescription, NotProvable, Outcome, certify};
+use fspid_scenario::file::{Study, Template};
+use fspid_scenario::tuning::Case;
+use fspid_sim::SimError;
+
+use super::{Certification, Effort, family::Chosen};
+use crate::output::{Names, Place};
+
+pub(super) use choices::{is_chosen_apart, only_choices_differ};
+
+/// Most changes that are certified as one answer.
+pub const MOST_CASES: usize = 256;
+
+/// Which changes of a scenario.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cases {
+    /// Those that its tuning flies.
+    Tuning,
+    /// Those that its contest judges by.
+    Contest,
+    /// Every combination of what its dispersions choose among, where no interval holds the choices.
+    Choices,
+}
+
+impl Cases {
+    /// What they are, after a number of them.
+    #[must_use]
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::Tuning => "cases of [tuning]",
+            Self::Contest => "cases of [contest]",
+            Self::Choices => "choices of the dispersions",
+        }
+    }
+}
+
+/// A change of a scenario.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Change {
+    /// What it is called; unique among its kind.
+    pub name: String,
+    /// The values, as `--set` takes them.
+    pub set: Vec<String>,
+}
+
+impl From<&Case> for Change {
+    fn from(case: &Case) -> Self {
+        Self { name: case.name.clone(), set: case.set.clone() }
+    }
+}
+
+/// Why there are no cases to certify.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NoCases {
+    /// The scenario has none.
+    #[error("the scenario has no {0}; leave --cases out to certify it as it is")]
+    None(&'static str),
+    /// More than are certified at once.
+    #[error("{found} {of}; allowed are up to {MOST_CASES}")]
+    TooMany {
+        /// How many.
+        found: usize,
+        /// Of what.
+        of: &'static str,
+    },
+}
+
+/// How each change is certified.
+#[derive(Clone, Copy, Debug)]
+pub struct Question<'a> {
+    /// The controller, or all of them.
+    pub only: Option<&'a str>,
+    /// All that the dispersions can draw as well.
+    pub family: bool,
+    /// How hard to try.
+    pub effort: &'a Effort,
+}
+
+/// A scenario with a change, certified.
+#[derive(Clone, Debug)]
+pub struct CertifiedCase {
+    /// The change.
+    pub change: Change,
+    /// What came of it.
+    pub certification: Certification,
+}
+
+/// A loop that was asked for before, with its answer.
+#[derive(Clone, Debug)]
+struct Known {
+    description: LoopDescription,
+    asked: Asked,
+    outcome: Result<Outcome, NotProvable>,
+}
+
+/// What came of all changes.
+#[derive(Clone, Debug)]
+pub struct CertifiedCases {
+    scenario: String,
+    which: Cases,
+    changes: Vec<Change>,
+    folders: Names,
+    cases: Vec<CertifiedCase>,
+    known: Vec<Known>,
+}
+
+impl CertifiedCases {
+    /// The changes that are to be certified, each to be [added](Self::add).
+    ///
+    /// # Errors
+    /// [`NoCases`].
+    pub fn new(study: &Study, which: Cases) -> Result<Self, NoCases> {
+        let of = which.words();
+        let changes: Vec<Change> = match which {
+            Cases::Tuning => {
+                study.tuning.iter().flat_map(|it| &it.cases).map(Change::from).collect()
+            }
+            Cases::Contest => {
+                study.contest.iter().flat_map(|it| &it.cases).map(Change::from).collect()
+            }
+            Cases::Choices => match choices::count(study) {
+                found if found > MOST_CASES => return Err(NoCases::TooMany { found, of }),
+                _ => choices::all(study),
+            },
+        };
+        match changes.len() {
+            0 => return Err(NoCases::None(of)),
+            found if found > MOST_CASES => return Err(NoCases::TooMany { found, of }),
+            _ => {}
+        }
+        let folders = Names::of(Place::PlainFile, changes.iter().map(|it| &it.name));
+        let scenario = study.scenario.name.clone();
+        Ok(Self { scenario, which, changes, folders, cases: Vec::new(), known: Vec::new() })
+    }
+
+    /// The changes.
+    #[must_use]
+    pub fn changes(&self) -> &[Change] {
+        &self.changes
+    }
+
+    /// The changes that were certified.
+    #[must_use]
+    pub fn cases(&self) -> &[CertifiedCase] {
+        &self.cases
+    }
+
+    /// A name for the folder of a change's certificates, which no other change has.
+    #[must_use]
+    pub fn folder(&self, change: &Change) -> String {
+        self.folders.name(&change.name)
+    }
+
+    /// Certifies a change; `template` is the scenario with it. A loop of which the same was asked before has that answer.
+    /// Tells the name of each controller before.
+    ///
+    /// # Errors
+    /// [`SimError`] where a plant has no linear model.
+    pub fn add(
+        &mut self,
+        change: &Change,
+        template: &Template,
+        question: Question<'_>,
+        tell: &mut dyn FnMut(&str),
+    ) -> Result<(), SimError> {
+        let Question { only, family, effort } = question;
+        let known = &mut self.known;
+        let mut ask = |description: &LoopDescription, asked: &Asked| {
+            let same = |it: &&Known| it.description == *description && it.asked == *asked;
+            if let Some(before) = known.iter().find(same) {
+                return before.outcome.clone();
+            }
+            let outcome = certify(description, asked, effort);
+            let (description, asked) = (description.clone(), asked.clone());
+            known.push(Known { description, asked, outcome: outcome.clone() });
+            outcome
+        };
+        let mut certification = Certification::asking(template.study(), only, &mut ask, tell)?;
+        if family {
+            let chosen = match self.which {
+                Cases::Choices => Chosen::Apart,
+                Cases::Tuning | Cases::Contest => Chosen::AsABox,
+            };
+            certification = certification.with_families_of(template, effort, chosen, tell)?;
+        }
+        self.cases.push(CertifiedCase { change: change.clone(), certification });
+        Ok(())
+    }
+
+    /// True if every loop of every change is proved stable, and none is missing.
+    #[must_use]
+    pub fn all_proved(&self) -> bool {
+        self.cases.len() == self.changes.len()
+            && self.cases.iter().all(|it| it.certification.all_proved())
+    }
+}
+
+/// True if a scenario's dispersions choose among values of a loop that no interval holds, so that each is to be certified on
+/// its own ([`Cases::Choices`]).
+#[must_use]
+pub(super) fn has_choices(study: &Study) -> bool {
+    study.dispersions.iter().any(is_chosen_apart)
+}
