@@ -183,12 +183,21 @@ fn a_search_that_was_killed_goes_on_to_the_same_design_and_history() {
     // Another search does not take its state.
     let other = refused(&["tune", "pitch.toml", "--seed", "9", "--out", "cut.toml"], folder);
     assert!(other.contains("cut.toml.state.json") && other.contains("another search"), "{other}");
+    // What it has found so far is taken without an end of it, nor a change of its state.
+    let kept = read(folder, "cut.toml.state.json");
+    let so_far = [&arguments("cut.toml", "cut.parquet")[..], &["--so-far"]].concat();
+    assert!(done(&so_far, folder).contains("the search is not over"));
+    let design = String::from_utf8(read(folder, "cut.toml")).expect("UTF-8");
+    assert!(design.contains("the search is not over") && !design.contains("tune = ["), "{design}");
+    assert_eq!(read(folder, "cut.toml.state.json"), kept);
     let output = fspid(&arguments("cut.toml", "cut.parquet"), folder);
     assert!(text(&output.stderr).contains("going on after"), "{}", text(&output.stderr));
     done(&arguments("whole.toml", "whole.parquet"), folder);
     assert_eq!(read(folder, "cut.toml"), read(folder, "whole.toml"));
     assert_eq!(read(folder, "cut.parquet"), read(folder, "whole.parquet"));
     assert!(!state.exists());
+    let none = refused(&so_far, folder);
+    assert!(none.contains("no search was saved there"), "{none}");
 }
 
 /// It used to wait for the end of the generation that was flown.

@@ -63,6 +63,8 @@ pub enum Stop {
     NoProgress,
     /// The candidates no longer differ at all.
     Collapsed,
+    /// None of these: what was found so far was taken.
+    Taken,
 }
 
 /// Proposes candidates in the unit cube and absorbs their costs.

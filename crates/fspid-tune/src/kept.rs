@@ -110,6 +110,25 @@ impl Kept {
         }
     }
 
+    /// The search as its state was saved last, whoever goes on with it, to take what was found so far.
+    ///
+    /// # Errors
+    /// No state, one of another search, and one that was changed after it was written.
+    pub fn as_saved<'a>(
+        &self,
+        problem: &'a TuningProblem,
+        effort: &Effort,
+        crew: Crew<'a>,
+    ) -> Result<Search<'a>, TuneError> {
+        match self.path.as_deref() {
+            Some(path) if path.exists() => resumed(path, (problem, crew), effort),
+            path => Err(TuneError::State {
+                path: path.map_or_else(String::new, |path| path.display().to_string()),
+                reason: "there is none: no search was saved there that is not over".to_owned(),
+            }),
+        }
+    }
+
     /// Keeps other processes away; why nothing is kept, where another one is there and nobody asked for a file.
     fn locked(&mut self) -> Result<Option<String>, TuneError> {
         let wants = self.unfit != Unfit::Replaced && self.lock.is_none();

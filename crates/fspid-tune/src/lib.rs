@@ -39,6 +39,7 @@ mod tuned;
 
 pub use crew::{Crew, Engine, Order, Worker};
 pub use error::TuneError;
+pub use fspid_optimise::Stop;
 pub use kept::{Beginning, Kept, Then, Unfit};
 pub use problem::{TuningProblem, controllers_with_marks};
 pub use score::{FORBIDDEN, Score};

@@ -481,5 +481,6 @@ pub fn stop_in_words(stop: Stop) -> &'static str {
         Stop::Target => "the cost wanted was reached",
         Stop::NoProgress => "the candidates no longer differ in cost",
         Stop::Collapsed => "the candidates no longer differ at all",
+        Stop::Taken => "what was found so far was taken; the search is not over",
     }
 }

@@ -20,7 +20,7 @@ use fspid_tune::baseline::Baseline;
 use fspid_tune::limit::NearLimit;
 use fspid_tune::rule::{Form, Options, Rule, Verdict};
 use fspid_tune::{
-    AskedEffort, Beginning, Crew, Effort, Kept, Search, Source, Then, TuneError, Tuned,
+    AskedEffort, Beginning, Crew, Effort, Kept, Search, Source, Stop, Then, TuneError, Tuned,
     TuningProblem, design, history,
 };
 
@@ -70,6 +70,10 @@ pub(crate) struct Arguments {
     /// Begin anywhere within the bounds, and not about the start.
     #[arg(long)]
     anywhere: bool,
+    /// Search no further: take the best of what a search has found so far, with the same options, whether it was
+    /// interrupted or is still going on. Its state stays, so that it can go on.
+    #[arg(long, conflicts_with = "rule")]
+    so_far: bool,
     /// Write the design: the scenario with what was found in place of the marks.
     #[arg(value_parser = written(&["toml"]), long, value_name = "FILE")]
     out: Option<OutFile>,
@@ -202,6 +206,9 @@ impl Tuning<'_> {
             told(telling(arguments), |told| problem.near_limit(&best, told, interrupt::asked))
         });
         let near = near.transpose().map_err(failure)?;
+        if arguments.so_far {
+            return Ok(Found { tuned, near });
+        }
         if let Err(path) = place.remove() {
             note(format_args!("warning: {} could not be removed", path.display()));
         }
@@ -298,6 +305,10 @@ fn search(
     effort: &Effort,
     place: &mut Kept,
 ) -> Result<(Tuned, Vec<f64>), TuneError> {
+    if arguments.so_far {
+        let search = place.as_saved(problem, effort, crew)?;
+        return found(arguments, (problem, &search), Stop::Taken);
+    }
     let (mut search, beginning) = place.begun(problem, effort, crew)?;
     match beginning {
         Beginning::Anew => {}
@@ -332,11 +343,19 @@ fn search(
     if telling != Telling::Nothing {
         answer_after(telling, &line(&search, begun));
     }
+    found(arguments, (problem, &search), stop).map_err(|error| place.left(&search, error))
+}
+
+/// What a search has found, and the best point.
+fn found(
+    arguments: &Arguments,
+    (problem, search): (&TuningProblem, &Search<'_>),
+    stop: Stop,
+) -> Result<(Tuned, Vec<f64>), TuneError> {
     if let Some(path) = &arguments.history {
-        history::write(path, problem, &search)?;
+        history::write(path, problem, search)?;
     }
-    let tuned = Tuned::of(problem, &search, stop).map_err(|error| place.left(&search, error))?;
-    Ok((tuned, search.best().point.clone()))
+    Ok((Tuned::of(problem, search, stop)?, search.best().point.clone()))
 }
 
 /// Where the state is kept: beside the design; beside the scenario where none is written.

@@ -128,7 +128,8 @@ fn trade(series: usize, points: usize) -> TradeFigure {
         name: name(n),
         style: SeriesStyle::Numbered(n),
         points: (0..points).map(|k| at(n, k)).collect(),
-        is_joined: false,
+        is_joined: n == 1,
+        band: (0..points).map(|k| (at(n, k).0, [2.0, 15.0])).filter(|_| n == 1).collect(),
     };
     TradeFigure {
         title: format!("Error against {}", name(3)),

@@ -32,18 +32,26 @@ pub struct TradeSeries {
     pub style: SeriesStyle,
     /// The points.
     pub points: Vec<(f64, f64)>,
-    /// True for a line through them in place of a sign for each: what is possible, not what was reached.
+    /// True for a line through them in place of a sign for each.
     pub is_joined: bool,
+    /// How far off a line may be: abscissa, with the lower and upper end there; empty where that is not known.
+    pub band: Vec<(f64, [f64; 2])>,
 }
 
 /// Width of the plot area (px), wider than high so that the legend has room.
 const WIDTH: f64 = 560.0;
+/// Shade of bands, so that lines and other bands are seen through them.
+const SHADE: f64 = 0.13;
 
 impl TradeFigure {
     /// Draws the figure.
     #[must_use]
     pub fn render(&self) -> Svg {
-        let all = || self.series.iter().flat_map(|it| &it.points);
+        let ends = |it: &TradeSeries| {
+            let each = it.band.iter().flat_map(|(x, ends)| ends.map(|end| (*x, end)));
+            it.points.iter().copied().chain(each).collect::<Vec<_>>()
+        };
+        let all = || self.series.iter().flat_map(ends);
         let shown = || all().filter(|(x, y)| x.is_finite() && y.is_finite());
         let x = Axis::linear(extent(shown().map(|point| point.0)), 0.06, 7);
         let y = Axis::linear(extent(shown().map(|point| point.1)), 0.06, 6);
@@ -66,12 +74,16 @@ impl TradeFigure {
         let area = Rect { x: left, y: top, width: WIDTH, height: SIDE };
         abscissa(&mut canvas, area, &x, true);
         ordinate(&mut canvas, area, &y);
+        let place = |(px, py): &(f64, f64)| {
+            (area.x + x.fraction(*px) * WIDTH, area.y + (1.0 - y.fraction(*py)) * SIDE)
+        };
+        for series in self.series.iter().filter(|it| it.band.len() > 1) {
+            let outline: Vec<(f64, f64)> = series.outline().iter().map(place).collect();
+            canvas.path(&closed(&outline), &Paint::face(series.style.role()).opacity(SHADE));
+        }
         canvas.begin_marked(&cursor::panel(area, &x, &y));
         for series in &self.series {
             let finite = series.points.iter().filter(|(x, y)| x.is_finite() && y.is_finite());
-            let place = |(px, py): &(f64, f64)| {
-                (area.x + x.fraction(*px) * WIDTH, area.y + (1.0 - y.fraction(*py)) * SIDE)
-            };
             let places: Vec<(f64, f64)> = finite.map(place).collect();
             let told: Vec<String> =
                 places.iter().map(|at| format!("{} {}", num(at.0), num(at.1))).collect();
@@ -109,7 +121,34 @@ impl TradeFigure {
                 .map(|(x, y)| format!("{} at {}", short_number(*y), short_number(*x)))
                 .collect();
             text.push_str(&format!(" {}: {}.", series.name, points.join(", ")));
+            if let (Some((from, [a, b])), Some((to, [c, d]))) =
+                (series.band.first(), series.band.last())
+            {
+                let [from, a, b, to, c, d] = [from, a, b, to, c, d].map(|it| short_number(*it));
+                text.push_str(&format!(" Its band: {a} to {b} at {from}, {c} to {d} at {to}."));
+            }
         }
         text
     }
+}
+
+impl TradeSeries {
+    /// Along the lower ends of the band and back along the upper ones, of what is finite.
+    fn outline(&self) -> Vec<(f64, f64)> {
+        let finite =
+            |(x, ends): &&(f64, [f64; 2])| x.is_finite() && ends.iter().all(|it| it.is_finite());
+        let there = self.band.iter().filter(finite);
+        let lower = there.clone().map(|(x, ends)| (*x, ends[0]));
+        lower.chain(there.rev().map(|(x, ends)| (*x, ends[1]))).collect()
+    }
+}
+
+/// A closed path through places.
+fn closed(places: &[(f64, f64)]) -> String {
+    let steps = places
+        .iter()
+        .enumerate()
+        .map(|(n, (x, y))| format!("{}{} {}", if n == 0 { 'M' } else { 'L' }, num(*x), num(*y)));
+    let path: String = steps.collect();
+    if path.is_empty() { path } else { path + "Z" }
 }

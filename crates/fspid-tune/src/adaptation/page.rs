@@ -173,6 +173,7 @@ impl Answer {
                 style: SeriesStyle::Numbered(place),
                 points,
                 is_joined: false,
+                band: Vec::new(),
             };
             TradeFigure {
                 title: format!("{name} of each plant"),

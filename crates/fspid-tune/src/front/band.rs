@@ -201,10 +201,15 @@ fn ends(cases: &[(f64, Along)], middle: &[f64], comparisons: usize) -> [Vec<f64>
     let mut random = Draw::of(SEED, 0);
     let drawn: Vec<[f64; PLACES]> =
         (0..DRAWS).map(|_| mean(cases, &Redrawn::new(cases, &mut random))).collect();
+    around(&drawn, middle, comparisons)
+}
+
+/// Lower and upper ends of a band around a middle that holds everywhere at once, from what drawing anew makes of it.
+pub(super) fn around(drawn: &[[f64; PLACES]], middle: &[f64], bands: usize) -> [Vec<f64>; 2] {
     let deviation = |place: usize| {
         let squares =
             drawn.iter().map(|it| (it[place] - middle[place]) * (it[place] - middle[place]));
-        libm::sqrt(squares.sum::<f64>() / DRAWS as f64)
+        libm::sqrt(squares.sum::<f64>() / drawn.len() as f64)
     };
     let deviations: Vec<f64> = (0..PLACES).map(deviation).collect();
     let mut largest: Vec<f64> = drawn
@@ -216,13 +221,13 @@ fn ends(cases: &[(f64, Along)], middle: &[f64], comparisons: usize) -> [Vec<f64>
         })
         .collect();
     largest.sort_by(f64::total_cmp);
-    let beyond = (1.0 - CONFIDENCE) / comparisons.max(1) as f64 * DRAWS as f64;
+    let beyond = (1.0 - CONFIDENCE) / bands.max(1) as f64 * drawn.len() as f64;
     #[allow(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
         reason = "between 0 and the number of draws"
     )]
-    let place = DRAWS - 1 - (libm::floor(beyond) as usize).min(DRAWS - 1);
+    let place = largest.len().saturating_sub(1 + libm::floor(beyond) as usize);
     let q = largest[place];
     [-1.0, 1.0].map(|side| {
         let ends = middle.iter().zip(&deviations);

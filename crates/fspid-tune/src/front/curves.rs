@@ -14,13 +14,17 @@ impl Curve {
             Quantity::Measure(index) => flight.measures.get(index).copied().flatten(),
             Quantity::Cost => None,
         };
-        let mut points: Vec<(f64, f64)> = flights
-            .filter_map(|flight| {
-                let travel = measure(flight, Quantity::ACTIVITY)?;
-                let error = measure(flight, Quantity::ERROR)?;
-                (travel > 0.0 && error > 0.0).then(|| (libm::log(travel), libm::log(error)))
-            })
-            .collect();
+        Self::through(flights.filter_map(|flight| {
+            let travel = measure(flight, Quantity::ACTIVITY)?;
+            Some((travel, measure(flight, Quantity::ERROR)?))
+        }))
+    }
+
+    /// Through travels and errors above zero; none of fewer than two travels.
+    pub(super) fn through(points: impl Iterator<Item = (f64, f64)>) -> Option<Self> {
+        let there = points.filter(|(travel, error)| *travel > 0.0 && *error > 0.0);
+        let mut points: Vec<(f64, f64)> =
+            there.map(|(travel, error)| (libm::log(travel), libm::log(error))).collect();
         points.sort_by(|one, other| one.0.total_cmp(&other.0));
         // Of two flights of one travel the better one: the other effort bought nothing.
         points.dedup_by(|next, before| {

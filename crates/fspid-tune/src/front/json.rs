@@ -22,6 +22,18 @@ pub(super) fn json(outcome: &FrontOutcome) -> Value {
             "failed_of_against": band.failed[1],
         })
     });
+    let lines = outcome.lines().into_iter().map(|line| {
+        let ends = |which: usize| line.band.iter().map(|(_, ends)| ends[which]).collect::<Vec<_>>();
+        json!({
+            "name": line.controller.as_deref().unwrap_or("limit, proved"),
+            "is_limit": line.controller.is_none(),
+            "travel_deg": line.points.iter().map(|it| it.0).collect::<Vec<_>>(),
+            "iae_deg_s": line.points.iter().map(|it| it.1).collect::<Vec<_>>(),
+            "band_travel_deg": line.band.iter().map(|it| it.0).collect::<Vec<_>>(),
+            "band_lower_deg_s": ends(0),
+            "band_upper_deg_s": ends(1),
+        })
+    });
     let rungs = outcome.rungs.iter().map(|rung| {
         json!({
             "travel_deg": rung.travel_deg,
@@ -35,6 +47,7 @@ pub(super) fn json(outcome: &FrontOutcome) -> Value {
         "against": outcome.against(),
         "confidence": CONFIDENCE,
         "draws": DRAWS,
+        "lines": lines.collect::<Vec<_>>(),
         "fronts": bands.collect::<Vec<_>>(),
         "rungs": rungs.collect::<Vec<_>>(),
         "command": outcome.command,

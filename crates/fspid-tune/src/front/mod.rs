@@ -8,6 +8,7 @@
 mod band;
 mod curves;
 mod json;
+mod over_travel;
 mod page;
 mod text;
 
@@ -19,6 +20,7 @@ use fspid_study::shell::word;
 use serde_json::Value;
 
 pub use band::{Band, Dominance};
+pub use over_travel::Line;
 
 use crate::contest::{Contest, Options, Outcome, Progress, Then};
 use crate::crew::Crew;
@@ -165,6 +167,12 @@ impl FrontOutcome {
     #[must_use]
     pub fn json(&self) -> Value {
         json::json(self)
+    }
+
+    /// Error over travel, of each controller and, last, the limit; none where no case is common to all.
+    #[must_use]
+    pub fn lines(&self) -> Vec<Line> {
+        over_travel::lines(self)
     }
 
     /// Name of the controller that the others are compared with.

@@ -6,8 +6,7 @@ use fspid_plot::{LineFigure, LinePanel, Series, SeriesStyle, Svg, TradeFigure, T
 
 use super::band::{CONFIDENCE, DRAWS, PLACES};
 use super::text::{change_pct, headline, share};
-use super::{Dominance, FrontOutcome, Rung};
-use crate::contest::{Judged, Quantity};
+use super::{Dominance, FrontOutcome, over_travel};
 
 pub(super) fn page(outcome: &FrontOutcome) -> String {
     let name = match outcome.rungs.first().map(|rung| rung.outcome.setting.scenario.trim()) {
@@ -49,7 +48,7 @@ pub(super) fn page(outcome: &FrontOutcome) -> String {
 }
 
 fn answer(outcome: &FrontOutcome) -> Vec<Item> {
-    let over = "Error over travel. A line goes through the means of a controller's best designs, one at each effort, over the cases that have a limit and of which nobody lost a flight on any rung; the lowest line is the limit at the travel of the controller that the others are compared with. At its corners nobody gets below it.";
+    let over = "Error over travel. A line goes through a controller's means at each effort, over its tunings and over the cases that have a limit and of which nobody lost a flight on any rung; its band says how far cases and tunings leave that open, everywhere at once and for all lines together, without how hard a case is for everybody. Who is better is decided by the differences below. The lowest line is the limit at the travel of the best design of the controller that the others are compared with; at its corners nobody gets below it.";
     let along = format!(
         "Change of the error from {} at equal travel, %, from the least to the most travel that both have in a case. All bands hold together and everywhere at once, at {:.0} %: below 0 everywhere is better on the whole front.",
         outcome.against(),
@@ -77,79 +76,23 @@ fn notes() -> Vec<String> {
     ]
 }
 
-/// Cases with a limit of which nobody lost a flight on any rung.
-fn common(outcome: &FrontOutcome) -> Vec<usize> {
-    let Some(first) = outcome.rungs.first() else {
-        return Vec::new();
-    };
-    let kept = |rung: &Rung, case: usize| {
-        let judged = &rung.outcome.judged;
-        let all = rung.near.controllers.iter();
-        let has_limit =
-            all.clone().all(|(_, shares)| shares.get(case).copied().flatten().is_some());
-        has_limit && !judged.kept(judged.contestants.iter(), &[case]).is_empty()
-    };
-    let cases = first.outcome.judged.all();
-    cases.into_iter().filter(|case| outcome.rungs.iter().all(|rung| kept(rung, *case))).collect()
-}
-
 fn error_over_travel(outcome: &FrontOutcome) -> Option<Svg> {
-    let cases = common(outcome);
-    let first = &outcome.rungs.first()?.outcome.judged;
-    if cases.is_empty() {
-        return None;
-    }
-    let point = |rung: &Rung, place: usize| {
-        let judged = &rung.outcome.judged;
-        let contestant = judged.contestants.get(place)?;
-        let design = contestant.designs.get(Judged::best(contestant))?;
-        let x = judged.mean(design, &cases, Quantity::ACTIVITY)?;
-        Some((x, judged.mean(design, &cases, Quantity::ERROR)?))
-    };
-    let mut series: Vec<TradeSeries> = first
-        .contestants
-        .iter()
-        .enumerate()
-        .map(|(place, it)| TradeSeries {
-            name: it.name.clone(),
-            style: SeriesStyle::Numbered(place),
-            points: outcome.rungs.iter().filter_map(|rung| point(rung, place)).collect(),
-            is_joined: it.is_tuned,
-        })
-        .collect();
-    let limit = |rung: &Rung| {
-        let (x, _) = point(rung, first.against)?;
-        Some((x, limit_of(rung, &cases)?))
-    };
-    series.push(TradeSeries {
-        name: "limit, proved".to_owned(),
-        style: SeriesStyle::Numbered(series.len()),
-        points: outcome.rungs.iter().filter_map(limit).collect(),
-        is_joined: true,
+    let lines = over_travel::lines(outcome);
+    let series = lines.into_iter().enumerate().map(|(place, line)| TradeSeries {
+        name: line.controller.unwrap_or_else(|| "limit, proved".to_owned()),
+        style: SeriesStyle::Numbered(place),
+        points: line.points,
+        is_joined: line.is_tuned,
+        band: line.band,
     });
+    let series: Vec<TradeSeries> = series.collect();
     let figure = TradeFigure {
         title: "Error over travel".to_owned(),
         x_label: "mean elevator travel [deg]".to_owned(),
         y_label: "mean IAE [deg s]".to_owned(),
         series,
     };
-    Some(figure.render())
-}
-
-/// The mean proved limit of some cases at the travel of the controller compared with, deg s.
-fn limit_of(rung: &Rung, cases: &[usize]) -> Option<f64> {
-    let judged = &rung.outcome.judged;
-    let contestant = judged.contestants.get(judged.against)?;
-    let design = contestant.designs.get(Judged::best(contestant))?;
-    let (_, shares) = rung.near.controllers.get(judged.against)?;
-    let (mut sum, mut weights) = (0.0, 0.0);
-    for &case in cases {
-        let weight = judged.cases.get(case)?.weight;
-        let error = judged.mean(design, &[case], Quantity::ERROR)?;
-        sum += weight * error * shares.get(case).copied().flatten()?;
-        weights += weight;
-    }
-    Some(sum / weights)
+    (!figure.series.is_empty()).then(|| figure.render())
 }
 
 fn differences(outcome: &FrontOutcome) -> Svg {

@@ -119,12 +119,14 @@ fn figure(answer: &Answer) -> Svg {
         style,
         points,
         is_joined: true,
+        band: Vec::new(),
     };
     let controllers = answer.controllers.iter().enumerate().map(|(place, it)| TradeSeries {
         name: it.name.clone(),
         style: SeriesStyle::Numbered(place),
         points: it.flown.iter().map(|(v, way)| (degrees(*way), in_unit(measure, *v))).collect(),
         is_joined: false,
+        band: Vec::new(),
     });
     let mut series: Vec<TradeSeries> = controllers.collect();
     let next = series.len();

@@ -113,6 +113,7 @@ pub(super) fn trade_chapter(outcome: &Outcome) -> Chapter {
         style: style(outcome, place),
         points: points(judged, place, &kept),
         is_joined: false,
+        band: Vec::new(),
     };
     let figure = TradeFigure {
         title: "Error against elevator activity".to_owned(),
