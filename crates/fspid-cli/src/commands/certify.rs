@@ -44,6 +44,9 @@ pub(crate) struct Arguments {
     /// Certify as well, at once, all plants and actuators that the scenario's dispersions can draw.
     #[arg(long, conflicts_with = "check")]
     family: bool,
+    /// Bound as well, from rest, what gusts and disturbances at the elevator do to pitch angle and command.
+    #[arg(long, conflicts_with = "check")]
+    disturbances: bool,
     /// Write the certificates into this folder.
     #[arg(long, value_name = "DIR")]
     out: Option<Folder>,
@@ -75,7 +78,7 @@ fn prove(path: &Path, arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::input(format_args!("there is no controller `{name}`{known}")));
     }
     let telling = Telling::for_standard_error();
-    let certification = watched(&template, (only, arguments.family), telling);
+    let certification = watched(&template, (only, arguments), telling);
     // The answer begins on an empty line.
     if telling == Telling::Line {
         tell(telling, "");
@@ -105,7 +108,7 @@ fn prove(path: &Path, arguments: &Arguments) -> Result<(), Failure> {
 /// Certifies, and tells whom and for how long.
 fn watched(
     template: &Template,
-    (only, family): (Option<&str>, bool),
+    (only, arguments): (Option<&str>, &Arguments),
     telling: Telling,
 ) -> Result<Certification, SimError> {
     let whom = Mutex::new(String::new());
@@ -120,13 +123,18 @@ fn watched(
                 name.clone_into(&mut whom);
             }
         };
-        let certification = Certification::watched(template.study(), only, &effort, &mut tell)?;
-        match family {
-            true => certification.with_families(template, &effort, &mut |name| {
-                tell(&format!("all that can be drawn of {name}"));
-            }),
-            false => Ok(certification),
+        let mut certification =
+            Certification::watched(template.study(), only, &effort, &mut tell)?;
+        if arguments.disturbances {
+            let mut told = |name: &str| tell(&format!("what disturbances do to {name}"));
+            certification =
+                certification.with_disturbances(template.study(), &effort, &mut told)?;
         }
+        if arguments.family {
+            let mut told = |name: &str| tell(&format!("all that can be drawn of {name}"));
+            certification = certification.with_families(template, &effort, &mut told)?;
+        }
+        Ok(certification)
     })
 }
 

@@ -4,7 +4,7 @@
 use fspid_proof::{Certificate, LeftOut, Range, Rechecked, Scope, Stepped};
 use serde_json::{Value, json};
 
-use super::family;
+use super::{disturbances, family};
 use crate::json::merged;
 use crate::metrics::short;
 use fspid_scenario::units::degrees;
@@ -49,11 +49,14 @@ impl Told {
             sentences.push(("remains", remains(scope)));
             sentences.push(("limits", limits(scope)));
             sentences.extend(scope.stepped.map(|stepped| ("steps", steps(&stepped))));
+            let disturbed = disturbances::sentences(scope);
+            sentences.extend(disturbed.into_iter().map(|it| ("disturbances", it)));
         }
         sentences.extend(self.family.iter().map(|sentence| ("family", sentence.clone())));
         let left_out = self.left_out.iter().enumerate();
         sentences.extend(left_out.map(|(place, one)| {
-            (if place == 0 { "not in this claim" } else { "" }, one.to_string())
+            let about = if place == 0 { "not in this claim" } else { "" };
+            (about, disturbances::left_out(*one, self.stable.as_ref()))
         }));
         sentences
     }
@@ -80,9 +83,14 @@ impl Told {
                 pitch_within_rad,
                 limits_left_out,
                 stepped,
+                disturbed,
                 left_out: _,
             } = scope;
-            json!({
+            let bounds = match disturbed.is_empty() {
+                true => json!({}),
+                false => disturbances::in_json(scope),
+            };
+            let told = json!({
                 "rest_error_deg": told_deg(*rest_error_rad),
                 "setpoint_within_deg": told_deg(range.setpoint_rad),
                 "any_setpoint": any_setpoint,
@@ -95,7 +103,8 @@ impl Told {
                 "steps_within_deg": stepped.map(|it| told_deg(it.setpoint_rad)),
                 "steps_load_within_deg": stepped.map(|it| told_deg(it.load_rad)),
                 "steps_limited_until_s": stepped.map(|it| it.settled_s),
-            })
+            });
+            merged([told, bounds])
         };
         merged([told, self.stable.as_ref().map_or_else(|| json!({}), stable)])
     }
