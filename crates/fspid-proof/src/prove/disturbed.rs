@@ -12,7 +12,7 @@ use crate::scope::Asked;
 use crate::solve::{self, DrivenCorner, DrivenProblem, driven_form, kept_of, least_gain};
 
 /// As in proofs of stability, corners are left away that lie outside of the others by no more than this; the gain is then
-/// asked of all of them.
+/// asked of all that span the set.
 const THINNED: f64 = 0.01;
 /// What is claimed of a gain beyond what ordinary arithmetic finds: first little, then what a form asks for whose
 /// inequalities hold by little.
@@ -64,6 +64,8 @@ pub fn bound_disturbances(
     let search = Search {
         remains_rad: recheck.run()?.remains_rad,
         corners: recheck.driven_corners()?,
+        hull: recheck.held_hull(THINNED)?,
+        spanning: recheck.held_hull(0.0)?,
         recheck: &recheck,
         start: form,
         certificate,
@@ -89,7 +91,10 @@ pub fn bound_disturbances(
 
 struct Search<'a> {
     recheck: &'a Recheck<'a>,
+    /// All corners of the gains, those that span them, and nearly.
     corners: Vec<DrivenLoop>,
+    spanning: Vec<DrivenLoop>,
+    hull: Vec<DrivenLoop>,
     /// The form of the claim, which decreases at every corner.
     start: &'a Matrix,
     certificate: &'a Certificate,
@@ -106,7 +111,7 @@ struct Found {
     measure: f64,
 }
 
-/// The loop at corners to solve for and at all corners, for one bound, and rows whose largest values count.
+/// The loop at corners to solve for and at those that span all, for one bound, and rows whose largest values count.
 struct Question {
     solved: Vec<DrivenCorner>,
     all: Vec<DrivenCorner>,
@@ -127,7 +132,7 @@ impl Search<'_> {
                 if self.recheck.not_bounded(quantity, extent, self.remains_rad).is_some() {
                     continue;
                 }
-                let question = self.question(&entry, quantity, extent)?;
+                let question = self.question(&entry, quantity, extent);
                 let found = match extent {
                     Extent::Energy => self.energy(&question),
                     Extent::Peak => self.peak(&question),
@@ -150,12 +155,7 @@ impl Search<'_> {
         Ok(bounds)
     }
 
-    fn question(
-        &self,
-        entry: &Matrix,
-        quantity: Quantity,
-        extent: Extent,
-    ) -> Result<Question, Unbounded> {
+    fn question(&self, entry: &Matrix, quantity: Quantity, extent: Extent) -> Question {
         let dt_s = self.certificate.description.controller.config().dt_s;
         let row = |corner: &DrivenLoop| -> Vec<f64> {
             corner.seen(quantity).into_iter().map(Interval::midpoint).collect()
@@ -166,7 +166,6 @@ impl Search<'_> {
             seen: (extent == Extent::Energy)
                 .then(|| row(corner).into_iter().map(|it| it * dt_s.sqrt()).collect()),
         };
-        let hull = self.recheck.held_hull(THINNED)?;
         let rows = |corners: &[DrivenLoop]| -> Vec<Vec<f64>> {
             match (extent, quantity) {
                 (Extent::Energy, _) => Vec::new(),
@@ -174,12 +173,12 @@ impl Search<'_> {
                 (Extent::Peak, Quantity::Command) => corners.iter().map(row).collect(),
             }
         };
-        Ok(Question {
-            solved: hull.iter().map(at).collect(),
-            all: self.corners.iter().map(at).collect(),
-            rows: rows(&hull),
-            all_rows: rows(&self.corners),
-        })
+        Question {
+            solved: self.hull.iter().map(at).collect(),
+            all: self.spanning.iter().map(at).collect(),
+            rows: rows(&self.hull),
+            all_rows: rows(&self.spanning),
+        }
     }
 
     fn energy(&self, question: &Question) -> Option<Found> {
@@ -226,7 +225,7 @@ impl Search<'_> {
 }
 
 impl Question {
-    /// β at all corners.
+    /// β at the corners that span all.
     fn gain(&self, form: &Matrix, decay: f64) -> Option<f64> {
         let gains = self.all.iter().map(|corner| least_gain(form, decay, corner));
         let gain = gains.collect::<Option<Vec<f64>>>()?.into_iter().fold(0.0, f64::max);
