@@ -123,8 +123,7 @@ fn watched(
                 name.clone_into(&mut whom);
             }
         };
-        let mut certification =
-            Certification::watched(template.study(), only, &effort, &mut tell)?;
+        let mut certification = Certification::watched(template.study(), only, &effort, &mut tell)?;
         if arguments.disturbances {
             let mut told = |name: &str| tell(&format!("what disturbances do to {name}"));
             certification =

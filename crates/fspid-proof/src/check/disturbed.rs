@@ -63,7 +63,8 @@ pub fn grows_no_faster(
     if let Some(row) = seen {
         let row = row_of(row, size)?.product(&basis)?;
         let square = row.transpose().product(&row)?;
-        left = left.difference(&of_places(size + inputs, |i, j| square.get(i, j), Interval::ZERO))?;
+        left =
+            left.difference(&of_places(size + inputs, |i, j| square.get(i, j), Interval::ZERO))?;
     }
     prove_named("bound of what a disturbance adds", &left)
 }

@@ -19,7 +19,10 @@ const THINNED: f64 = 0.01;
 const CLAIMED: [f64; 3] = [1.0 + 1e-7, 1.0 + 1e-5, 1.0 + 1e-3];
 /// Ends of $1 - \alpha$ of a peak, as shares of what the form of the claim leaves, and how often the range is cut.
 const SHARES: [f64; 2] = [0.02, 0.95];
-const CUTS: usize = 5;
+const CUTS: usize = 4;
+/// How near to the least level a form is looked for, along the way and at its end.
+const COARSE: f64 = 20.0;
+const FINE: f64 = 0.5;
 /// The golden section.
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
 
@@ -183,7 +186,7 @@ impl Search<'_> {
 
     fn energy(&self, question: &Question) -> Option<Found> {
         let problem = DrivenProblem { corners: &question.solved, rows: &[], decay: 1.0 };
-        let form = driven_form(&problem, self.start, &self.effort)?;
+        let form = driven_form(&problem, self.start, &self.effort, FINE)?;
         let gain = question.gain(&form, 1.0)?;
         Some(Found { form, decay: 1.0, gain, measure: gain })
     }
@@ -194,33 +197,34 @@ impl Search<'_> {
         if !(left > 0.0) {
             return None;
         }
-        let at = |log: f64| {
+        let at = |log: f64, reach: f64| {
             let decay = 1.0 - libm::exp(log);
-            let problem =
-                DrivenProblem { corners: &question.solved, rows: &question.rows, decay };
-            let form = driven_form(&problem, self.start, &self.effort)?;
+            let problem = DrivenProblem { corners: &question.solved, rows: &question.rows, decay };
+            let form = driven_form(&problem, self.start, &self.effort, reach)?;
             let gain = question.gain(&form, decay)?;
-            let reach = question.reach(&form)?;
-            Some(Found { form, decay, gain, measure: reach * reach * gain / (1.0 - decay) })
+            let size = question.reach(&form)?;
+            Some(Found { form, decay, gain, measure: size * size * gain / (1.0 - decay) })
         };
         let measure = |found: &Option<Found>| found.as_ref().map_or(f64::INFINITY, |it| it.measure);
         let [mut low, mut high] = SHARES.map(|share| libm::log(share * left));
-        let inner = |low: f64, high: f64| {
-            [high - GOLDEN * (high - low), low + GOLDEN * (high - low)]
-        };
-        let [mut one, mut other] = inner(low, high).map(at);
+        let inner =
+            |low: f64, high: f64| [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
+        let [mut one, mut other] = inner(low, high).map(|log| at(log, COARSE));
         for _ in 0..CUTS {
             if measure(&one) <= measure(&other) {
                 high = inner(low, high)[1];
                 other = one;
-                one = at(inner(low, high)[0]);
+                one = at(inner(low, high)[0], COARSE);
             } else {
                 low = inner(low, high)[0];
                 one = other;
-                other = at(inner(low, high)[1]);
+                other = at(inner(low, high)[1], COARSE);
             }
         }
-        if measure(&one) <= measure(&other) { one } else { other }
+        let [first, second] = inner(low, high);
+        let best = if measure(&one) <= measure(&other) { first } else { second };
+        let found = [at(best, FINE), one, other];
+        found.into_iter().flatten().min_by(|a, b| a.measure.total_cmp(&b.measure))
     }
 }
 

@@ -72,9 +72,8 @@ impl Recheck<'_> {
         // Gains that remember what is held add to the command; it is not bounded then.
         command.resize(matrix.rows(), Interval::ZERO);
         let description = &self.certificate.description;
-        let limits = self
-            .covers_limits()
-            .then(|| limits::rows(description, &model, at, &self.rest));
+        let limits =
+            self.covers_limits().then(|| limits::rows(description, &model, at, &self.rest));
         Ok(DrivenLoop { held, matrix, command, limits })
     }
 
@@ -131,7 +130,9 @@ impl Recheck<'_> {
             Extent::Peak => *decay < 1.0,
         };
         if !is_of {
-            return Err(malformed("disturbances: the decay is 1 of an energy and below it of a peak"));
+            return Err(malformed(
+                "disturbances: the decay is 1 of an energy and below it of a peak",
+            ));
         }
         let size = self.model.size() + self.more_states();
         let entry = exact(&way.entry(description, size)?);

@@ -27,8 +27,6 @@ const REACH: f64 = 200.0;
 const LOWEST_TOLERANCE: f64 = 0.02;
 /// A level that is a size is given back so much of itself: half of it of the gain, whose square it is.
 const SMALLEST_TOLERANCE: f64 = 0.01;
-/// It counts as found when the pessimistic reach is this part of it: in practice it falls by far less.
-const SMALLEST_REACH: f64 = 1.0;
 /// Decay below which no difference is made.
 const DECAY_MIN: f64 = 1e-10;
 /// Part of the decay that is given back, so that the form lies inside and not on the edge.
@@ -56,7 +54,10 @@ pub(super) enum Goal {
     /// As low as possible, then a little back up, where the inequalities hold with room for rounding.
     Lowest,
     /// As low as possible where the level is a size of its own, and nothing of it is near 1.
-    Smallest,
+    Smallest {
+        /// The pessimistic reach is this part of the level where it counts as found; in practice it falls by far less.
+        reach: f64,
+    },
 }
 
 /// Where the way down ended.
@@ -84,7 +85,7 @@ pub(super) fn descend(chart: &mut impl Chart, goal: Goal, effort: &Effort) -> Op
     let target = match goal {
         Goal::Below(target) => target,
         Goal::Lowest => bound + GIVEN_BACK * (1.0 - bound).abs(),
-        Goal::Smallest => bound + SMALLEST_TOLERANCE * bound.abs(),
+        Goal::Smallest { .. } => bound + SMALLEST_TOLERANCE * bound.abs(),
     };
     if bound < target {
         for _ in 0..DEEPENINGS {
@@ -105,7 +106,7 @@ fn is_done(goal: Goal, level: f64, bound: f64) -> bool {
     match goal {
         Goal::Below(target) => bound < target || reach < bound - target,
         Goal::Lowest => reach < LOWEST_TOLERANCE * (1.0 - bound).abs().max(DECAY_MIN),
-        Goal::Smallest => reach < SMALLEST_REACH * bound.abs(),
+        Goal::Smallest { reach: enough } => reach < enough * bound.abs(),
     }
 }
 

@@ -49,15 +49,16 @@ pub struct DrivenProblem<'a> {
 }
 
 /// A form P, with $\tau = 1$, for which the level is about the least; from a form that decreases by more than α at every
-/// corner. `None` where it does not, or shapes do not fit, or the search was stopped.
+/// corner. The search ends where the level can hardly fall by more than `reach` times itself, which is pessimistic. `None` where it does not, or shapes do not fit, or the search was stopped.
 #[must_use]
 pub fn driven_form(
     problem: &DrivenProblem<'_>,
     start: &Matrix,
     effort: &Effort,
+    reach: f64,
 ) -> Option<Matrix> {
     let mut search = Search::start(problem, &Dense::from(start))?;
-    descend(&mut search, Goal::Smallest, effort)?;
+    descend(&mut search, Goal::Smallest { reach }, effort)?;
     let form = Dense::identity(search.inverse.rows).congruence(&search.inverse);
     form.scaled(1.0 / search.size).to_matrix()
 }
@@ -148,7 +149,8 @@ impl Search {
         let lower = form.cholesky()?;
         let (transform, inverse) = (lower.lower_inverse().transpose(), lower.transpose());
         let decay = problem.decay;
-        let turned = |corner| Turned::of(corner, &Dense::identity(states), &Dense::identity(states));
+        let turned =
+            |corner| Turned::of(corner, &Dense::identity(states), &Dense::identity(states));
         let mut corners: Vec<Turned> = problem.corners.iter().map(turned).collect();
         let rows: Vec<Dense> = problem.rows.iter().map(|row| row_of(row)).collect();
         let at = |corner| Turned::of(corner, &transform, &inverse);

@@ -76,13 +76,14 @@ fn degrees_per_unit(one: &Disturbed) -> f64 {
 }
 
 /// One sentence for each way and measure.
-pub(super) fn sentences(scope: &Scope) -> Vec<String> {
+pub(super) fn sentences(scope: &Scope, is_fixed: bool) -> Vec<String> {
+    let moving = if is_fixed { "" } else { ", with gains moving as they like" };
     let mut told = Vec::new();
     let mut rest = &scope.disturbed[..];
     while let [first, ..] = rest {
         let same = rest.iter().take_while(|it| it.way == first.way && it.extent == first.extent);
         let (group, later) = rest.split_at(same.count());
-        told.push(sentence(scope, group));
+        told.push(sentence(scope, group, moving));
         rest = later;
     }
     if scope.disturbed.len() > 1 && !told.is_empty() {
@@ -92,7 +93,7 @@ pub(super) fn sentences(scope: &Scope) -> Vec<String> {
     told
 }
 
-fn sentence(scope: &Scope, group: &[Disturbed]) -> String {
+fn sentence(scope: &Scope, group: &[Disturbed], moving: &str) -> String {
     let Some(first) = group.first() else { return String::new() };
     let (word, _) = unit(&first.way);
     let each = group.iter().map(|one| {
@@ -113,7 +114,7 @@ fn sentence(scope: &Scope, group: &[Disturbed]) -> String {
                 _ => ", beside what remains without it",
             };
             format!(
-                "from rest, {} of at most 1 {word}, however it changes, moves {}{beside}, in proportion to its size, with gains moving as they like{limits}",
+                "from rest, {} of at most 1 {word}, however it changes, moves {}{beside}, in proportion to its size{moving}{limits}",
                 named(&first.way, first.at_servo),
                 moved.join(" and ")
             )
@@ -122,7 +123,7 @@ fn sentence(scope: &Scope, group: &[Disturbed]) -> String {
             let gains = each.iter().map(|(what, by)| format!("{by} deg per {word} to {what}"));
             let gains: Vec<String> = gains.collect();
             format!(
-                "from rest, the L2 gain of {} of any shape is at most {}, with gains moving as they like{limits}",
+                "from rest, the L2 gain of {} of any shape is at most {}{moving}{limits}",
                 named(&first.way, false),
                 gains.join(" and ")
             )

@@ -7,8 +7,8 @@ use serde_json::{Value, json};
 use super::scope::{Told, told_deg};
 use super::text::found;
 use super::{
-    Around, Certification, Certified, CheckedFile, Comparison, DisturbanceAnswer, NotProvable, Seal,
-    family,
+    Around, Certification, Certified, CheckedFile, Comparison, DisturbanceAnswer, NotProvable,
+    Seal, family,
 };
 use crate::json::{merged, present, with_null_reasons};
 

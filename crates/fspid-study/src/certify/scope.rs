@@ -4,6 +4,7 @@
 use fspid_proof::{Certificate, LeftOut, Range, Rechecked, Scope, Stepped};
 use serde_json::{Value, json};
 
+use super::text::is_fixed;
 use super::{disturbances, family};
 use crate::json::merged;
 use crate::metrics::short;
@@ -15,6 +16,8 @@ pub(super) struct Told {
     stable: Option<Scope>,
     left_out: Vec<LeftOut>,
     family: Vec<String>,
+    /// The gains do not move.
+    is_fixed: bool,
 }
 
 impl Told {
@@ -24,7 +27,7 @@ impl Told {
         let stable = certificate.claim.is_of_stability().then_some(scope);
         let family = certificate.family.as_ref().zip(rechecked.family);
         let family = family.map_or_else(Vec::new, |(family, it)| family::sentences(family, it));
-        Self { stable, left_out, family }
+        Self { stable, left_out, family, is_fixed: is_fixed(certificate) }
     }
 
     /// As [`of`](Self::of) of a certificate that was read and held against no scenario: what its words make of its plants
@@ -49,7 +52,7 @@ impl Told {
             sentences.push(("remains", remains(scope)));
             sentences.push(("limits", limits(scope)));
             sentences.extend(scope.stepped.map(|stepped| ("steps", steps(&stepped))));
-            let disturbed = disturbances::sentences(scope);
+            let disturbed = disturbances::sentences(scope, self.is_fixed);
             sentences.extend(disturbed.into_iter().map(|it| ("disturbances", it)));
         }
         sentences.extend(self.family.iter().map(|sentence| ("family", sentence.clone())));

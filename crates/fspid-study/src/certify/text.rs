@@ -71,7 +71,7 @@ fn headline(certified: &Certified, outcome: &Outcome) -> String {
 }
 
 /// True of a loop whose gains do not move.
-fn is_fixed(certificate: &Certificate) -> bool {
+pub(super) fn is_fixed(certificate: &Certificate) -> bool {
     matches!(certificate.description.controller, Controller::Fixed(_))
 }
 
