@@ -6,7 +6,7 @@ use fspid_numeric::scalar::Interval;
 
 use super::{Recheck, RecheckError, malformed, points};
 use crate::certificate::Claim;
-use crate::check::{Driven, Ellipsoid, IntervalMatrix, NotProved, grows_no_faster};
+use crate::check::{Driven, Ellipsoid, IntervalMatrix, NotProved, grows_no_faster, printed};
 use crate::disturbances::{DisturbanceBound, Disturbed, Extent, Quantity, exact, first_of};
 use crate::gain_set::HeldGains;
 use crate::limits;
@@ -126,7 +126,7 @@ impl Recheck<'_> {
             return Err(malformed(what));
         }
         let is_of = match extent {
-            Extent::Energy => *decay == 1.0,
+            Extent::Energy => decay.total_cmp(&1.0).is_eq(),
             Extent::Peak => *decay < 1.0,
         };
         if !is_of {
@@ -136,7 +136,7 @@ impl Recheck<'_> {
         }
         let size = self.model.size() + self.more_states();
         let entry = exact(&way.entry(description, size)?);
-        let root_of_period = Interval::point(description.controller.config().dt_s).sqrt();
+        let root_of_period = printed(description.controller.config().dt_s).sqrt();
         for corner in corners {
             if (self.stops)() {
                 return Err(malformed("nobody wants the answer any more"));

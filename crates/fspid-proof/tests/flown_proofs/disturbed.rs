@@ -24,8 +24,15 @@ const SELF_TUNING: u64 = 5;
 /// Samples of a flight.
 const SAMPLES: usize = 1200;
 
+/// Who draws a scenario.
+type Draw = fn(&mut Dice) -> Scenario;
+
+fn differs(one: f64, other: f64) -> bool {
+    one.total_cmp(&other).is_ne()
+}
+
 /// A scenario whose plant feels the air, with nothing that keeps it from rest at the trim.
-fn at_rest(dice: &mut Dice, drawn: fn(&mut Dice) -> Scenario) -> Scenario {
+fn at_rest(dice: &mut Dice, drawn: Draw) -> Scenario {
     let mut scenario = drawn(dice);
     scenario.disturbances.clear();
     scenario.setpoint = Profile::new(0.0, Shape::Step { at_s: 0.0 }).expect("allowed");
@@ -98,7 +105,8 @@ fn disturbed(scenario: &Scenario, way: &Way, values: &[f64]) -> Scenario {
     let dt_s = scenario.timing.dt_s();
     let Way::Air { part, .. } = way else {
         let before = std::iter::once(&0.0).chain(values);
-        let steps = values.iter().zip(before).enumerate().filter(|(_, (now, last))| now != last);
+        let steps =
+            values.iter().zip(before).enumerate().filter(|(_, (now, last))| differs(**now, **last));
         let steps = steps.map(|(k, (now, last))| {
             let at_s = k as f64 * dt_s;
             Disturbance::new(Entry::Elevator, now - last, Shape::Step { at_s }).expect("allowed")
@@ -116,7 +124,7 @@ fn disturbed(scenario: &Scenario, way: &Way, values: &[f64]) -> Scenario {
     let mut rows = vec![row(-1.0, 0.0)];
     let mut last = 0.0;
     for (k, &value) in values.iter().enumerate().filter(|(k, _)| *k > 0) {
-        if value != last {
+        if differs(value, last) {
             let from_s = (k as f64 + 1.0 / 3.0) * dt_s;
             rows.extend([row(from_s, last), row(from_s + dt_s / 7.0, value)]);
             last = value;
@@ -186,7 +194,7 @@ fn share(bound: &Disturbed, flown: &Flown, values: &[f64], (dt_s, remains_rad): 
 }
 
 /// Flies the ways of a scenario at some sizes; the largest share of each measure that is reached.
-fn attack(seed: u64, drawn: fn(&mut Dice) -> Scenario) -> Option<[f64; 2]> {
+fn attack(seed: u64, drawn: Draw) -> Option<[f64; 2]> {
     let mut dice = Dice::new(seed);
     let scenario = at_rest(&mut dice, drawn);
     let (certificate, rechecked) = match seed {
@@ -222,7 +230,7 @@ fn attack(seed: u64, drawn: fn(&mut Dice) -> Scenario) -> Option<[f64; 2]> {
 
 #[test]
 fn no_flight_goes_beyond_what_is_bounded_of_disturbances() {
-    let seeds: [(u64, fn(&mut Dice) -> Scenario); 3] =
+    let seeds: [(u64, Draw); 3] =
         [(5, drawn::scenario), (9, drawn::scenario), (9, drawn::structured)];
     let shares: Vec<[f64; 2]> = std::thread::scope(|scope| {
         let started: Vec<_> =

@@ -11,6 +11,8 @@ mod comparison;
 mod controller_file;
 mod coverage;
 mod digest;
+#[cfg(test)]
+mod disturbance_tests;
 mod disturbances;
 mod disturbances_file;
 mod family;
