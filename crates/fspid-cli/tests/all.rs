@@ -5,6 +5,7 @@ mod aircraft;
 mod bench;
 mod campaign;
 mod certify;
+mod certify_disturbances;
 mod certify_family;
 mod cli;
 mod common;

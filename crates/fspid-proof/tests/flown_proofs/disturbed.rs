@@ -4,6 +4,9 @@
 use std::ops::ControlFlow;
 use std::sync::OnceLock;
 
+use fspid_core::Gains;
+use fspid_lti::Matrix;
+use fspid_proof::check::{ActuatorLag, PrintedPlant};
 use fspid_proof::{
     AirPart, Asked, Certificate, Disturbed, Extent, LoopDescription, Quantity, Rechecked, Verdict,
     Way, bound_disturbances, certify, ways_of,
@@ -241,6 +244,67 @@ fn no_flight_goes_beyond_what_is_bounded_of_disturbances() {
     // The bounds are no idle ones: flights come near some of them.
     let nearest = |place: usize| shares.iter().map(|it| it[place]).fold(0.0, f64::max);
     assert!(nearest(0) > 0.8 && nearest(1) > 0.3, "{shares:?}");
+}
+
+/// The largest gain from energy to pitch angle that any frequency finds in a loop whose gains stand still, at the elevator:
+/// $\sqrt T |c (e^{j \omega} - M)^{-1} E|$.
+fn frozen_norm(certificate: &Certificate, gains: Gains<f64>) -> f64 {
+    let description = &certificate.description;
+    let model = description.enclosed().expect("enclosed").midpoint();
+    let matrix = model.closed_matrix(gains).expect("a matrix");
+    let plant = PrintedPlant {
+        numerator: &description.numerator,
+        denominator: &description.denominator,
+        elevator_sign: description.elevator_sign,
+        lag: ActuatorLag::from(description.actuator.lag()),
+        dt_s: description.controller.config().dt_s,
+    };
+    let entry = plant.driven(None).expect("driven");
+    let (states, inputs) = (matrix.rows(), entry.columns());
+    let at = |frequency: f64| {
+        let (sine, cosine) = (libm::sin(frequency), libm::cos(frequency));
+        // Transposed, real part above imaginary part.
+        let place = |row: usize, column: usize| {
+            let (i, j) = (row % states, column % states);
+            let same = f64::from(u8::from(i == j));
+            match (row < states, column < states) {
+                (true, true) | (false, false) => {
+                    cosine * same - matrix.get(j, i).expect("an entry")
+                }
+                (true, false) => -sine * same,
+                (false, true) => sine * same,
+            }
+        };
+        let rows = (0..2 * states).map(|row| (0..2 * states).map(|it| place(row, it)).collect());
+        let rows: Vec<Vec<f64>> = rows.collect();
+        let first = (0..2 * states).map(|row| [f64::from(u8::from(row == 0))]);
+        let first = Matrix::from_rows(&first.collect::<Vec<_>>()).expect("finite");
+        let solved = Matrix::from_rows(&rows).expect("finite").solve(&first).expect("regular");
+        let parts = (0..2 * inputs).map(|input| {
+            let (part, column) = (input / inputs, input % inputs);
+            let own = (0..entry.rows()).map(|state| {
+                entry.get(state, column).expect("an entry") * solved.data()[part * states + state]
+            });
+            own.sum::<f64>()
+        });
+        (plant.dt_s * parts.map(|it| it * it).sum::<f64>()).sqrt()
+    };
+    let frequencies = (0..2000).map(|step| 1e-4 * libm::pow(3e4, f64::from(step) / 2000.0));
+    frequencies.map(at).fold(at(0.0), f64::max)
+}
+
+#[test]
+fn a_bound_by_energy_is_above_the_norm_of_frozen_loops_and_near_that_of_fixed_gains() {
+    let fixed = at_rest(&mut Dice::new(9), drawn::scenario);
+    for (found, most) in [(&bounded(&fixed).expect("bounded"), 1.02), (self_tuning(), 3.0)] {
+        let (certificate, rechecked) = found;
+        let bound = rechecked.disturbed.iter().find(|it| {
+            (&it.way, it.quantity, it.extent) == (&Way::Elevator, Quantity::Pitch, Extent::Energy)
+        });
+        let norm = frozen_norm(certificate, certificate.description.controller.nominal());
+        let ratio = bound.expect("bounded").per_unit / norm;
+        assert!((1.0..most).contains(&ratio), "{ratio}");
+    }
 }
 
 #[test]

@@ -73,7 +73,8 @@ fn gusts_of_every_length_move_the_pitch_angle_by_no_more_than_is_bounded() {
             nearest = nearest.max(flown_rad / most_rad);
         }
     }
-    assert!(nearest > 0.1, "{nearest}");
+    // A gust is short, and its two parts are bounded as if each chose its own worst time.
+    assert!(nearest > 0.05, "{nearest}");
 }
 
 #[test]
