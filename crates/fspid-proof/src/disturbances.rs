@@ -25,7 +25,7 @@ use crate::check::{IntervalMatrix, NotProved};
 use crate::description::LoopDescription;
 
 /// Most bounds of a certificate.
-pub const MOST_BOUNDS: usize = 16;
+pub const MOST_BOUNDS: usize = 24;
 
 /// Where a disturbance has a way into the plant.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,11 +78,13 @@ pub enum Quantity {
     Pitch,
     /// The controller's command, rad.
     Command,
+    /// All that is limited, as shares of the limits: a form for the largest disturbance up to which none acts.
+    Limits,
 }
 
 impl Quantity {
     /// All of them.
-    pub const ALL: [Self; 2] = [Self::Pitch, Self::Command];
+    pub const ALL: [Self; 3] = [Self::Pitch, Self::Command, Self::Limits];
 
     /// Name in files.
     #[must_use]
@@ -90,6 +92,7 @@ impl Quantity {
         match self {
             Self::Pitch => "pitch",
             Self::Command => "command",
+            Self::Limits => "limits",
         }
     }
 }
@@ -146,9 +149,9 @@ pub struct Disturbed {
     /// A disturbance of no larger measure that enters at the servo does no more: the servo follows at once, or with a lag of
     /// first order, which makes it neither larger nor of more energy.
     pub at_servo: bool,
-    /// What a disturbance of measure 1 does at most: rad per rad, per m/s, or per rad/s.
+    /// What a disturbance of measure 1 does at most: rad per rad, per m/s, or per rad/s; of limits the largest share of one.
     pub per_unit: f64,
-    /// Up to this measure of the disturbance no limit acts; infinite without limits, none where limits are not covered. Of a
+    /// Up to this measure of the disturbance no limit acts, by the best of the forms for this way and measure; infinite without limits, none where limits are not covered. Of a
     /// peak it is so at the servo as well, of an energy at the elevator alone.
     pub unlimited_up_to: Option<f64>,
 }

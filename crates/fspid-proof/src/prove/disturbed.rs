@@ -160,21 +160,28 @@ impl Search<'_> {
 
     fn question(&self, entry: &Matrix, quantity: Quantity, extent: Extent) -> Question {
         let dt_s = self.certificate.description.controller.config().dt_s;
-        let row = |corner: &DrivenLoop| -> Vec<f64> {
-            corner.seen(quantity).into_iter().map(Interval::midpoint).collect()
+        let is_seen = extent == Extent::Energy && quantity != Quantity::Limits;
+        let of = |corner: &DrivenLoop| -> Vec<Vec<f64>> {
+            let middles = |row: Vec<Interval>| row.into_iter().map(Interval::midpoint).collect();
+            corner.rows(quantity).into_iter().map(middles).collect()
         };
         let at = |corner: &DrivenLoop| DrivenCorner {
             matrix: corner.matrix(),
             entry: entry.clone(),
-            seen: (extent == Extent::Energy)
-                .then(|| row(corner).into_iter().map(|it| it * dt_s.sqrt()).collect()),
+            seen: of(corner)
+                .first()
+                .filter(|_| is_seen)
+                .map(|row| row.iter().map(|it| it * dt_s.sqrt()).collect()),
         };
         let rows = |corners: &[DrivenLoop]| -> Vec<Vec<f64>> {
-            match (extent, quantity) {
-                (Extent::Energy, _) => Vec::new(),
-                (Extent::Peak, Quantity::Pitch) => corners.iter().take(1).map(row).collect(),
-                (Extent::Peak, Quantity::Command) => corners.iter().map(row).collect(),
+            let mut rows: Vec<Vec<f64>> = Vec::new();
+            // Many are the same at all corners.
+            for row in corners.iter().filter(|_| !is_seen).flat_map(of) {
+                if !rows.contains(&row) {
+                    rows.push(row);
+                }
             }
+            rows
         };
         Question {
             solved: self.hull.iter().map(at).collect(),
@@ -185,7 +192,8 @@ impl Search<'_> {
     }
 
     fn energy(&self, question: &Question) -> Option<Found> {
-        let problem = DrivenProblem { corners: &question.solved, rows: &[], decay: 1.0 };
+        let (corners, rows) = (&question.solved, &question.rows);
+        let problem = DrivenProblem { corners, rows, decay: 1.0 };
         let form = driven_form(&problem, self.start, &self.effort, FINE)?;
         let gain = question.gain(&form, 1.0)?;
         Some(Found { form, decay: 1.0, gain, measure: gain })

@@ -26,12 +26,21 @@ impl DrivenLoop {
         self.matrix.midpoint()
     }
 
-    /// Row to a quantity.
-    pub(crate) fn seen(&self, quantity: Quantity) -> Vec<Interval> {
+    /// Rows to a quantity; to all that is limited as shares of the limits, none where that cannot be told.
+    pub(crate) fn rows(&self, quantity: Quantity) -> Vec<Vec<Interval>> {
         match quantity {
-            Quantity::Pitch => first_of(self.matrix.rows()),
-            Quantity::Command => self.command.clone(),
+            Quantity::Pitch => vec![first_of(self.matrix.rows())],
+            Quantity::Command => vec![self.command.clone()],
+            Quantity::Limits => self.shares().unwrap_or_default(),
         }
+    }
+
+    fn shares(&self) -> Option<Vec<Vec<Interval>>> {
+        let share = |(row, limit): &(Vec<Interval>, f64)| {
+            let limit = Some(Interval::point(*limit)).filter(|_| *limit > 0.0)?;
+            Some(row.iter().map(|entry| *entry / limit).collect())
+        };
+        self.limits.as_ref()?.iter().map(share).collect()
     }
 }
 
@@ -44,7 +53,13 @@ impl Recheck<'_> {
         }
         let corners = self.driven_corners()?;
         let proved = bounds.iter().map(|bound| self.bounded(bound, &corners, remains_rad));
-        proved.collect()
+        let proved = proved.collect::<Result<Vec<Disturbed>, RecheckError>>()?;
+        let best = |of: &Disturbed| {
+            let same = proved.iter().filter(|it| it.way == of.way && it.extent == of.extent);
+            same.filter_map(|it| it.unlimited_up_to).reduce(f64::max)
+        };
+        let told = proved.iter().filter(|it| it.quantity != Quantity::Limits);
+        Ok(told.map(|it| Disturbed { unlimited_up_to: best(it), ..it.clone() }).collect())
     }
 
     /// The loop at all corners of its gains.
@@ -107,6 +122,11 @@ impl Recheck<'_> {
                 "the command also answers to what a sensor rounds, or gains make of a held command",
             );
         }
+        if quantity == Quantity::Limits
+            && (!self.covers_limits() || self.certificate.description.limits().is_empty())
+        {
+            return Some("there are no limits, or it cannot be told where they act");
+        }
         (extent == Extent::Energy && remains_rad > 0.0).then_some(
             "something of bounded size never ceases in the loop, so that its deviations have no finite energy",
         )
@@ -144,7 +164,11 @@ impl Recheck<'_> {
             let scaled = |row: Vec<Interval>| -> Vec<Interval> {
                 row.into_iter().map(|it| it * root_of_period).collect()
             };
-            let seen = (*extent == Extent::Energy).then(|| scaled(corner.seen(*quantity)));
+            let is_seen = *extent == Extent::Energy && *quantity != Quantity::Limits;
+            let seen = corner.rows(*quantity).into_iter().next().filter(|_| is_seen).map(scaled);
+            if is_seen && seen.is_none() {
+                return Err(malformed("disturbances: nothing is seen of the quantity"));
+            }
             let driven = Driven { matrix: &corner.matrix, entry: &entry, seen: seen.as_deref() };
             grows_no_faster(form, [*decay, *gain], driven).map_err(|reason| {
                 RecheckError::Inequality { gains: Some(corner.held.gains), reason }
@@ -156,9 +180,11 @@ impl Recheck<'_> {
             quantity: *quantity,
             extent: *extent,
             at_servo: way.is_at_servo_too(description),
-            per_unit: match extent {
-                Extent::Energy => Interval::point(*gain).sqrt().upper(),
-                Extent::Peak => reached.largest(corners, *quantity)?,
+            per_unit: match (extent, quantity) {
+                (Extent::Energy, Quantity::Pitch | Quantity::Command) => {
+                    Interval::point(*gain).sqrt().upper()
+                }
+                (Extent::Peak, _) | (_, Quantity::Limits) => reached.largest(corners, *quantity)?,
             },
             unlimited_up_to: reached.unlimited(corners, self.beside_limits(bound))?,
         })
@@ -194,7 +220,9 @@ impl Reached {
     fn largest(&self, corners: &[DrivenLoop], quantity: Quantity) -> Result<f64, NotProved> {
         let mut most = 0.0_f64;
         for corner in corners {
-            most = most.max(self.row(&corner.seen(quantity))?.upper());
+            for row in corner.rows(quantity) {
+                most = most.max(self.row(&row)?.upper());
+            }
             // The pitch angle is the same row at all of them.
             if quantity == Quantity::Pitch {
                 break;

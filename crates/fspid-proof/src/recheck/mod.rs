@@ -53,7 +53,8 @@ pub struct Rechecked {
     pub stepped: Option<Stepped>,
     /// Members of a family; none where none is claimed.
     pub family: Option<CheckedFamily>,
-    /// What disturbances do at most, from rest, in the order of the certificate.
+    /// What disturbances do at most, from rest, in the order of the certificate; what it has for limits alone is in each of
+    /// the others.
     pub disturbed: Vec<Disturbed>,
 }
 

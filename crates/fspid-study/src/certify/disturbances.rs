@@ -100,6 +100,7 @@ fn sentence(scope: &Scope, group: &[Disturbed], moving: &str) -> String {
         let what = match one.quantity {
             Quantity::Pitch => "the pitch angle",
             Quantity::Command => "the command",
+            Quantity::Limits => "a limit",
         };
         (what, at_most(degrees_per_unit(one)))
     });

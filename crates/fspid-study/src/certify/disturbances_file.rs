@@ -34,6 +34,7 @@ enum Enters {
 enum Bounds {
     Pitch,
     Command,
+    Limits,
 }
 
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -63,6 +64,7 @@ impl DisturbanceFile {
             bounds: match quantity {
                 Quantity::Pitch => Bounds::Pitch,
                 Quantity::Command => Bounds::Command,
+                Quantity::Limits => Bounds::Limits,
             },
             measured_by: match extent {
                 Extent::Energy => MeasuredBy::Energy,
@@ -92,6 +94,7 @@ impl DisturbanceFile {
             quantity: match self.bounds {
                 Bounds::Pitch => Quantity::Pitch,
                 Bounds::Command => Quantity::Command,
+                Bounds::Limits => Quantity::Limits,
             },
             extent: match self.measured_by {
                 MeasuredBy::Energy => Extent::Energy,

@@ -36,7 +36,7 @@ pub(in super::super) const CERTIFICATE: Shape = Object(&[
 const DISTURBANCE: Shape = Object(&[
     key("enters", Word(&["elevator", "forward-gust", "vertical-gust", "turning-gust"])),
     optional("numerator", List(&REAL, [1, COEFFICIENTS])),
-    key("bounds", Word(&["pitch", "command"])),
+    key("bounds", Word(&["pitch", "command", "limits"])),
     key("measured_by", Word(&["energy", "peak"])),
     key("decay", RATE),
     key("gain", Positive(LARGE)),
