@@ -76,7 +76,7 @@ fn bounds_of_gusts_are_told_written_checked_and_compared_with_the_air_that_flies
     ] {
         assert!(told.contains(words), "{words}: {told}");
     }
-    let output = fspid(&[&check[..], &["--format", "json"]].concat(), folder.path());
+    let output = fspid(&[&check[..3], &["--format", "json"]].concat(), folder.path());
     assert_eq!(json(&output)["scope"]["disturbances"], bounds);
 }
 
