@@ -2,8 +2,8 @@
 //!
 //! For every disturbance w whose square can be integrated over the sample, by Cauchy and Schwarz,
 //!
-//! $$ v = \int_0^T e^{A (T - s)} b \, w(s) \, ds = W^{1/2} u, \qquad |u|^2 \le \int_0^T w^2 \, ds, \qquad
-//!    W = \int_0^T e^{A s} b b^T e^{A^T s} \, ds $$
+//! $$ v = \int_0^T e^{A (T - s)} b w(s) \ ds = W^{1/2} u, \qquad |u|^2 \le \int_0^T w^2 \ ds, \qquad
+//!    W = \int_0^T e^{A s} b b^T e^{A^T s} \ ds $$
 //!
 //! so that a matrix E with $E E^T \succeq W$ holds every v as $E u$ with such a u: the sampled loop is driven by a
 //! vector whose square adds up, over the samples, to no more than the energy of w.
