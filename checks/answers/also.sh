@@ -33,6 +33,9 @@ for file in 747-pitch-step campaign limits square-accumulating plant-change; do
     also certify certify "$scenarios/$file.toml" --out "$work/proofs"
 done
 also certify-cases certify "$PWD/data/designs/learned/light-six.toml" --controller FSPID --cases tuning --set setpoint.amplitude_deg=0
+also certify certify "$scenarios/gallery/navion-linear.toml" --disturbances --out "$work/proofs"
+also certify certify "$scenarios/gallery/rate-limited-servo.toml" --disturbances --out "$work/proofs"
+also certify certify "$scenarios/../data/designs/learned/light-six.toml" --controller FSPID --set setpoint.amplitude_deg=0 --disturbances
 for proof in "$work"/proofs/*.json; do also certify-check certify --check "$proof"; done
 also campaign-run campaign run campaign.toml --runs 200 --quiet --out run
 also campaign-report campaign report run/campaign.parquet

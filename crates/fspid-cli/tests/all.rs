@@ -6,6 +6,7 @@ mod bench;
 mod campaign;
 mod certify;
 mod certify_cases;
+mod certify_disturbances;
 mod certify_family;
 mod cli;
 mod common;

@@ -3,6 +3,7 @@
 use fspid_lti::Matrix;
 
 use crate::description::LoopDescription;
+use crate::disturbances::DisturbanceBound;
 use crate::family::Family;
 use crate::limits;
 use crate::recheck::Rechecked;
@@ -32,6 +33,8 @@ pub struct Certificate {
     pub steps: Option<Steps>,
     /// Plants and actuators beside the one of the description, of which the return to rest is claimed.
     pub family: Option<Family>,
+    /// What disturbances do at most, from rest.
+    pub disturbances: Vec<DisturbanceBound>,
 }
 
 /// What is claimed.
@@ -126,6 +129,7 @@ impl Certificate {
             pitch_within_rad: rechecked.pitch_within_rad,
             limits_left_out: self.limits_left_out(rechecked),
             stepped: rechecked.stepped,
+            disturbed: rechecked.disturbed.clone(),
             left_out,
         }
     }

@@ -216,14 +216,18 @@ impl LoopDescription {
     /// # Errors
     /// [`NotProved`] for a plant that cannot be sampled.
     pub fn enclosed(&self) -> Result<LoopModel<Interval>, NotProved> {
-        let plant = PrintedPlant {
+        Ok(LoopModel::new(self.printed().sampled()?, self.settings()))
+    }
+
+    /// Plant and actuator as they are printed.
+    pub(crate) fn printed(&self) -> PrintedPlant<'_> {
+        PrintedPlant {
             numerator: &self.numerator,
             denominator: &self.denominator,
             elevator_sign: self.elevator_sign,
             lag: ActuatorLag::from(self.actuator.lag()),
             dt_s: self.controller.config().dt_s,
-        };
-        Ok(LoopModel::new(plant.sampled()?, self.settings()))
+        }
     }
 
     /// What limits motions that are not small, in words; a proof of the loop around rest leaves

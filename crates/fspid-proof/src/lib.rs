@@ -14,6 +14,7 @@ mod bearing;
 mod certificate;
 pub mod check;
 mod description;
+mod disturbances;
 mod family;
 pub mod gain_set;
 mod limits;
@@ -30,12 +31,17 @@ pub use asked::left_out_of;
 pub use bearing::Bearing;
 pub use certificate::{BoundedRate, Certificate, Claim};
 pub use description::{LoopDescription, NotProvable};
+pub use disturbances::{
+    AirPart, DisturbanceBound, Disturbed, Extent, MOST_BOUNDS, Quantity, Way, ways_of,
+};
 pub use family::{
     CheckedFamily, Family, FamilyError, FamilyVerdict, MOST_PARAMETERS, MOST_PARTS, Parameter,
     Part as FamilyPart, Uncertain, numbers, prove_family,
 };
 pub use limits::{AtLimit, pitch_within};
-pub use prove::{Effort, Largest, Outcome, Verdict, certify, is_proved};
+pub use prove::{
+    Effort, Largest, Outcome, Unbounded, Verdict, bound_disturbances, certify, is_proved,
+};
 pub use recheck::{Kept, RecheckError, Rechecked, Remains};
 pub use rest::NoRest;
 pub use scope::{Asked, LeftOut, Range, Scope};

@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use crate::disturbances::Disturbed;
 use crate::steps::Stepped;
 
 /// The constant set-points and loads that a claim is made for: everything up to these, either way.
@@ -85,6 +86,8 @@ pub struct Scope {
     pub limits_left_out: Option<&'static str>,
     /// Steps from rest that are proved with the limits acting on the way.
     pub stepped: Option<Stepped>,
+    /// What disturbances do at most, from rest.
+    pub disturbed: Vec<Disturbed>,
     /// What the claim does not speak of.
     pub left_out: Vec<LeftOut>,
 }

@@ -13,6 +13,7 @@ use fspid_sim::loop_model::{LoopModel, SampledPlant};
 
 use crate::certificate::{BoundedRate, Certificate, Claim};
 use crate::description::LoopDescription;
+use crate::disturbances::MOST_BOUNDS;
 use crate::gain_set::MOST_CORNERS;
 use crate::scope::Range;
 
@@ -133,12 +134,19 @@ pub(crate) fn check(certificate: &Certificate) -> Result<(), WrongSizes> {
         wrong.within(("steps.loads", "parts of the loads"), steps.loads, [1, MOST_LOADS]);
         wrong.of_form("steps.near_rest.form", &steps.terminal.form, states);
     }
+    let bounds = certificate.disturbances.len();
+    wrong.within(("disturbances", "bounds"), bounds, [0, MOST_BOUNDS]);
+    for bound in &certificate.disturbances {
+        wrong.of_form("disturbances.form", &bound.form, states);
+    }
     let family = certificate.family.iter().flat_map(|family| &family.parts);
     let claims = family.map(|part| (&part.claim, Range::REST));
     let inequalities = claims
         .chain([(&certificate.claim, certificate.range)])
         .map(|(claim, range)| most_inequalities(certificate, claim, range))
         .fold(0, u64::saturating_add);
+    let again = most_inequalities(certificate, &certificate.claim, certificate.range);
+    let inequalities = inequalities.saturating_add(again.saturating_mul(bounds as u64));
     let work = inequalities.saturating_mul((states as u64).saturating_pow(3));
     wrong.push(("claim", "products of the re-check"), work, [0, MOST_WORK]);
     if wrong.found.is_empty() { Ok(()) } else { Err(WrongSizes(wrong.found)) }

@@ -2,6 +2,7 @@
 
 mod certify;
 mod check_definite;
+mod check_driven;
 mod check_exponential;
 mod check_growth;
 mod check_lyapunov;

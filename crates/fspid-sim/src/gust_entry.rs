@@ -42,6 +42,11 @@ impl GustEntry {
         Ok(Self { denominator: monic(rest)?, numerators })
     }
 
+    /// For u, w, q: coefficients of $s^{n-1}$ to $s^0$ over the denominator with a leading 1.
+    pub(crate) fn numerators(&self) -> &[Vec<f64>; 3] {
+        &self.numerators
+    }
+
     /// Input columns of u, w, q over the states of the plant, which are pitch angle and its
     /// derivatives: the Markov parameters $h_k = c_k - \sum_{i<k} a_i h_{k-i}$.
     pub(crate) fn columns(&self) -> [Vec<f64>; 3] {

@@ -141,6 +141,14 @@ impl LinearPlant {
         self.gusts.is_some()
     }
 
+    /// Numerators from $u_g$, $w_g$ (rad per m/s) and $q_g$ (rad per rad/s) to pitch angle, for a plant that says how
+    /// gusts act on it: as many coefficients as the plant's order, highest power of s first, over the denominator with a
+    /// leading 1.
+    #[must_use]
+    pub fn gust_numerators(&self) -> Option<&[Vec<f64>; 3]> {
+        self.gusts.as_ref().map(GustEntry::numerators)
+    }
+
     /// Input columns of $u_g, w_g, q_g$ over the states of [`state_space`](Self::state_space).
     pub(crate) fn gust_columns(&self) -> Option<[Vec<f64>; 3]> {
         self.gusts.as_ref().map(GustEntry::columns)

@@ -51,6 +51,9 @@ pub(crate) struct Arguments {
     /// every case.
     #[arg(long, value_enum, value_name = "TABLE", conflicts_with = "check")]
     cases: Option<Table>,
+    /// Bound as well, from rest, what gusts and disturbances at the elevator do to pitch angle and command.
+    #[arg(long, conflicts_with_all = ["check", "cases"])]
+    disturbances: bool,
     /// Write the certificates into this folder.
     #[arg(long, value_name = "DIR")]
     out: Option<Folder>,
@@ -106,7 +109,7 @@ fn prove(path: &Path, arguments: &Arguments) -> Result<(), Failure> {
     if let Some(table) = arguments.cases {
         return prove_cases(path, &template, table.into(), arguments);
     }
-    let certification = watched(&template, (only, arguments.family), telling);
+    let certification = watched(&template, (only, arguments), telling);
     // The answer begins on an empty line.
     if telling == Telling::Line {
         tell(telling, "");
@@ -191,18 +194,22 @@ fn changed(path: &Path, change: &Change, arguments: &Arguments) -> Result<Templa
 /// Certifies, and tells whom and for how long.
 fn watched(
     template: &Template,
-    (only, family): (Option<&str>, bool),
+    (only, arguments): (Option<&str>, &Arguments),
     telling: Telling,
 ) -> Result<Certification, SimError> {
     certifying(telling, |tell| {
         let effort = Effort::default();
-        let certification = Certification::watched(template.study(), only, &effort, tell)?;
-        match family {
-            true => certification.with_families(template, &effort, &mut |name| {
-                tell(&format!("all that can be drawn of {name}"));
-            }),
-            false => Ok(certification),
+        let mut certification = Certification::watched(template.study(), only, &effort, tell)?;
+        if arguments.disturbances {
+            let mut told = |name: &str| tell(&format!("what disturbances do to {name}"));
+            certification =
+                certification.with_disturbances(template.study(), &effort, &mut told)?;
         }
+        if arguments.family {
+            let mut told = |name: &str| tell(&format!("all that can be drawn of {name}"));
+            certification = certification.with_families(template, &effort, &mut told)?;
+        }
+        Ok(certification)
     })
 }
 

@@ -210,7 +210,7 @@ pub fn inside_limits(
 }
 
 /// A number that no eigenvalue of a dominant symmetric matrix is below.
-fn least_eigenvalue(matrix: &IntervalMatrix) -> f64 {
+pub(super) fn least_eigenvalue(matrix: &IntervalMatrix) -> f64 {
     let size = matrix.columns.max(1);
     let magnitudes = matrix.magnitudes();
     let rows = magnitudes.chunks(size).enumerate().map(|(row, sizes)| {

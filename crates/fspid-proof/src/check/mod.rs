@@ -11,6 +11,8 @@
 
 mod balance;
 mod definite;
+mod disturbed;
+mod driven;
 mod error;
 mod exponential;
 mod factor;
@@ -26,6 +28,8 @@ mod rounding;
 
 pub use balance::balance;
 pub use definite::prove_positive_definite;
+pub use disturbed::{Driven, Ellipsoid, grows_no_faster};
+pub use driven::driven;
 pub use error::NotProved;
 pub use exponential::{exponential, held};
 pub use growth::{prove_growth, prove_unstable};

@@ -1,10 +1,12 @@
 //! The sampled plant from printed coefficients, with proof.
 
+use fspid_lti::Matrix;
 use fspid_numeric::scalar::{Interval, Scalar};
 use fspid_sim::actuator::Lag;
 use fspid_sim::loop_model::SampledPlant;
 use fspid_sim::{ElevatorSign, LinearPlant};
 
+use super::driven::driven;
 use super::error::{NotProved, positive};
 use super::exponential::{exponential, held};
 use super::matrix::IntervalMatrix;
@@ -128,6 +130,41 @@ impl PrintedPlant<'_> {
         let a = IntervalMatrix::from_rows(&by_states)?;
         let motion = exponential(&a.scaled(Interval::ZERO.hull(dt_s)))?;
         Ok(motion.product(&IntervalMatrix::from_rows(&column)?)?.entries().collect())
+    }
+
+    /// A matrix E over the plant's own states with which every disturbance w that moves as it likes over a sample adds
+    /// $E u$, $|u|^2 \le \int w^2$, see [`driven`]; at the elevator in the sense of the command, or by a numerator over
+    /// the denominator with a leading 1, highest power of s first, of as many coefficients as the plant has states.
+    ///
+    /// # Errors
+    /// As [`sampled`](Self::sampled) and [`driven`]; [`NotProved::Number`] for a numerator of another length.
+    pub fn driven(&self, numerator: Option<&[f64]>) -> Result<Matrix, NotProved> {
+        LinearPlant::new(self.numerator, self.denominator, self.elevator_sign)?;
+        let dt_s = printed(positive("sample period, s", self.dt_s)?);
+        let ContinuousPlant { by_states, by_elevator, .. } = self.enclosed()?;
+        let column = match numerator {
+            None => by_elevator,
+            Some(numerator) if numerator.len() == by_states.len() => {
+                let leading = printed(self.denominator.first().copied().unwrap_or(0.0));
+                let rest = self.denominator.iter().skip(1);
+                let alpha: Vec<Interval> = rest.map(|&it| printed(it) / leading).collect();
+                let numerator: Vec<Interval> = numerator.iter().map(|&it| printed(it)).collect();
+                markov_parameters(&numerator, Interval::ONE, &alpha)
+            }
+            Some(numerator) => {
+                let what = "coefficients of a gust's numerator";
+                let found = numerator.len() as f64;
+                return Err(NotProved::Number { what, found, allowed: "as many as states" });
+            }
+        };
+        let column: Vec<[Interval; 1]> = column.into_iter().map(|h| [h]).collect();
+        driven(&IntervalMatrix::from_rows(&by_states)?, &IntervalMatrix::from_rows(&column)?, dt_s)
+    }
+
+    /// True where the elevator moves the pitch rate at once, so that a rate sensor sees what is added to it.
+    #[must_use]
+    pub fn moves_rate_at_once(&self) -> bool {
+        self.numerator.len() + 1 >= self.denominator.len()
     }
 
     /// The plant over a time with a lag of first order: states at its end by states and by a command that is held, and

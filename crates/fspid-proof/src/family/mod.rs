@@ -120,6 +120,7 @@ impl Part {
             level: None,
             steps: None,
             family: None,
+            disturbances: Vec::new(),
             ..certificate.clone()
         }
     }

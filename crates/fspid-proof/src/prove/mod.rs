@@ -1,10 +1,13 @@
 //! From a loop to one of three answers: proved, refuted, open.
 
 mod bounded;
+mod disturbed;
 mod largest;
 mod region;
 mod stable;
 mod unstable;
+
+pub use disturbed::{Unbounded, bound_disturbances};
 
 use core::cell::RefCell;
 
@@ -444,6 +447,7 @@ impl<'a> Prover<'a> {
             level,
             steps: None,
             family: None,
+            disturbances: Vec::new(),
         };
         let set = self.set(factor);
         let recheck = Recheck::with(&certificate, self.enclosed.clone(), set, &self.slopes).ok()?;

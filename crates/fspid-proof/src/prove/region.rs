@@ -49,6 +49,7 @@ impl<'a> Region<'a> {
             claim: Claim::BoundedRate(claim.clone()),
             steps: None,
             family: None,
+            disturbances: Vec::new(),
             level: None,
         };
         let recheck =

@@ -1,5 +1,6 @@
 //! The re-check of a whole certificate: what it says is believed because this function answers `Ok`.
 
+mod disturbed;
 mod moving;
 mod remains;
 
@@ -12,6 +13,7 @@ use fspid_sim::loop_model::LoopModel;
 use crate::certificate::{Certificate, Claim};
 use crate::check::{IntervalMatrix, NotProved, Relaxation, decreases, is_positive, prove_growth};
 use crate::description::NotProvable;
+use crate::disturbances::Disturbed;
 use crate::family::{CheckedFamily, FamilyError};
 use crate::gain_set::{Cone, GainSet, HeldGains, IncrementMap, KnownSlopes, NoSlopes, producible};
 use crate::limits;
@@ -20,6 +22,7 @@ use crate::sizes::{self, WrongSizes};
 use crate::solve::never;
 use crate::steps::{Stepped, corners_within};
 
+pub(crate) use disturbed::DrivenLoop;
 pub(crate) use moving::{Corner, moved_inputs, part_in};
 pub use remains::Remains;
 
@@ -50,6 +53,9 @@ pub struct Rechecked {
     pub stepped: Option<Stepped>,
     /// Members of a family; none where none is claimed.
     pub family: Option<CheckedFamily>,
+    /// What disturbances do at most, from rest, in the order of the certificate; what it has for limits alone is in each of
+    /// the others.
+    pub disturbed: Vec<Disturbed>,
 }
 
 /// Where a law keeps its gains to a rate.
@@ -241,6 +247,7 @@ impl<'a> Recheck<'a> {
         }
         let Proved { inequalities, kept, pitch_within_rad, remains_rad } = self.proved()?;
         let stepped = self.stepped()?;
+        let disturbed = self.disturbed(remains_rad)?;
         let family = self
             .certificate
             .family
@@ -260,6 +267,7 @@ impl<'a> Recheck<'a> {
             remains_rad,
             stepped,
             family,
+            disturbed,
         })
     }
 

@@ -68,9 +68,17 @@ impl Part<'_> {
                 self.add_curvature(form, other, &b, &mut sum.hessian);
             }
         }
-        for (number, matrix) in &self.inequality.multipliers {
-            self.add_multiplier(self.system.multiplier_place(*number), matrix, sum);
+        let multiplied = self.multiplied();
+        for (number, matrix) in &multiplied {
+            self.add_multiplier(*number, matrix, &multiplied, sum);
         }
+    }
+
+    /// Numbers of multipliers, each with the matrix that it multiplies at this level.
+    fn multiplied(&self) -> Vec<(usize, Dense)> {
+        let plain = self.inequality.multipliers.iter().cloned();
+        let rated = self.inequality.rated_multipliers.iter();
+        plain.chain(rated.map(|(number, matrix)| (*number, matrix.scaled(self.level)))).collect()
     }
 
     /// $-s w_j \operatorname{tr}(U^T Z U X_j)$.
@@ -104,7 +112,14 @@ impl Part<'_> {
         }
     }
 
-    fn add_multiplier(&self, column: usize, matrix: &Dense, sum: &mut Derivatives) {
+    fn add_multiplier(
+        &self,
+        number: usize,
+        matrix: &Dense,
+        multiplied: &[(usize, Dense)],
+        sum: &mut Derivatives,
+    ) {
+        let column = self.system.multiplier_place(number);
         sum.gradient[column] -= self.inverse.inner(matrix);
         let turned = matrix.congruence(&self.inverse);
         for form in &self.inequality.forms {
@@ -116,7 +131,7 @@ impl Part<'_> {
                 }
             }
         }
-        for (number, other) in &self.inequality.multipliers {
+        for (number, other) in multiplied {
             sum.hessian[(column, self.system.multiplier_place(*number))] += turned.inner(other);
         }
     }
@@ -277,7 +292,8 @@ mod tests {
                 (0, Dense::from_function(4, 4, multiplied)),
                 (1, Dense::identity(4).scaled(-0.1)),
             ];
-            Inequality { size: 4, forms: forms.collect(), multipliers }
+            let rated_multipliers = vec![(1, Dense::identity(4).scaled(0.02))];
+            Inequality { size: 4, forms: forms.collect(), multipliers, rated_multipliers }
         };
         let mut inequalities = vec![inequality(1), inequality(2)];
         inequalities.push(Inequality::positive(2, vec![(0, 1.0), (1, 0.1)]));

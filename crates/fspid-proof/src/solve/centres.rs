@@ -25,6 +25,8 @@ const STEPS_PER_CENTRE: usize = 12;
 const REACH: f64 = 200.0;
 /// The lowest level counts as found when it can only fall by this part of the decay.
 const LOWEST_TOLERANCE: f64 = 0.02;
+/// A level that is a size is given back so much of itself: half of it of the gain, whose square it is.
+const SMALLEST_TOLERANCE: f64 = 0.01;
 /// Decay below which no difference is made.
 const DECAY_MIN: f64 = 1e-10;
 /// Part of the decay that is given back, so that the form lies inside and not on the edge.
@@ -51,6 +53,11 @@ pub(super) enum Goal {
     Below(f64),
     /// As low as possible, then a little back up, where the inequalities hold with room for rounding.
     Lowest,
+    /// As low as possible where the level is a size of its own, and nothing of it is near 1.
+    Smallest {
+        /// The pessimistic reach is this part of the level where it counts as found; in practice it falls by far less.
+        reach: f64,
+    },
 }
 
 /// Where the way down ended.
@@ -78,6 +85,7 @@ pub(super) fn descend(chart: &mut impl Chart, goal: Goal, effort: &Effort) -> Op
     let target = match goal {
         Goal::Below(target) => target,
         Goal::Lowest => bound + GIVEN_BACK * (1.0 - bound).abs(),
+        Goal::Smallest { .. } => bound + SMALLEST_TOLERANCE * bound.abs(),
     };
     if bound < target {
         for _ in 0..DEEPENINGS {
@@ -98,6 +106,7 @@ fn is_done(goal: Goal, level: f64, bound: f64) -> bool {
     match goal {
         Goal::Below(target) => bound < target || reach < bound - target,
         Goal::Lowest => reach < LOWEST_TOLERANCE * (1.0 - bound).abs().max(DECAY_MIN),
+        Goal::Smallest { reach: enough } => reach < enough * bound.abs(),
     }
 }
 

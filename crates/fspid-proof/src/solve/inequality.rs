@@ -3,7 +3,7 @@
 //! A system is a list of symmetric matrices that are linear in the unknowns and must all become positive
 //! definite:
 //!
-//! $$ F_i(x) = \sum_f s_f U_f \Bigl( \sum_j w_{fj} X_j \Bigr) U_f^T + \sum_g \tau_g A_g \succ 0 $$
+//! $$ F_i(x) = \sum_f s_f U_f \Bigl( \sum_j w_{fj} X_j \Bigr) U_f^T + \sum_g s_g \tau_g A_g \succ 0 $$
 //!
 //! with symmetric $X_j$, all of one size, and numbers $\tau_g$ as unknowns. The factor $s_f$ is the level
 //! $\lambda = \rho^2$ for a rated term and 1 otherwise: the level says how fast the form must decrease.
@@ -65,13 +65,15 @@ pub(super) struct Inequality {
     pub(super) forms: Vec<Form>,
     /// Number of the multiplier and the matrix it multiplies.
     pub(super) multipliers: Vec<(usize, Dense)>,
+    /// The same, times the level.
+    pub(super) rated_multipliers: Vec<(usize, Dense)>,
 }
 
 impl Inequality {
     /// $\sum_j w_j X_j \succ 0$.
     pub(super) fn positive(size: usize, weights: Weights) -> Self {
         let forms = vec![Form { factor: Factor::Identity, rated: false, weights }];
-        Self { size, forms, multipliers: vec![] }
+        Self { size, forms, ..Self::default() }
     }
 
     /// $\lambda \sum_j w_j X_j - M^T \bigl( \sum_j v_j X_j \bigr) M \succ 0$.
@@ -82,7 +84,7 @@ impl Inequality {
             Form { factor: Factor::Identity, rated: true, weights: now },
             Form { factor: after, rated: false, weights: negative },
         ];
-        Self { size: matrix.rows, forms, multipliers: vec![] }
+        Self { size: matrix.rows, forms, ..Self::default() }
     }
 }
 
@@ -149,12 +151,19 @@ impl System {
         for (number, matrix) in &inequality.multipliers {
             value.add(x[self.multiplier_place(*number)], matrix);
         }
+        for (number, matrix) in &inequality.rated_multipliers {
+            value.add(level * x[self.multiplier_place(*number)], matrix);
+        }
         value
     }
 
     /// What the level multiplies in $F_i$; `None` where that is nothing.
     pub(super) fn rated_part(&self, inequality: &Inequality, x: &[f64]) -> Option<Dense> {
-        let form = inequality.forms.iter().find(|form| form.rated)?;
-        Some(form.factor.around(&self.weighted(&form.weights, x)))
+        let forms = inequality.forms.iter().filter(|form| form.rated);
+        let forms = forms.map(|form| form.factor.around(&self.weighted(&form.weights, x)));
+        let multipliers = inequality.rated_multipliers.iter();
+        let multipliers =
+            multipliers.map(|(number, matrix)| matrix.scaled(x[self.multiplier_place(*number)]));
+        forms.chain(multipliers).reduce(|sum, part| sum.plus(1.0, &part))
     }
 }

@@ -282,6 +282,6 @@ impl Chart for Search {
     }
 }
 
-fn positive_multiplier(number: usize) -> Inequality {
+pub(super) fn positive_multiplier(number: usize) -> Inequality {
     Inequality { size: 1, multipliers: vec![(number, Dense::identity(1))], ..Inequality::default() }
 }

@@ -10,6 +10,7 @@ mod barrier;
 mod cells;
 mod centres;
 mod dense;
+mod disturbed;
 mod gain_family;
 mod growth;
 mod inequality;
@@ -21,6 +22,7 @@ mod symmetric;
 mod words;
 
 pub use cells::Part;
+pub use disturbed::{DrivenCorner, DrivenProblem, driven_form, kept_of, least_gain};
 pub use gain_family::GainFamily;
 pub use growth::{Growth, growing_sequence};
 pub use instability::{InstabilityForm, instability_form};

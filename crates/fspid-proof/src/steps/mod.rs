@@ -359,6 +359,7 @@ impl Steps {
             claim: Claim::CommonQuadratic { form: form.clone(), rate: *rate },
             level: Some(*level),
             steps: None,
+            disturbances: Vec::new(),
             ..certificate.clone()
         }
     }

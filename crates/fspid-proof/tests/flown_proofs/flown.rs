@@ -244,7 +244,7 @@ fn settles(
     Ok(theta.last().copied().unwrap_or(0.0))
 }
 
-fn without_limits(scenario: &Scenario) -> Scenario {
+pub(crate) fn without_limits(scenario: &Scenario) -> Scenario {
     let mut free = scenario.clone();
     let actuator = scenario.actuator;
     let plain = Actuator::new(actuator.lag()).with_delay(actuator.delay_samples());

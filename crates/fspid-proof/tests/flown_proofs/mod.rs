@@ -1,6 +1,7 @@
 //! Proved loops, flown: drawn scenarios with every option that a proof accepts, over their whole range of
 //! set-points and loads, for 20 time constants of the proved rate. Thousands by the example `refute_proofs`.
 
+mod disturbed;
 mod drawn;
 mod flown;
 

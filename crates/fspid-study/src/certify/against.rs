@@ -1,7 +1,7 @@
 //! What is certified beside what a scenario flies, field by field.
 
 use super::comparison::{Comparison, Difference};
-use fspid_proof::{Asked, LeftOut, LoopDescription};
+use fspid_proof::{Asked, LeftOut, LoopDescription, Way, ways_of};
 use fspid_sim::SimError;
 use serde_json::{Value, json};
 
@@ -28,10 +28,11 @@ impl CheckedFile {
         let certified = fields(&self.certificate.description);
         match flown(study, &origin.controller)? {
             Flown::Loops(loops) => {
-                let compared = loops.iter().map(|(flown, asked)| {
+                let compared = loops.iter().map(|(flown, asked, ways)| {
                     let mut found = Vec::new();
                     walk(&mut found, "", &certified, flown);
                     self.beyond(&mut found, asked);
+                    self.other_ways(&mut found, ways);
                     found
                 });
                 differences.extend(compared.min_by_key(Vec::len).unwrap_or_default());
@@ -135,10 +136,28 @@ fn quoted(what: LeftOut) -> String {
     format!("\"{}\"", what.name())
 }
 
+impl CheckedFile {
+    /// Ways of disturbances that are not those of a plant.
+    fn other_ways(&self, differences: &mut Vec<Difference>, flown: &[Way]) {
+        for (place, bound) in self.certificate.disturbances.iter().enumerate() {
+            if flown.contains(&bound.way) {
+                continue;
+            }
+            let same = flown.iter().find(|way| way.name() == bound.way.name());
+            let [certified, flown] = [Some(&bound.way), same].map(|way| match way {
+                Some(Way::Air { numerator, .. }) => format!("{numerator:?}"),
+                Some(Way::Elevator) | None => NOTHING.to_owned(),
+            });
+            let path = format!("disturbances[{place}].numerator");
+            differences.push(Difference { path, certified, flown });
+        }
+    }
+}
+
 /// What a scenario flies under a controller's name.
 enum Flown {
-    /// The loop with each lasting plant, as in files, and what is asked of a claim about it.
-    Loops(Vec<(Value, Asked)>),
+    /// The loop with each lasting plant, as in files, what is asked of a claim about it, and how it may be disturbed.
+    Loops(Vec<(Value, Asked, Vec<Way>)>),
     /// No such loop: what stands at a path instead.
     Without { path: &'static str, flown: String },
 }
@@ -154,7 +173,8 @@ fn flown(study: &Study, controller: &str) -> Result<Flown, SimError> {
     for (_, plant) in lasting_plants(scenario)? {
         match LoopDescription::of(scenario, &plant, &named.controller) {
             Ok(description) => {
-                loops.push((fields(&description), asked(study, &plant, &description)));
+                let asked = asked(study, &plant, &description);
+                loops.push((fields(&description), asked, ways_of(&plant)));
             }
             Err(reason) => refused = Some(reason.to_string()),
         }

@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 
 use super::controller_file::ControllerFile;
 use super::digest::digest;
+use super::disturbances_file::DisturbanceFile;
 use super::family_file::FamilyFile;
 use super::json_text;
 use super::loop_file::LoopFile;
@@ -61,6 +62,8 @@ struct CertificateFile {
     steps: Option<StepsFile>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     family: Option<FamilyFile>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    disturbances: Vec<DisturbanceFile>,
 }
 
 /// What becomes of limits.
@@ -175,6 +178,7 @@ pub fn to_text(certificate: &Certificate, origin: &Origin) -> String {
         level: certificate.level,
         steps: certificate.steps.as_ref().map(StepsFile::of),
         family: certificate.family.as_ref().map(FamilyFile::of),
+        disturbances: certificate.disturbances.iter().map(DisturbanceFile::of).collect(),
     };
     file.content_digest = Some(file.content());
     let value = serde_json::to_value(&file).unwrap_or_else(|error| json!(error.to_string()));
@@ -258,8 +262,13 @@ impl CertificateFile {
         let steps = self.steps.as_ref().map(StepsFile::build).transpose();
         let steps = kept(&mut problems, "steps", steps);
         let family = kept(&mut problems, "family", self.family.map(FamilyFile::build).transpose());
-        let parts = description.zip(claim).zip(left_out).zip(steps).zip(family);
-        let Some(((((description, claim), left_out), steps), family)) = parts else {
+        let disturbances = self.disturbances.iter().map(DisturbanceFile::build);
+        let disturbances = disturbances.collect::<Result<Vec<_>, _>>();
+        let disturbances = kept(&mut problems, "disturbances", disturbances);
+        let more = steps.zip(family).zip(disturbances);
+        let parts = description.zip(claim).zip(left_out).zip(more);
+        let Some((((description, claim), left_out), ((steps, family), disturbances))) = parts
+        else {
             return Err(NoCertificate { problems });
         };
         let certificate = Certificate {
@@ -272,6 +281,7 @@ impl CertificateFile {
             level: self.level,
             steps,
             family,
+            disturbances,
         };
         let stated = limits_of(&certificate);
         if self.limits != stated {

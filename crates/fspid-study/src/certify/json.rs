@@ -6,14 +6,17 @@ use serde_json::{Value, json};
 
 use super::scope::{Told, told_deg};
 use super::text::found;
-use super::{Around, Certification, Certified, CheckedFile, Comparison, NotProvable, Seal, family};
+use super::{
+    Around, Certification, Certified, CheckedFile, Comparison, DisturbanceAnswer, NotProvable,
+    Seal, family,
+};
 use crate::json::{merged, present, with_null_reasons};
 
 /// Version of the answer's shape.
 const SCHEMA: u32 = 2;
 
 /// Why keys of these answers are null.
-const NULLS: [(&str, &str); 13] = [
+const NULLS: [(&str, &str); 14] = [
     ("decay_per_sample", "the claim is one of growth, or no rate is proved"),
     (
         "law_keeps_to_the_rate",
@@ -24,6 +27,7 @@ const NULLS: [(&str, &str); 13] = [
     ("steps_within_deg", "no step from rest is proved with limits acting"),
     ("steps_load_within_deg", "no step from rest is proved with limits acting"),
     ("steps_limited_until_s", "no step from rest is proved with limits acting"),
+    ("no_limit_acts_up_to", "there are no limits, or they are not covered"),
     ("open_because", "there is an answer, or nothing more is known of why there is none"),
     ("at", "no question can be asked of the family, or the loop as it is is not proved"),
     ("parts", "the family is not proved"),
@@ -51,7 +55,12 @@ fn result(certified: &Certified) -> Value {
         |reason: &NotProvable| json!({ "verdict": "not provable", "reason": reason.to_string() });
     let family = certified.family.as_ref().map(family::in_json);
     let around = certified.around.as_ref().map(Around::json);
-    let besides = present(json!({ "family": family, "outer_loops": around }));
+    let not_bounded = certified.disturbances.as_ref().and_then(DisturbanceAnswer::trouble);
+    let besides = present(json!({
+        "family": family,
+        "outer_loops": around,
+        "disturbances_not_bounded": not_bounded,
+    }));
     let proved = |found: &Outcome| outcome(found, certified.around.as_ref());
     merged([of, certified.outcome.as_ref().map_or_else(refused, proved), besides])
 }

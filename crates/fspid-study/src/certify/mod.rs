@@ -12,6 +12,10 @@ mod comparison;
 mod controller_file;
 mod coverage;
 mod digest;
+#[cfg(test)]
+mod disturbance_tests;
+mod disturbances;
+mod disturbances_file;
 mod family;
 mod family_file;
 mod file;
@@ -27,7 +31,8 @@ mod tests;
 mod text;
 
 use fspid_proof::{
-    Asked, Certificate, LeftOut, LoopDescription, NotProvable, Outcome, Verdict, certify,
+    Asked, Certificate, LeftOut, LoopDescription, NotProvable, Outcome, Unbounded, Verdict,
+    bound_disturbances, certify, ways_of,
 };
 use fspid_sim::{LinearPlant, SimError};
 
@@ -42,6 +47,7 @@ pub use cases::{Cases, CertifiedCase, CertifiedCases, Change, MOST_CASES, NoCase
 pub use checked::{Answer, CheckedFile, check_text};
 pub use comparison::{Comparison, Difference};
 pub use coverage::{COVERAGE, KeyCoverage, Treatment, coverage_table};
+pub use disturbances::DisturbanceAnswer;
 pub use family::{FamilyAnswer, NoFamily};
 pub use file::{Origin, SCHEMA, Seal, from_text, to_text};
 pub use no_certificate::NoCertificate;
@@ -59,6 +65,8 @@ pub struct Certified {
     pub outcome: Result<Outcome, NotProvable>,
     /// What came of all that the dispersions can draw, where that was asked.
     pub family: Option<FamilyAnswer>,
+    /// What came of bounds of disturbances, where they were asked for.
+    pub disturbances: Option<DisturbanceAnswer>,
     /// What flies around the loop, where that is an autopilot.
     pub around: Option<Around>,
     /// Where its certificates come from.
@@ -66,13 +74,15 @@ pub struct Certified {
 }
 
 impl Certified {
-    /// True if stability is proved, of the whole family where that was asked, and outer loops around it are held at rest.
+    /// True if stability is proved, of the whole family and with bounds of disturbances where that was asked, and outer loops
+    /// around it are held at rest.
     #[must_use]
     pub fn is_proved(&self) -> bool {
         let itself =
             matches!(&self.outcome, Ok(outcome) if matches!(outcome.verdict, Verdict::Proved(..)));
         itself
             && self.family.as_ref().is_none_or(FamilyAnswer::is_proved)
+            && self.disturbances.as_ref().is_none_or(DisturbanceAnswer::is_bounded)
             && self.around.as_ref().is_none_or(Around::is_held)
     }
 
@@ -153,6 +163,7 @@ impl Certification {
                     from_s: *from_s,
                     outcome: described.and_then(|loop_| ask(&loop_, &asked(study, plant, &loop_))),
                     family: None,
+                    disturbances: None,
                     around: around.clone(),
                     origin: Origin {
                         program: env!("CARGO_PKG_VERSION").to_owned(),
@@ -209,6 +220,43 @@ impl Certification {
             match answer {
                 Ok(answer) => certified.family = answer,
                 Err(stopped) => certified.outcome = Err(stopped),
+            }
+        }
+        Ok(self)
+    }
+
+    /// Bounds what disturbances do to each of its loops that is proved; `study` is what was certified. Tells the name of each
+    /// controller before.
+    ///
+    /// # Errors
+    /// [`SimError`] where a plant has no linear model; where the effort was stopped, the loop has no answer.
+    pub fn with_disturbances(
+        mut self,
+        study: &Study,
+        effort: &Effort,
+        tell: &mut dyn FnMut(&str),
+    ) -> Result<Self, SimError> {
+        let plants = lasting_plants(&study.scenario)?;
+        for certified in &mut self.results {
+            let Ok(outcome) = &mut certified.outcome else { continue };
+            let plant = plants.iter().find(|(at, _)| at.total_cmp(&certified.from_s).is_eq());
+            let Some((_, plant)) = plant else { continue };
+            tell(&certified.controller);
+            let Verdict::Proved(certificate, _) = &outcome.verdict else {
+                let reason = "the loop itself is not proved".to_owned();
+                certified.disturbances = Some(DisturbanceAnswer::NotBounded(reason));
+                continue;
+            };
+            match bound_disturbances(certificate, &ways_of(plant), effort) {
+                Ok((certificate, rechecked)) => {
+                    outcome.verdict = Verdict::Proved(certificate, rechecked);
+                    certified.disturbances = Some(DisturbanceAnswer::Bounded);
+                }
+                Err(Unbounded::NotProvable(stopped)) => certified.outcome = Err(stopped),
+                Err(reason) => {
+                    let reason = reason.to_string();
+                    certified.disturbances = Some(DisturbanceAnswer::NotBounded(reason));
+                }
             }
         }
         Ok(self)

@@ -4,7 +4,8 @@
 use fspid_proof::{Certificate, LeftOut, Range, Rechecked, Scope, Stepped};
 use serde_json::{Value, json};
 
-use super::family;
+use super::text::is_fixed;
+use super::{disturbances, family};
 use crate::json::merged;
 use crate::metrics::short;
 use fspid_scenario::units::degrees;
@@ -15,6 +16,8 @@ pub(super) struct Told {
     stable: Option<Scope>,
     left_out: Vec<LeftOut>,
     family: Vec<String>,
+    /// The gains do not move.
+    is_fixed: bool,
 }
 
 impl Told {
@@ -24,7 +27,7 @@ impl Told {
         let stable = certificate.claim.is_of_stability().then_some(scope);
         let family = certificate.family.as_ref().zip(rechecked.family);
         let family = family.map_or_else(Vec::new, |(family, it)| family::sentences(family, it));
-        Self { stable, left_out, family }
+        Self { stable, left_out, family, is_fixed: is_fixed(certificate) }
     }
 
     /// As [`of`](Self::of) of a certificate that was read and held against no scenario: what its words make of its plants
@@ -49,11 +52,14 @@ impl Told {
             sentences.push(("remains", remains(scope)));
             sentences.push(("limits", limits(scope)));
             sentences.extend(scope.stepped.map(|stepped| ("steps", steps(&stepped))));
+            let disturbed = disturbances::sentences(scope, self.is_fixed);
+            sentences.extend(disturbed.into_iter().map(|it| ("disturbances", it)));
         }
         sentences.extend(self.family.iter().map(|sentence| ("family", sentence.clone())));
         let left_out = self.left_out.iter().enumerate();
         sentences.extend(left_out.map(|(place, one)| {
-            (if place == 0 { "not in this claim" } else { "" }, one.to_string())
+            let about = if place == 0 { "not in this claim" } else { "" };
+            (about, disturbances::left_out(*one, self.stable.as_ref()))
         }));
         sentences
     }
@@ -80,9 +86,14 @@ impl Told {
                 pitch_within_rad,
                 limits_left_out,
                 stepped,
+                disturbed,
                 left_out: _,
             } = scope;
-            json!({
+            let bounds = match disturbed.is_empty() {
+                true => json!({}),
+                false => disturbances::in_json(scope),
+            };
+            let told = json!({
                 "rest_error_deg": told_deg(*rest_error_rad),
                 "setpoint_within_deg": told_deg(range.setpoint_rad),
                 "any_setpoint": any_setpoint,
@@ -95,7 +106,8 @@ impl Told {
                 "steps_within_deg": stepped.map(|it| told_deg(it.setpoint_rad)),
                 "steps_load_within_deg": stepped.map(|it| told_deg(it.load_rad)),
                 "steps_limited_until_s": stepped.map(|it| it.settled_s),
-            })
+            });
+            merged([told, bounds])
         };
         merged([told, self.stable.as_ref().map_or_else(|| json!({}), stable)])
     }

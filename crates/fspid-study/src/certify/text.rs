@@ -5,7 +5,7 @@ use fspid_proof::{Bearing, BoundedRate, Certificate, Claim, Outcome, Rechecked, 
 use fspid_sim::Controller;
 
 use super::scope::{Told, asked_in_words};
-use super::{Certification, Certified};
+use super::{Certification, Certified, DisturbanceAnswer};
 use crate::metrics::short;
 
 impl Certification {
@@ -34,6 +34,10 @@ fn push(out: &mut String, certified: &Certified) {
             // A proved one is among what the certificate says.
             if let Some(family) = certified.family.as_ref().filter(|it| !it.is_proved()) {
                 out.push_str(&format!("  family             {}\n", family.text()));
+            }
+            let trouble = certified.disturbances.as_ref().and_then(DisturbanceAnswer::trouble);
+            if let Some(reason) = trouble {
+                out.push_str(&format!("  disturbances       NOT BOUNDED: {reason}\n"));
             }
         }
     }
@@ -67,7 +71,7 @@ fn headline(certified: &Certified, outcome: &Outcome) -> String {
 }
 
 /// True of a loop whose gains do not move.
-fn is_fixed(certificate: &Certificate) -> bool {
+pub(super) fn is_fixed(certificate: &Certificate) -> bool {
     matches!(certificate.description.controller, Controller::Fixed(_))
 }
 

@@ -7,7 +7,7 @@ use fspid_proof::sizes::{
     MOST_CONES, MOST_DIVISIONS, MOST_LOADS, MOST_PIECES, MOST_SAMPLES, MOST_STATES,
 };
 
-use fspid_proof::{MOST_PARAMETERS, MOST_PARTS};
+use fspid_proof::{MOST_BOUNDS, MOST_PARAMETERS, MOST_PARTS};
 
 use super::{Key, Shape, key, optional};
 use Shape::{Digest, Kinds, List, Number, Object, OrNull, Positive, Text, Truth, Whole, Word};
@@ -29,6 +29,18 @@ pub(in super::super) const CERTIFICATE: Shape = Object(&[
     optional("level", Positive(LARGE)),
     optional("steps", STEPS),
     optional("family", FAMILY),
+    optional("disturbances", List(&DISTURBANCE, [1, MOST_BOUNDS])),
+]);
+
+/// A bound of what a disturbance does.
+const DISTURBANCE: Shape = Object(&[
+    key("enters", Word(&["elevator", "forward-gust", "vertical-gust", "turning-gust"])),
+    optional("numerator", List(&REAL, [1, COEFFICIENTS])),
+    key("bounds", Word(&["pitch", "command", "limits"])),
+    key("measured_by", Word(&["energy", "peak"])),
+    key("decay", RATE),
+    key("gain", Positive(LARGE)),
+    key("form", FORM),
 ]);
 
 /// Boxes of set-points, and parts of the loads.

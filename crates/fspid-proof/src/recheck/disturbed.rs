@@ -1,0 +1,256 @@
+//! What disturbances do at most, proved anew from their forms.
+
+use fspid_lti::Matrix;
+use fspid_numeric::Scalar;
+use fspid_numeric::scalar::Interval;
+
+use super::{Recheck, RecheckError, malformed, points};
+use crate::certificate::Claim;
+use crate::check::{Driven, Ellipsoid, IntervalMatrix, NotProved, grows_no_faster, printed};
+use crate::disturbances::{DisturbanceBound, Disturbed, Extent, Quantity, exact, first_of};
+use crate::gain_set::HeldGains;
+use crate::limits;
+
+/// The loop at some gains, with everything that a bound asks of it.
+pub(crate) struct DrivenLoop {
+    held: HeldGains,
+    matrix: IntervalMatrix,
+    command: Vec<Interval>,
+    /// Rows to everything that is limited, each with its limit; none where limits are not covered.
+    limits: Option<Vec<(Vec<Interval>, f64)>>,
+}
+
+impl DrivenLoop {
+    /// M in the middle.
+    pub(crate) fn matrix(&self) -> Matrix {
+        self.matrix.midpoint()
+    }
+
+    /// Rows to a quantity; to all that is limited as shares of the limits, none where that cannot be told.
+    pub(crate) fn rows(&self, quantity: Quantity) -> Vec<Vec<Interval>> {
+        match quantity {
+            Quantity::Pitch => vec![first_of(self.matrix.rows())],
+            Quantity::Command => vec![self.command.clone()],
+            Quantity::Limits => self.shares().unwrap_or_default(),
+        }
+    }
+
+    fn shares(&self) -> Option<Vec<Vec<Interval>>> {
+        let share = |(row, limit): &(Vec<Interval>, f64)| {
+            let limit = Some(Interval::point(*limit)).filter(|_| *limit > 0.0)?;
+            Some(row.iter().map(|entry| *entry / limit).collect())
+        };
+        self.limits.as_ref()?.iter().map(share).collect()
+    }
+}
+
+impl Recheck<'_> {
+    /// Proves all bounds of the certificate; `remains_rad` is what never ceases without a disturbance.
+    pub(super) fn disturbed(&self, remains_rad: f64) -> Result<Vec<Disturbed>, RecheckError> {
+        let bounds = &self.certificate.disturbances;
+        if bounds.is_empty() {
+            return Ok(Vec::new());
+        }
+        let corners = self.driven_corners()?;
+        let proved = bounds.iter().map(|bound| self.bounded(bound, &corners, remains_rad));
+        let proved = proved.collect::<Result<Vec<Disturbed>, RecheckError>>()?;
+        let best = |of: &Disturbed| {
+            let same = proved.iter().filter(|it| it.way == of.way && it.extent == of.extent);
+            same.filter_map(|it| it.unlimited_up_to).reduce(f64::max)
+        };
+        let told = proved.iter().filter(|it| it.quantity != Quantity::Limits);
+        Ok(told.map(|it| Disturbed { unlimited_up_to: best(it), ..it.clone() }).collect())
+    }
+
+    /// The loop at all corners of its gains.
+    pub(crate) fn driven_corners(&self) -> Result<Vec<DrivenLoop>, RecheckError> {
+        if !matches!(self.certificate.claim, Claim::CommonQuadratic { .. }) {
+            return Err(malformed(
+                "disturbances: bounded are those of a loop that is stable however fast its gains move",
+            ));
+        }
+        self.held.held_corners().map(|(_, held)| self.driven_corner(held)).collect()
+    }
+
+    /// The loop at corners that span the others but for a share of half the set's extent.
+    pub(crate) fn held_hull(&self, tolerance: f64) -> Result<Vec<DrivenLoop>, RecheckError> {
+        let hull = self.held.held_hull(tolerance);
+        hull.into_iter().map(|held| self.driven_corner(held)).collect()
+    }
+
+    /// The loop at some gains.
+    fn driven_corner(&self, held: HeldGains) -> Result<DrivenLoop, RecheckError> {
+        let matrix = self.held_loop(held)?;
+        let at = points(held.gains);
+        let model = self.model.with_change_gain(Interval::point(held.change_gain));
+        let mut command = model.command_row(at);
+        // Gains that remember what is held add to the command; it is not bounded then.
+        command.resize(matrix.rows(), Interval::ZERO);
+        let description = &self.certificate.description;
+        let limits =
+            self.covers_limits().then(|| limits::rows(description, &model, at, &self.rest));
+        Ok(DrivenLoop { held, matrix, command, limits })
+    }
+
+    /// What a disturbance of measure 1 takes of a limit beside what it reaches of the state: one that enters at the servo is
+    /// there in the servo's command and, through its lag, in its deflection.
+    fn beside_limits(&self, bound: &DisturbanceBound) -> Interval {
+        let at_servo = bound.way.is_at_servo_too(&self.certificate.description);
+        let most = if at_servo && bound.extent == Extent::Peak { 2.0 } else { 0.0 };
+        Interval::point(most)
+    }
+
+    /// Whether it can be told where limits act: not where something else keeps the loop from rest.
+    fn covers_limits(&self) -> bool {
+        self.is_exact() && limits::not_covered(&self.certificate.description).is_none()
+    }
+
+    /// True where nothing but disturbances has a way into the deviation from rest.
+    fn is_exact(&self) -> bool {
+        !self.is_blurred() && self.off_rad == 0.0 && self.held.remembered.is_none()
+    }
+
+    /// Why a quantity is not bounded, if so.
+    pub(crate) fn not_bounded(
+        &self,
+        quantity: Quantity,
+        extent: Extent,
+        remains_rad: f64,
+    ) -> Option<&'static str> {
+        if quantity == Quantity::Command && !self.is_exact() {
+            return Some(
+                "the command also answers to what a sensor rounds, or gains make of a held command",
+            );
+        }
+        if quantity == Quantity::Limits
+            && (!self.covers_limits() || self.certificate.description.limits().is_empty())
+        {
+            return Some("there are no limits, or it cannot be told where they act");
+        }
+        (extent == Extent::Energy && remains_rad > 0.0).then_some(
+            "something of bounded size never ceases in the loop, so that its deviations have no finite energy",
+        )
+    }
+
+    /// Proves one bound.
+    pub(crate) fn bounded(
+        &self,
+        bound: &DisturbanceBound,
+        corners: &[DrivenLoop],
+        remains_rad: f64,
+    ) -> Result<Disturbed, RecheckError> {
+        let DisturbanceBound { way, quantity, extent, decay, gain, form } = bound;
+        let description = &self.certificate.description;
+        let not = self.not_bounded(*quantity, *extent, remains_rad);
+        if let Some(what) = not.or_else(|| way.not_covered(description)) {
+            return Err(malformed(what));
+        }
+        let is_of = match extent {
+            Extent::Energy => decay.total_cmp(&1.0).is_eq(),
+            Extent::Peak => *decay < 1.0,
+        };
+        if !is_of {
+            return Err(malformed(
+                "disturbances: the decay is 1 of an energy and below it of a peak",
+            ));
+        }
+        let size = self.model.size() + self.more_states();
+        let entry = exact(&way.entry(description, size)?);
+        let root_of_period = printed(description.controller.config().dt_s).sqrt();
+        for corner in corners {
+            if (self.stops)() {
+                return Err(malformed("nobody wants the answer any more"));
+            }
+            let scaled = |row: Vec<Interval>| -> Vec<Interval> {
+                row.into_iter().map(|it| it * root_of_period).collect()
+            };
+            let is_seen = *extent == Extent::Energy && *quantity != Quantity::Limits;
+            let seen = corner.rows(*quantity).into_iter().next().filter(|_| is_seen).map(scaled);
+            if is_seen && seen.is_none() {
+                return Err(malformed("disturbances: nothing is seen of the quantity"));
+            }
+            let driven = Driven { matrix: &corner.matrix, entry: &entry, seen: seen.as_deref() };
+            grows_no_faster(form, [*decay, *gain], driven).map_err(|reason| {
+                RecheckError::Inequality { gains: Some(corner.held.gains), reason }
+            })?;
+        }
+        let reached = Reached::of(bound, root_of_period)?;
+        Ok(Disturbed {
+            way: way.clone(),
+            quantity: *quantity,
+            extent: *extent,
+            at_servo: way.is_at_servo_too(description),
+            per_unit: match (extent, quantity) {
+                (Extent::Energy, Quantity::Pitch | Quantity::Command) => {
+                    Interval::point(*gain).sqrt().upper()
+                }
+                (Extent::Peak, _) | (_, Quantity::Limits) => reached.largest(corners, *quantity)?,
+            },
+            unlimited_up_to: reached.unlimited(corners, self.beside_limits(bound))?,
+        })
+    }
+}
+
+/// What a disturbance of measure 1 reaches of the state: an ellipsoid.
+struct Reached {
+    ellipsoid: Ellipsoid,
+    /// The root of the level.
+    size: Interval,
+}
+
+impl Reached {
+    /// $V \le \beta$ of an energy, $V \le \beta T / (1 - \alpha)$ of a peak.
+    fn of(bound: &DisturbanceBound, root_of_period: Interval) -> Result<Self, NotProved> {
+        let root = Interval::point(bound.gain).sqrt();
+        let size = match bound.extent {
+            Extent::Energy => root,
+            Extent::Peak => {
+                let left = Interval::ONE - Interval::point(bound.decay);
+                root * root_of_period / left.sqrt()
+            }
+        };
+        Ok(Self { ellipsoid: Ellipsoid::of(&bound.form)?, size })
+    }
+
+    fn row(&self, row: &[Interval]) -> Result<Interval, NotProved> {
+        Ok(self.ellipsoid.reach(row)? * self.size)
+    }
+
+    /// The most that a quantity is off, at any of the corners.
+    fn largest(&self, corners: &[DrivenLoop], quantity: Quantity) -> Result<f64, NotProved> {
+        let mut most = 0.0_f64;
+        for corner in corners {
+            for row in corner.rows(quantity) {
+                most = most.max(self.row(&row)?.upper());
+            }
+            // The pitch angle is the same row at all of them.
+            if quantity == Quantity::Pitch {
+                break;
+            }
+        }
+        Ok(most)
+    }
+
+    /// The largest measure at which no limit acts, from below.
+    fn unlimited(
+        &self,
+        corners: &[DrivenLoop],
+        beside: Interval,
+    ) -> Result<Option<f64>, NotProved> {
+        let mut most = f64::INFINITY;
+        for corner in corners {
+            let Some(rows) = &corner.limits else { return Ok(None) };
+            for (row, limit) in rows {
+                // Written so that NaN is refused.
+                if !(*limit > 0.0) {
+                    return Ok(None);
+                }
+                let reached = self.row(row)? + beside;
+                if reached.upper() > 0.0 {
+                    most = most.min((Interval::point(*limit) / reached).lower());
+                }
+            }
+        }
+        Ok(Some(most))
+    }
+}
