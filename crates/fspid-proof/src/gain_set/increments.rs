@@ -75,7 +75,8 @@ impl IncrementMap {
         divisions: usize,
         stops: fn() -> bool,
     ) -> Result<Option<Self>, NoBound> {
-        let system = System::new(Parts::from(tuner.supervisor())).ok();
+        let parts = Parts::try_from(tuner.supervisor()).ok();
+        let system = parts.and_then(|parts| System::new(parts).ok());
         let mut enclosure = Enclosure::new(tuner, system.as_ref());
         // The origin is in every dead zone, also in one without width.
         let rest = match tuner.settings().dead_zone {

@@ -98,7 +98,8 @@ impl IncrementSlopes {
         let even = |side: f64, centres: Option<SetCentres<f64>>| {
             centres.map_or(side, |centres| (centres.warp(side, range) * (1.0 + MOVED)).min(range))
         };
-        let system = System::new(Parts::from(supervisor)).map_err(|_| NoSlopes::Unbounded)?;
+        let parts = Parts::try_from(supervisor).map_err(|_| NoSlopes::Unbounded)?;
+        let system = System::new(parts).map_err(|_| NoSlopes::Unbounded)?;
         let sides = [even(within[0].min(range), sets[0]), even(within[1].min(range), sets[1])];
         let domain = sides.map(|side| if inside(&side) { [-side, side] } else { [-range, range] });
         let options = SurfaceOptions {

@@ -66,7 +66,7 @@ impl Fuzzy {
         };
         let warped = [warp(sets.error, seen[0]), warp(sets.change, seen[1])];
         let rules = fired(
-            &System::new(Parts::from(supervisor)).ok()?,
+            &System::new(Parts::try_from(supervisor).ok()?).ok()?,
             warped,
             tuner.settings().output_scale,
         )?;
