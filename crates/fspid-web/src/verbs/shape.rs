@@ -56,7 +56,7 @@ fn centres(tuner: &SelfTuner<f64>) -> Value {
     json!({ "error": one(sets.error), "change": one(sets.change) })
 }
 
-/// The three grids, labels or numbers, by the keys that a file has for them.
+/// The three grids, labels or numbers, by the keys that a file has for them; nothing in them for a network.
 fn rules(supervisor: &Supervisor<f64>) -> Value {
     let table = supervisor.table();
     let grid = |output: Output| match (&table, supervisor.numbers()) {
@@ -70,7 +70,8 @@ fn rules(supervisor: &Supervisor<f64>) -> Value {
     };
     let grids: Map<String, Value> =
         Output::ALL.into_iter().map(|output| (output.name().to_owned(), grid(output))).collect();
-    json!({ "are_labels": table.is_some(), "grids": grids })
+    let is_network = supervisor.network().is_some();
+    json!({ "are_labels": table.is_some(), "is_network": is_network, "grids": grids })
 }
 
 /// Cells that break the symmetry of their grid.
