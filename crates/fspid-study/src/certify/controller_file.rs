@@ -508,4 +508,34 @@ mod tests {
         let told = file.build(dt_s).expect_err("nothing is concluded");
         assert_eq!(told, "rules: none, and no numbers or network in their place");
     }
+
+    #[test]
+    fn a_network_is_written_with_its_weights_and_read_again_and_others_are_refused() {
+        let rows = ["error", "change", "offset", "delta_kp", "delta_ki", "delta_kd"];
+        let rows = rows.map(|row| format!("{row} = [0.5, -1, 0.25, 2, 0.1, 0.3, -0.7, 1]"));
+        let network = format!("network = {{ {} }} #", rows.join(", "));
+        let text = fspid_scenario::file::starter().replace("table = \"mirrored\" ", &network);
+        let study = fspid_scenario::file::parse(&text, "mine.toml", None, &[]).expect("a scenario");
+        let controller = &study.scenario.controllers[1].controller;
+        let (mut file, dt_s) = (ControllerFile::of(controller), study.scenario.timing.dt_s());
+        assert_eq!(file.build(dt_s).as_ref(), Ok(controller));
+        let weight = |file: &mut ControllerFile, weight: f64| {
+            let network = file.tuner.as_mut().and_then(|tuner| tuner.network.as_mut());
+            network.expect("a network").delta_ki[3] = weight;
+        };
+        weight(&mut file, 1.5);
+        assert_ne!(file.build(dt_s).as_ref(), Ok(controller));
+        weight(&mut file, -2e6);
+        let told = file.build(dt_s).expect_err("too large");
+        assert!(told.starts_with("network: delta_ki: the weight of unit 4 is -2000000.0"), "{told}");
+        if let Some(tuner) = &mut file.tuner {
+            tuner.numbers = Some(NumbersFile {
+                delta_kp: [[0.0; 7]; 7],
+                delta_ki: [[0.0; 7]; 7],
+                delta_kd: [[0.0; 7]; 7],
+            });
+        }
+        let told = file.build(dt_s).expect_err("two things answer");
+        assert_eq!(told, "rules, numbers and network: one of them is what answers");
+    }
 }
