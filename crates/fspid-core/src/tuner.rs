@@ -196,8 +196,7 @@ impl<R: Real> TunerSettings<R> {
     }
 }
 
-const NETWORK_HAS_NO_SETS: &str =
-    "the supervisor is a network, which has no sets: error_set_centres and change_set_centres must be left out";
+const NETWORK_HAS_NO_SETS: &str = "the supervisor is a network, which has no sets: error_set_centres and change_set_centres must be left out";
 
 /// The gains of the moment from error and change of error.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,8 +4,8 @@ use crate::common;
 
 use common::{RANGES_F32, RANGES_F64, RULES, Random, tables};
 use fspid_fuzzy::{
-    Answers, BatchError, Defuzzifier, Increments, Inference, InferenceError, LABEL_COUNT,
-    Network, NumberTable, OutOfRange, Supervisor,
+    Answers, BatchError, Defuzzifier, Increments, Inference, InferenceError, LABEL_COUNT, Network,
+    NumberTable, OutOfRange, Supervisor,
 };
 use fspid_numeric::{InstructionSet, Real};
 

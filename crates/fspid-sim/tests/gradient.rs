@@ -174,7 +174,8 @@ fn with_cells(supervisor: &Supervisor<f64>, direction: usize, by: f64) -> Option
             *weight += by * share(place);
         }
         let network = Network::new(rows).ok()?;
-        return Supervisor::of_network(&network, supervisor.range(), supervisor.out_of_range()).ok();
+        return Supervisor::of_network(&network, supervisor.range(), supervisor.out_of_range())
+            .ok();
     }
     let table = supervisor.numbers()?;
     let mut grids = Output::ALL.map(|output| *table.grid(output));

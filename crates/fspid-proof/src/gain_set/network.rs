@@ -177,12 +177,12 @@ mod tests {
                 let told = net.over([error, change].map(|[a, b]| Interval::between(a, b)));
                 for i in 0..=40 {
                     for j in 0..=40 {
-                        let at = |[from, to]: [f64; 2], n: i32| {
-                            from + (to - from) * f64::from(n) / 40.0
-                        };
+                        let at =
+                            |[from, to]: [f64; 2], n: i32| from + (to - from) * f64::from(n) / 40.0;
                         let found = answers(&supervisor, [at(error, i), at(change, j)]);
                         for (told, value) in told.iter().zip(found) {
-                            let held = told.lower() - slack <= value && value <= told.upper() + slack;
+                            let held =
+                                told.lower() - slack <= value && value <= told.upper() + slack;
                             assert!(held, "{size}: {told:?} {value}");
                         }
                     }

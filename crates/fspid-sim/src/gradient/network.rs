@@ -59,8 +59,8 @@ impl FlownNetwork<'_> {
     pub(super) fn back(&self, seen: [f64; 2], worth: [f64; 3], gradient: &mut [f64]) -> [f64; 2] {
         let inputs = self.inputs(seen);
         let hidden = self.hidden(inputs);
-        let of_sums = [0, 1, 2]
-            .map(|gain| worth[gain] * self.range * slope(self.sum(gain, &hidden)));
+        let of_sums =
+            [0, 1, 2].map(|gain| worth[gain] * self.range * slope(self.sum(gain, &hidden)));
         let mut of_inputs = [0.0; 2];
         for (unit, answer) in hidden.into_iter().enumerate() {
             let [a, b, c] = self.unit(unit);
@@ -79,7 +79,8 @@ impl FlownNetwork<'_> {
             of_inputs[1] += of_u * b;
         }
         // Beyond the range the answer is level.
-        let inside = seen.map(|input| if input.abs() < self.range { 1.0 / self.range } else { 0.0 });
+        let inside =
+            seen.map(|input| if input.abs() < self.range { 1.0 / self.range } else { 0.0 });
         [of_inputs[0] * inside[0], of_inputs[1] * inside[1]]
     }
 }

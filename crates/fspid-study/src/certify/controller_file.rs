@@ -6,8 +6,8 @@ use fspid_core::{
     ReferenceModel, SecondInput, SelfTuner, SetCentres, SetpointWeights, TunerSettings,
 };
 use fspid_fuzzy::{
-    Defuzzifier, Label, Network, NetworkRow, NumberGrid, NumberTable, OutOfRange, Output, RuleTable,
-    Supervisor,
+    Defuzzifier, Label, Network, NetworkRow, NumberGrid, NumberTable, OutOfRange, Output,
+    RuleTable, Supervisor,
 };
 use fspid_sim::Controller;
 use serde::{Deserialize, Serialize};
@@ -527,7 +527,10 @@ mod tests {
         assert_ne!(file.build(dt_s).as_ref(), Ok(controller));
         weight(&mut file, -2e6);
         let told = file.build(dt_s).expect_err("too large");
-        assert!(told.starts_with("network: delta_ki: the weight of unit 4 is -2000000.0"), "{told}");
+        assert!(
+            told.starts_with("network: delta_ki: the weight of unit 4 is -2000000.0"),
+            "{told}"
+        );
         if let Some(tuner) = &mut file.tuner {
             tuner.numbers = Some(NumbersFile {
                 delta_kp: [[0.0; 7]; 7],

@@ -66,9 +66,7 @@ impl Fuzzy {
         };
         let warped = [warp(sets.error, seen[0]), warp(sets.change, seen[1])];
         let rules = match Parts::try_from(supervisor) {
-            Ok(parts) => {
-                fired(&System::new(parts).ok()?, warped, tuner.settings().output_scale)?
-            }
+            Ok(parts) => fired(&System::new(parts).ok()?, warped, tuner.settings().output_scale)?,
             // A network has none.
             Err(_) => Vec::new(),
         };

@@ -206,7 +206,8 @@ fn network() -> String {
     let rows = ["error", "change", "offset", "delta_kp", "delta_ki", "delta_kd"];
     let rows = rows.iter().zip([1.5, -1.1, 0.9, 0.7, -0.6, 0.5]).map(|(row, first)| {
         let weight = |unit: u32| {
-            let start = f64::from(unit + 1) * first * if unit.is_multiple_of(2) { 0.4 } else { -0.3 };
+            let start =
+                f64::from(unit + 1) * first * if unit.is_multiple_of(2) { 0.4 } else { -0.3 };
             format!("{{ tune = [-6.0, 6.0], start = {start:.3} }}")
         };
         let weights: Vec<String> = (0..8).map(weight).collect();

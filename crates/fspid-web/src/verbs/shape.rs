@@ -85,3 +85,19 @@ fn odd(supervisor: &Supervisor<f64>) -> Vec<Value> {
     };
     cells.iter().map(one).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fspid_fuzzy::{Network, OutOfRange};
+
+    #[test]
+    fn a_network_says_that_it_is_one_and_has_no_cells_to_draw() {
+        let network = Network::new([[0.5; 8]; 6]).expect("allowed");
+        let supervisor = Supervisor::of_network(&network, 1.0, OutOfRange::Clamp).expect("allowed");
+        let rules = rules(&supervisor);
+        assert_eq!((&rules["is_network"], &rules["are_labels"]), (&json!(true), &json!(false)));
+        assert_eq!(rules["grids"]["delta_kp"], Value::Null);
+        assert!(odd(&supervisor).is_empty() && rule_marks(&supervisor).is_empty());
+    }
+}

@@ -439,11 +439,8 @@ pub(crate) const SYSTEM: Key<str> = optional(
     FILE_PATH,
     "A file with such rules (.toml, .fis, .t2fis, .fcl, .fll, .xml), as `fspid learn` writes it.",
 );
-pub(crate) const NETWORK: Key<Section> = optional(
-    "network",
-    table(&NETWORK_TABLE),
-    "No rules, but a small neural network.",
-);
+pub(crate) const NETWORK: Key<Section> =
+    optional("network", table(&NETWORK_TABLE), "No rules, but a small neural network.");
 pub(crate) const RANGE: Key<f64> = required(
     "range",
     number("", Range::Between(1e-100, 1e100)),
