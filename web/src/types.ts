@@ -100,7 +100,7 @@ export interface Shape {
   range: number;
   labels: string[];
   centres: Record<"error" | "change", { small: number; medium: number; even: boolean }>;
-  rules: { are_labels: boolean; grids: Record<string, (string | number)[][]> };
+  rules: { are_labels: boolean; is_network: boolean; grids: Record<string, (string | number)[][]> };
   odd: { grid: string; cell: [number, number]; opposite: [number, number] }[];
   /** What the program's audit says of the cells of each grid. */
   audit: {

@@ -7,7 +7,7 @@
 use core::panic::PanicInfo;
 
 use fspid_core::fuzzy::{
-    Defuzzifier, FuzzyError, Inference, InferenceError, NumberGrid, NumberTable, OutOfRange,
+    Defuzzifier, FuzzyError, Inference, InferenceError, Network, NetworkRow, NumberGrid, NumberTable, OutOfRange,
     RuleTable, Supervisor,
 };
 use fspid_core::{
@@ -27,7 +27,7 @@ fn panic(_: &PanicInfo<'_>) -> ! {
 macro_rules! export {
     ($(
         $real:ty: $pid:ident $fspid:ident $infer:ident,
-        $new_pid:ident $new_fspid:ident $new_supervisor:ident $new_numbers:ident;
+        $new_pid:ident $new_fspid:ident $new_supervisor:ident $new_numbers:ident $new_network:ident;
     )*) => { $(
         #[unsafe(no_mangle)]
         pub extern "Rust" fn $pid(
@@ -80,14 +80,21 @@ macro_rules! export {
         ) -> Result<Supervisor<$real>, FuzzyError> {
             Supervisor::of_numbers(&NumberTable::new(*grids)?, range, policy)
         }
+
+        #[unsafe(no_mangle)]
+        pub extern "Rust" fn $new_network(
+            rows: &[NetworkRow<$real>; 6], range: $real, policy: OutOfRange,
+        ) -> Result<Supervisor<$real>, FuzzyError> {
+            Supervisor::of_network(&Network::new(*rows)?, range, policy)
+        }
     )* };
 }
 
 export! {
     f64: pid_step_f64 fspid_step_f64 infer_f64,
-        new_pid_f64 new_fspid_f64 new_supervisor_f64 new_numbers_f64;
+        new_pid_f64 new_fspid_f64 new_supervisor_f64 new_numbers_f64 new_network_f64;
     f32: pid_step_f32 fspid_step_f32 infer_f32,
-        new_pid_f32 new_fspid_f32 new_supervisor_f32 new_numbers_f32;
+        new_pid_f32 new_fspid_f32 new_supervisor_f32 new_numbers_f32 new_network_f32;
 }
 
 /// Shows that the check can fail.

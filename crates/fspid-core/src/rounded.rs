@@ -1,6 +1,6 @@
 //! The same controller in another precision.
 
-use fspid_fuzzy::{NumberTable, Output, Supervisor};
+use fspid_fuzzy::{Network, NumberTable, Output, Supervisor};
 use fspid_numeric::Real;
 
 use crate::controller::Controller;
@@ -155,6 +155,10 @@ fn of_gains<R: Real, S: Real>(
 
 fn supervisor<R: Real, S: Real>(from: &Supervisor<R>) -> Result<Supervisor<S>, ConfigError> {
     let (range, policy) = (real(from.range()), from.out_of_range());
+    if let Some(network) = from.network() {
+        let network = Network::new(network.rows().map(|row| row.map(real)))?;
+        return Ok(Supervisor::of_network(&network, range, policy)?);
+    }
     let built = match (from.numbers(), from.table()) {
         (None, table) => {
             // Rules that conclude no numbers conclude labels.

@@ -196,6 +196,8 @@ impl<R: Real> TunerSettings<R> {
     }
 }
 
+const NETWORK_HAS_NO_SETS: &str = "the supervisor is a network, which has no sets: error_set_centres and change_set_centres must be left out";
+
 /// The gains of the moment from error and change of error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SelfTuner<R> {
@@ -209,13 +211,16 @@ impl<R: Real> SelfTuner<R> {
     ///
     /// # Errors
     /// [`ConfigError`] for a gain or factor that is not finite, a negative dead zone or leakage,
-    /// and nominal gains outside the gain limits.
+    /// nominal gains outside the gain limits, and uneven sets before a network.
     pub fn new(
         nominal: Gains<R>,
         supervisor: Supervisor<R>,
         settings: TunerSettings<R>,
     ) -> Result<Self, ConfigError> {
         settings.check()?;
+        if supervisor.network().is_some() && !settings.input_sets.are_even() {
+            return Err(ConfigError::Conflict { what: NETWORK_HAS_NO_SETS });
+        }
         let nominal = nominal.checked()?;
         if let Some(limits) = settings.gain_limits {
             limits.check(nominal)?;
@@ -245,7 +250,7 @@ impl<R: Real> SelfTuner<R> {
 
     /// True for [plain](TunerSettings::is_plain) settings around rules that conclude labels.
     pub fn is_plain(&self) -> bool {
-        self.settings.is_plain() && self.supervisor.numbers().is_none()
+        self.settings.is_plain() && self.supervisor.has_labels()
     }
 
     /// The rules.

@@ -110,7 +110,7 @@ fn findings<R: Real>(subject: &Subject<'_, R>, judge: &Judge<'_>) -> Vec<Finding
 
 #[cfg(test)]
 mod tests {
-    use fspid_core::fuzzy::{Defuzzifier, NumberTable, OutOfRange, Supervisor};
+    use fspid_core::fuzzy::{Defuzzifier, Network, NumberTable, OutOfRange, Supervisor};
     use fspid_core::{
         AntiWindup, Change, ControllerSetting, Fspid, Gains, Limits, Pid, PidConfig, SelfTuner,
         TunerSettings,
@@ -154,6 +154,17 @@ mod tests {
         };
         let numbers = NumberTable::new([grid(0), grid(5), grid(11)]).expect("finite");
         tuned(Supervisor::of_numbers(&numbers, 2.0, OutOfRange::Clamp).expect("allowed"))
+    }
+
+    fn with_network() -> Controller<f32> {
+        // No weight is another one, and none is small.
+        let weight = |row: usize, unit: usize| {
+            let size = 0.3 + 0.05 * ((row * 8 + unit) * 29 % 48) as f32;
+            if (row + unit).is_multiple_of(2) { size } else { -size }
+        };
+        let rows = std::array::from_fn(|row| std::array::from_fn(|unit| weight(row, unit)));
+        let network = Network::new(rows).expect("allowed");
+        tuned(Supervisor::of_network(&network, 2.0, OutOfRange::Clamp).expect("allowed"))
     }
 
     /// What is asked about the changes of a controller that are chosen.
@@ -200,7 +211,7 @@ mod tests {
     #[test]
     fn every_rule_and_every_number_of_a_design_is_found_when_it_is_changed_or_shown_to_do_nothing()
     {
-        for controller in [with_labels(), with_numbers()] {
+        for controller in [with_labels(), with_numbers(), with_network()] {
             let vectors = eventful(&controller, Angles::Radians, 1, ASKED);
             let left = asked(
                 &controller,
@@ -232,7 +243,7 @@ mod tests {
 
     #[test]
     fn what_is_remembered_stays_within_the_bounds_that_intervals_found() {
-        for controller in [with_labels(), with_numbers()] {
+        for controller in [with_labels(), with_numbers(), with_network()] {
             let program = crate::program(&controller, Angles::Radians).expect("nothing is refused");
             let memory = ranges::memory(&program).expect("bounded");
             let mut machine = Machine::<f32>::new(&program);

@@ -3,7 +3,7 @@
 use std::panic::resume_unwind;
 use std::thread;
 
-use fspid_core::fuzzy::{FuzzyError, RANGE_LIMITS_F32};
+use fspid_core::fuzzy::{FuzzyError, RANGE_LIMITS_F32, UNITS};
 use fspid_core::{ConfigError, Controller};
 use fspid_numeric::Real;
 
@@ -222,6 +222,9 @@ const SEED: u64 = 1;
 fn way<R: Real>(controller: &Controller<R>) -> Option<String> {
     let Controller::SelfTuning(fspid) = controller else { return None };
     let supervisor = fspid.tuner().supervisor();
+    if supervisor.network().is_some() {
+        return Some(format!("a network of {UNITS} hidden units: no rules"));
+    }
     let way = match (supervisor.numbers(), supervisor.defuzzifier()) {
         (Some(_), _) => "rules that conclude numbers: bilinear interpolation".to_owned(),
         (None, fspid_core::fuzzy::Defuzzifier::Exact) => {

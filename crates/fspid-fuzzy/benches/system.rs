@@ -63,7 +63,8 @@ fn paper() -> Parts {
     let grids: Vec<&str> = printed.split("\"\"\"").collect();
     let table = RuleTable::parse([grids[1], grids[3], grids[5]]).expect("a shipped table");
     let rule = fspid_fuzzy::Defuzzifier::Exact;
-    Parts::from(&Supervisor::new(&table, RANGE, rule, OutOfRange::Clamp).expect("allowed"))
+    Parts::try_from(&Supervisor::new(&table, RANGE, rule, OutOfRange::Clamp).expect("allowed"))
+        .expect("rules")
 }
 
 fn method(parts: &Parts, method: impl Fn(Sampling) -> Defuzzifier) -> Parts {

@@ -19,7 +19,8 @@ fn main() {
     let grids: Vec<&str> = PRINTED.split("\"\"\"").collect();
     let table = RuleTable::parse([grids[1], grids[3], grids[5]]).expect("a shipped table");
     let supervisor = Supervisor::new(&table, 5.0, Defuzzifier::Exact, OutOfRange::Clamp);
-    let system = System::new(Parts::from(&supervisor.expect("allowed"))).expect("sound");
+    let system =
+        System::new(Parts::try_from(&supervisor.expect("allowed")).expect("rules")).expect("sound");
     let mut options = SurfaceOptions::default();
     if let Some(boxes) = std::env::args().nth(1) {
         options.boxes = boxes.parse().expect("a number of boxes");

@@ -65,6 +65,17 @@ pub enum FuzzyError {
         /// Largest magnitude that is allowed.
         allowed: f64,
     },
+    /// A weight of a [`Network`](crate::Network) that is not finite or too large.
+    Weight {
+        /// Which of the six rows.
+        row: &'static str,
+        /// Number of the hidden unit, from 1.
+        unit: usize,
+        /// What was given.
+        found: f64,
+        /// Largest magnitude that is allowed.
+        allowed: f64,
+    },
     /// A supervisor's input that cannot be answered.
     Inference(crate::supervisor::InferenceError),
 }
@@ -96,6 +107,10 @@ impl fmt::Display for FuzzyError {
                 f,
                 "{}: the number in row {row}, column {column} is {found:?}; allowed is -{allowed:?} to {allowed:?}",
                 output.name()
+            ),
+            Self::Weight { row, unit, found, allowed } => write!(
+                f,
+                "{row}: the weight of unit {unit} is {found:?}; allowed is -{allowed:?} to {allowed:?}"
             ),
             Self::Inference(error) => error.fmt(f),
         }

@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 //!
-//! Instead of labels the rules may conclude numbers ([`NumberTable`], [`Supervisor::of_numbers`]).
+//! Instead of labels the rules may conclude numbers ([`NumberTable`], [`Supervisor::of_numbers`]), and a small neural
+//! network may stand in the place of rules ([`Network`], [`Supervisor::of_network`]).
 //!
 //! | feature | adds | needs |
 //! | --- | --- | --- |
@@ -37,6 +38,7 @@ pub mod karnik_mendel;
 mod label;
 
 pub mod membership;
+mod network;
 pub mod norm;
 mod number_table;
 
@@ -54,6 +56,7 @@ pub use error::FuzzyError;
 pub use formula::{Formula, FormulaError, FormulaErrorKind};
 pub use hedge::Hedge;
 pub use label::{LABEL_COUNT, Label};
+pub use network::{LARGEST_WEIGHT, Network, NetworkRow, UNITS};
 pub use norm::{SNormKind, TNormKind};
 pub use number_table::{NumberGrid, NumberTable};
 

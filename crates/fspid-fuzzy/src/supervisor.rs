@@ -3,7 +3,7 @@
 //! Mamdani inference as in the paper: Gaussian input sets whose neighbours cross at 0.5, `min` for
 //! *and* and for implication, `max` over the rules of one label, centroid. Inputs and outputs have
 //! the same half range. Or rules that conclude numbers in place of labels, over triangular sets:
-//! [`NumberTable`].
+//! [`NumberTable`]. Or no rules at all, but a small neural network: [`Network`].
 
 use core::fmt;
 
@@ -13,6 +13,7 @@ use crate::defuzzifier::Defuzzifier;
 use crate::error::FuzzyError;
 use crate::label::LABEL_COUNT;
 use crate::membership::{Gaussian, SIGMA_PER_SPACING, Shape};
+use crate::network::Network;
 use crate::number_table::{self, NumberTable};
 use crate::rule_table::{Output, RuleTable};
 use fspid_numeric::Real;
@@ -32,8 +33,8 @@ pub enum OutOfRange {
     #[default]
     Clamp,
     /// Evaluate it as it is; where every rule has underflowed, answer as for the clamped input. With
-    /// rules that conclude numbers the outermost sets are level beyond the range, so that the answer is
-    /// that for the clamped input everywhere.
+    /// rules that conclude numbers the outermost sets are level beyond the range, and so is a network, so
+    /// that the answer is that for the clamped input everywhere.
     Evaluate,
     /// Refuse it.
     Error,
@@ -137,6 +138,16 @@ pub struct SupervisorNumbers<R> {
 enum Rules<R> {
     Labels([Consequents; 3]),
     Numbers(NumberTable<R>),
+    Network(Network<R>),
+}
+
+/// What has the same equations in every lane.
+#[cfg(feature = "batch")]
+pub(crate) enum Beside<'a, R> {
+    /// Rules that conclude labels.
+    Labels(&'a [Consequents; 3]),
+    /// A network.
+    Network(&'a Network<R>),
 }
 
 impl<R: Real> Supervisor<R> {
@@ -174,6 +185,20 @@ impl<R: Real> Supervisor<R> {
         Ok(built)
     }
 
+    /// A supervisor that is a network, over `[-range, range]` for both inputs; its answers lie within the range as
+    /// those of rules do.
+    ///
+    /// # Errors
+    /// [`FuzzyError::Range`] as for [`new`](Self::new).
+    pub fn of_network(
+        network: &Network<R>,
+        range: R,
+        out_of_range: OutOfRange,
+    ) -> Result<Self, FuzzyError> {
+        let rules = Rules::Network(*network);
+        Self::built(rules, range, R::ONE, Defuzzifier::Exact, out_of_range)
+    }
+
     /// A supervisor of labels as a constant, of the [numbers](Self::parts) of one that was built; nothing is checked.
     #[must_use]
     pub const fn new_unchecked(table: &RuleTable, parts: SupervisorNumbers<R>) -> Self {
@@ -188,6 +213,12 @@ impl<R: Real> Supervisor<R> {
     #[must_use]
     pub const fn of_numbers_unchecked(table: NumberTable<R>, parts: SupervisorNumbers<R>) -> Self {
         Self::of_parts(Rules::Numbers(table), parts)
+    }
+
+    /// As [`new_unchecked`](Self::new_unchecked) for a network.
+    #[must_use]
+    pub const fn of_network_unchecked(network: Network<R>, parts: SupervisorNumbers<R>) -> Self {
+        Self::of_parts(Rules::Network(network), parts)
     }
 
     const fn of_parts(rules: Rules<R>, parts: SupervisorNumbers<R>) -> Self {
@@ -231,30 +262,46 @@ impl<R: Real> Supervisor<R> {
     }
 
     /// Centre and sigma of the Gaussian input sets, from `NB` to `PB`; where rules conclude numbers, centre
-    /// of the triangles and their distance.
+    /// of the triangles and their distance. Of no meaning for a network, which has no sets.
     pub fn sets(&self) -> &[[R; 2]; LABEL_COUNT] {
         &self.sets
     }
 
-    /// The rules; `None` where they conclude numbers.
+    /// The rules; `None` where they conclude numbers, and for a network.
     pub fn table(&self) -> Option<RuleTable> {
         match &self.rules {
             Rules::Labels(consequents) => {
                 Some(RuleTable::new(consequents.each_ref().map(Consequents::grid)))
             }
-            Rules::Numbers(_) => None,
+            Rules::Numbers(_) | Rules::Network(_) => None,
         }
     }
 
-    /// The numbers that the rules conclude; `None` where they conclude labels.
+    /// The numbers that the rules conclude; `None` where they conclude labels, and for a network.
     pub fn numbers(&self) -> Option<&NumberTable<R>> {
         match &self.rules {
-            Rules::Labels(_) => None,
+            Rules::Labels(_) | Rules::Network(_) => None,
             Rules::Numbers(table) => Some(table),
         }
     }
 
-    /// The rule for the centre of gravity; of no meaning where rules conclude numbers.
+    /// The network; `None` where there are rules.
+    pub fn network(&self) -> Option<&Network<R>> {
+        match &self.rules {
+            Rules::Labels(_) | Rules::Numbers(_) => None,
+            Rules::Network(network) => Some(network),
+        }
+    }
+
+    /// True where rules conclude labels; without them the answer beyond the range is that at its border.
+    pub fn has_labels(&self) -> bool {
+        match &self.rules {
+            Rules::Labels(_) => true,
+            Rules::Numbers(_) | Rules::Network(_) => false,
+        }
+    }
+
+    /// The rule for the centre of gravity; of no meaning where rules do not conclude labels.
     pub fn defuzzifier(&self) -> Defuzzifier {
         self.defuzzifier
     }
@@ -265,7 +312,7 @@ impl<R: Real> Supervisor<R> {
         self.out_of_range
     }
 
-    /// Grades of an input in its seven sets, from `NB` to `PB`.
+    /// Grades of an input in its seven sets, from `NB` to `PB`; zeros for a network, which has none.
     pub fn grades(&self, input: R) -> [R; LABEL_COUNT] {
         match &self.rules {
             Rules::Labels(_) => self.sets.map(|set| Gaussian::grade(&set, input)),
@@ -274,6 +321,7 @@ impl<R: Real> Supervisor<R> {
                 [-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0]
                     .map(|step| number_table::triangle(input, R::from_f64(step)))
             }
+            Rules::Network(_) => [R::ZERO; LABEL_COUNT],
         }
     }
 
@@ -301,6 +349,10 @@ impl<R: Real> Supervisor<R> {
         let delta = match &self.rules {
             Rules::Labels(consequents) => self.concluded(consequents, error, change),
             Rules::Numbers(table) => self.interpolated(table, error, change),
+            Rules::Network(network) => {
+                let [kp, ki, kd] = network.increments(self.range, [error, change]);
+                Increments { kp, ki, kd }
+            }
         };
         Inference { delta, clamped: false, underflowed: false }
     }
@@ -348,7 +400,7 @@ impl<R: Real> Supervisor<R> {
         }
         let ends = |input: R| input.limited(-self.range, self.range);
         let inference = self.infer_inside(ends(error), ends(change));
-        let underflowed = evaluates && self.numbers().is_none();
+        let underflowed = evaluates && self.has_labels();
         Ok(Inference { clamped: !evaluates, underflowed, ..inference })
     }
 
@@ -398,25 +450,32 @@ impl<R: Real> Supervisor<R> {
         Increments { kp, ki, kd }
     }
 
-    /// The rules as they are evaluated; `None` where they conclude numbers.
+    /// What is evaluated side by side; `None` where rules conclude numbers, which are looked up.
     #[cfg(feature = "batch")]
     #[inline]
-    pub(crate) fn consequents(&self) -> Option<&[Consequents; 3]> {
+    pub(crate) fn beside(&self) -> Option<Beside<'_, R>> {
         match &self.rules {
-            Rules::Labels(consequents) => Some(consequents),
+            Rules::Labels(consequents) => Some(Beside::Labels(consequents)),
             Rules::Numbers(_) => None,
+            Rules::Network(network) => Some(Beside::Network(network)),
         }
     }
 
-    /// As within [`infer_inside`](Self::infer_inside) by labels, in each lane.
+    /// As within [`infer_inside`](Self::infer_inside), in each lane.
     #[cfg(feature = "batch")]
     #[inline(always)]
     pub(crate) fn increments_in_lanes<L: Lanes<Number = R>>(
         &self,
-        consequents: &[Consequents; 3],
+        beside: &Beside<'_, R>,
         error: L,
         change: L,
     ) -> [L; 3] {
+        let consequents = match beside {
+            Beside::Labels(consequents) => consequents,
+            Beside::Network(network) => {
+                return network.increments_in_lanes(self.range, [error, change]);
+            }
+        };
         let (mut error_grades, mut change_grades) = ([error; LABEL_COUNT], [change; LABEL_COUNT]);
         for (grade, set) in error_grades.iter_mut().zip(&self.sets) {
             *grade = R::exp_inside_of(Gaussian::exponent(*set, error));
@@ -426,7 +485,7 @@ impl<R: Real> Supervisor<R> {
         }
         let firing = Firing::new(&error_grades, &change_grades);
         let mut increments = [error; 3];
-        for (increment, consequents) in increments.iter_mut().zip(consequents) {
+        for (increment, consequents) in increments.iter_mut().zip(*consequents) {
             let centre =
                 centroid(self.defuzzifier, &consequents.strengths(&firing), error.same(R::ZERO));
             *increment = centre * error.same(self.spacing);

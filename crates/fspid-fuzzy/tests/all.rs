@@ -11,6 +11,7 @@ mod duals;
 mod gradient;
 mod jets;
 mod membership;
+mod network;
 mod numbers;
 mod quadrature;
 mod recorded_bits;

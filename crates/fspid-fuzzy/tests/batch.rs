@@ -4,7 +4,7 @@ use crate::common;
 
 use common::{RANGES_F32, RANGES_F64, RULES, Random, tables};
 use fspid_fuzzy::{
-    Answers, BatchError, Defuzzifier, Increments, Inference, InferenceError, LABEL_COUNT,
+    Answers, BatchError, Defuzzifier, Increments, Inference, InferenceError, LABEL_COUNT, Network,
     NumberTable, OutOfRange, Supervisor,
 };
 use fspid_numeric::{InstructionSet, Real};
@@ -125,6 +125,29 @@ fn compare_all_numbers<R: Real>(ranges: [R; 4]) {
         }
     }
     assert!(compared > 5_000 && refused > 25, "{compared} compared, {refused} refused");
+}
+
+/// The same with networks.
+fn compare_all_networks<R: Real>(ranges: [R; 4]) {
+    let mut random = Random(43);
+    let (mut compared, mut refused) = (0, 0);
+    for range in ranges {
+        for policy in OutOfRange::ALL {
+            let mut weight = |_| R::from_f64(4.0 * random.unit());
+            let rows = [[R::ZERO; 8]; 6].map(|row| row.map(&mut weight));
+            let network = Network::new(rows).expect("allowed");
+            let supervisor = Supervisor::of_network(&network, range, policy).expect("allowed");
+            let counts = compare_lengths(&supervisor, &mut random);
+            (compared, refused) = (compared + counts.0, refused + counts.1);
+        }
+    }
+    assert!(compared > 5_000 && refused > 25, "{compared} compared, {refused} refused");
+}
+
+#[test]
+fn a_batch_of_a_network_has_the_bits_and_flags_of_single_inferences() {
+    compare_all_networks(RANGES_F64);
+    compare_all_networks(RANGES_F32);
 }
 
 #[test]

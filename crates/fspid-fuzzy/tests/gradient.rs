@@ -312,7 +312,8 @@ fn derivatives_of_the_paper_s_supervisor_agree_with_differences() {
     let table = RuleTable::parse([parts[1], parts[3], parts[5]]).expect("a shipped table");
     let supervisor =
         Supervisor::new(&table, 5.0, fspid_fuzzy::Defuzzifier::Exact, OutOfRange::Clamp);
-    let system = System::new(Parts::from(&supervisor.expect("allowed"))).expect("allowed");
+    let system = System::new(Parts::try_from(&supervisor.expect("allowed")).expect("rules"))
+        .expect("allowed");
     for output in 0..3 {
         let points = [[0.31, -1.27], [-3.3, 0.7], [4.1, 3.9]];
         assert!(compare("supervisor", &system, output, &points) > 240, "{output}");

@@ -57,7 +57,7 @@ fn at_the_centres_of_sets_the_answer_is_the_number_of_the_cell() {
 fn numbers_answer_as_the_same_system_of_takagi_and_sugeno_in_the_general_engine() {
     for policy in OutOfRange::ALL {
         let fixed = supervisor([drawn(4), drawn(5), drawn(6)], policy);
-        let general = System::new(Parts::from(&fixed)).expect("allowed");
+        let general = System::new(Parts::try_from(&fixed).expect("rules")).expect("allowed");
         let mut workspace = general.workspace();
         for n in 0..2000 {
             let reach = if policy == OutOfRange::Error { 3.0 } else { 4.0 };

@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
-use crate::{DT_S, Structure, TunerStructure, controller};
+use crate::{Conclusions, DT_S, Structure, TunerStructure, controller};
 use fspid_core::fuzzy::{Defuzzifier, OutOfRange};
 use fspid_core::{AntiWindup, IntegralForm, Law, Limits, ReferenceModel, SecondInput};
 
@@ -97,15 +97,16 @@ fn tuners() -> Vec<TunerStructure> {
     let mut all = Vec::new();
     for second_input in [SecondInput::Change, SecondInput::Rate, SecondInput::ModelError(model)] {
         for law in [Law::Memoryless, Law::Accumulating { leakage_per_s: 0.1 }] {
-            for (numbers, defuzzifier) in [
-                (false, Defuzzifier::Exact),
-                (false, Defuzzifier::Endpoints(101)),
-                (true, Defuzzifier::Exact),
+            for (conclusions, defuzzifier) in [
+                (Conclusions::Labels, Defuzzifier::Exact),
+                (Conclusions::Labels, Defuzzifier::Endpoints(101)),
+                (Conclusions::Numbers, Defuzzifier::Exact),
+                (Conclusions::Network, Defuzzifier::Exact),
             ] {
                 all.extend(OutOfRange::ALL.map(|out_of_range| TunerStructure {
                     second_input,
                     law,
-                    numbers,
+                    conclusions,
                     defuzzifier,
                     out_of_range,
                 }));

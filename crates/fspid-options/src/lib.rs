@@ -10,7 +10,7 @@ mod systems;
 
 pub use systems::{any_system, inputs_of};
 
-use fspid_core::fuzzy::{Defuzzifier, NumberTable, OutOfRange, Supervisor};
+use fspid_core::fuzzy::{Defuzzifier, Network, NumberTable, OutOfRange, Supervisor};
 use fspid_core::{
     AntiWindup, Change, Controller, ControllerSetting, DeadZone, Derivative, ErrorSign, Fspid,
     GainCoupling, GainLimits, Gains, Guard, InputScale, InputSets, IntegralForm, Law, Limits, Pid,
@@ -33,12 +33,22 @@ pub struct Structure {
     tuner: Option<TunerStructure>,
 }
 
+/// What a supervisor is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Conclusions {
+    /// Rules that conclude labels.
+    Labels,
+    /// Rules that conclude numbers.
+    Numbers,
+    /// A network.
+    Network,
+}
+
 #[derive(Clone, Copy, Debug)]
 struct TunerStructure {
     second_input: SecondInput<f64>,
     law: Law<f64>,
-    /// Whether rules conclude numbers.
-    numbers: bool,
+    conclusions: Conclusions,
     defuzzifier: Defuzzifier,
     out_of_range: OutOfRange,
 }
@@ -61,11 +71,16 @@ pub fn structure() -> impl Strategy<Value = Structure> {
 fn tuner_structure() -> impl Strategy<Value = TunerStructure> {
     let defuzzifier = select(vec![Defuzzifier::Exact, Defuzzifier::Endpoints(101)]);
     let policy = select(OutOfRange::ALL.to_vec());
-    (second_input(), law(), prop::bool::weighted(0.3), defuzzifier, policy).prop_map(
-        |(second_input, law, numbers, defuzzifier, out_of_range)| TunerStructure {
+    let conclusions = prop_oneof![
+        3 => Just(Conclusions::Labels),
+        2 => Just(Conclusions::Numbers),
+        2 => Just(Conclusions::Network),
+    ];
+    (second_input(), law(), conclusions, defuzzifier, policy).prop_map(
+        |(second_input, law, conclusions, defuzzifier, out_of_range)| TunerStructure {
             second_input,
             law,
-            numbers,
+            conclusions,
             defuzzifier,
             out_of_range,
         },
@@ -161,7 +176,10 @@ fn gains() -> impl Strategy<Value = Gains<f64>> {
     (0.1..2.0, sometimes(0.5), sometimes(0.5)).prop_map(|(kp, ki, kd)| Gains { kp, ki, kd })
 }
 
-fn input_sets() -> impl Strategy<Value = InputSets<f64>> {
+fn input_sets(conclusions: Conclusions) -> BoxedStrategy<InputSets<f64>> {
+    if conclusions == Conclusions::Network {
+        return Just(InputSets::EVEN).boxed();
+    }
     let centres = || {
         let drawn = (0.1..0.4, 0.5..0.9);
         option::weighted(
@@ -169,7 +187,7 @@ fn input_sets() -> impl Strategy<Value = InputSets<f64>> {
             drawn.prop_map(|(small, medium)| SetCentres::new(small, medium).expect("in order")),
         )
     };
-    (centres(), centres()).prop_map(|(error, change)| InputSets { error, change })
+    (centres(), centres()).prop_map(|(error, change)| InputSets { error, change }).boxed()
 }
 
 fn gain_limits(nominal: Gains<f64>) -> impl Strategy<Value = GainLimits<f64>> {
@@ -201,7 +219,7 @@ fn settings(
         (0.0..0.1, 0.0..0.3).prop_map(|(error_rad, change_rad)| DeadZone { error_rad, change_rad });
     let kinds =
         (sign, like(structure.second_input, second_input()), change, like(structure.law, law()));
-    let numbers = (input_scale, input_sets(), output_scale, coupling);
+    let numbers = (input_scale, input_sets(structure.conclusions), output_scale, coupling);
     let bounds = (option::of(gain_limits(nominal)), option::weighted(0.3, zone));
     (kinds, numbers, bounds).prop_map(
         |(
@@ -230,19 +248,30 @@ pub fn labels(policy: OutOfRange) -> Supervisor<f64> {
 
 fn supervisor(structure: TunerStructure) -> BoxedStrategy<Supervisor<f64>> {
     let policy = structure.out_of_range;
-    if !structure.numbers {
-        let labels =
-            Supervisor::new(&fspid_core::paper::rules(), 5.0, structure.defuzzifier, policy);
-        return Just(labels.expect("allowed")).boxed();
+    let drawn = prop::array::uniform32(-5.0..5.0);
+    match structure.conclusions {
+        Conclusions::Labels => {
+            let rules = fspid_core::paper::rules();
+            let labels = Supervisor::new(&rules, 5.0, structure.defuzzifier, policy);
+            Just(labels.expect("allowed")).boxed()
+        }
+        Conclusions::Numbers => drawn
+            .prop_map(move |drawn| {
+                let mut next = drawn.into_iter().cycle();
+                let mut grid = || [0; 7].map(|_| [0; 7].map(|_| next.next().unwrap_or(0.0)));
+                let numbers = NumberTable::new([0; 3].map(|_| grid())).expect("finite");
+                Supervisor::of_numbers(&numbers, 5.0, policy).expect("allowed")
+            })
+            .boxed(),
+        Conclusions::Network => drawn
+            .prop_map(move |drawn| {
+                let mut next = drawn.into_iter().chain(drawn.map(|it| 0.37 * it));
+                let rows = [0; 6].map(|_| [0; 8].map(|_| next.next().unwrap_or(0.0)));
+                let network = Network::new(rows).expect("allowed");
+                Supervisor::of_network(&network, 5.0, policy).expect("allowed")
+            })
+            .boxed(),
     }
-    prop::array::uniform32(-5.0..5.0)
-        .prop_map(move |drawn| {
-            let mut next = drawn.into_iter().cycle();
-            let mut grid = || [0; 7].map(|_| [0; 7].map(|_| next.next().unwrap_or(0.0)));
-            let numbers = NumberTable::new([0; 3].map(|_| grid())).expect("finite");
-            Supervisor::of_numbers(&numbers, 5.0, policy).expect("allowed")
-        })
-        .boxed()
 }
 
 /// A controller of that structure, everything else drawn.

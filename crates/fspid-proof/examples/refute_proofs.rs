@@ -1,7 +1,7 @@
 //! Tries to refute what is proved: draws scenarios, certifies them, and flies each proved one over its whole
 //! range of set-points and loads.
 //!
-//! `cargo run --release -p fspid-proof --example refute_proofs -- --count 3000 [--from 0] [--structures | --limits]`
+//! `cargo run --release -p fspid-proof --example refute_proofs -- --count 3000 [--from 0] [--structures | --limits | --networks]`
 //!
 //! With `--structures` the self-tuners are of other structures than the paper's.
 //!
@@ -32,16 +32,17 @@ fn main() -> ExitCode {
         text.and_then(|text| text.parse().ok()).unwrap_or(otherwise)
     };
     let (count, from) = (after("--count", 100), after("--from", 0));
-    let [structures, limits] = ["--structures", "--limits"]
+    let [structures, limits, networks] = ["--structures", "--limits", "--networks"]
         .map(|option| arguments.iter().any(|argument| argument == option));
     let mut answers: BTreeMap<String, u64> = BTreeMap::new();
     let (mut flights, mut held_in_all, mut stepped_in_all, mut contradicted) = (0, 0, 0, 0);
     for seed in from..from + count {
         let dice = &mut Dice::new(seed);
-        let drawn = match (structures, limits) {
-            (true, _) => drawn::structured(dice),
-            (false, true) => drawn::with_limits(dice),
-            (false, false) => drawn::scenario(dice),
+        let drawn = match (structures, limits, networks) {
+            (true, ..) => drawn::structured(dice),
+            (false, true, _) => drawn::with_limits(dice),
+            (false, false, true) => drawn::networked(dice),
+            (false, false, false) => drawn::scenario(dice),
         };
         let answer = flown::answer(&drawn);
         if arguments.iter().any(|argument| argument == "--each") {

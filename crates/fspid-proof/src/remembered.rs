@@ -78,7 +78,7 @@ impl Remembered {
         let has_numbers = supervisor.numbers().is_some();
         let level = match supervisor.out_of_range() {
             OutOfRange::Clamp => true,
-            OutOfRange::Evaluate => has_numbers,
+            OutOfRange::Evaluate => !supervisor.has_labels(),
             // The gains then stay as they are, however far off.
             OutOfRange::Error => false,
         };

@@ -4,7 +4,7 @@
 
 use std::ops::ControlFlow;
 
-use fspid_core::fuzzy::{NumberTable, OutOfRange, Output, Supervisor};
+use fspid_core::fuzzy::{Network, NumberTable, OutOfRange, Output, Supervisor};
 use fspid_core::{
     AntiWindup, Fspid, GainCoupling, Gains, InputScale, Law, Pid, PidConfig, ReferenceModel,
     SecondInput, SelfTuner, SetCentres, TunerSettings,
@@ -165,12 +165,22 @@ fn moved(mut parts: Parts, direction: usize, by: f64) -> Option<Controller> {
     parts.built()
 }
 
-/// All cells of some gains moved, each by another amount.
+/// All cells of some gains moved, or all weights of a network, each by another amount.
 fn with_cells(supervisor: &Supervisor<f64>, direction: usize, by: f64) -> Option<Supervisor<f64>> {
+    let share = |place: usize| ((place * direction) % 7) as f64 / 7.0 - 0.4;
+    if let Some(network) = supervisor.network() {
+        let mut rows = *network.rows();
+        for (place, weight) in rows.iter_mut().flatten().enumerate() {
+            *weight += by * share(place);
+        }
+        let network = Network::new(rows).ok()?;
+        return Supervisor::of_network(&network, supervisor.range(), supervisor.out_of_range())
+            .ok();
+    }
     let table = supervisor.numbers()?;
     let mut grids = Output::ALL.map(|output| *table.grid(output));
     for (place, cell) in grids.iter_mut().flatten().flatten().enumerate() {
-        let share = ((place * direction) % 7) as f64 / 7.0 - 0.4;
+        let share = share(place);
         *cell = (*cell + by * share).clamp(-supervisor.range(), supervisor.range());
     }
     let table = NumberTable::new(grids).ok()?;

@@ -13,7 +13,7 @@ fn triangles(centres: [[f64; 7]; 2]) -> System {
     let texts: Vec<&str> = PRINTED.split("\"\"\"").collect();
     let table = RuleTable::parse([texts[1], texts[3], texts[5]]).expect("the shipped table");
     let supervisor = Supervisor::new(&table, RANGE, Defuzzifier::Exact, OutOfRange::Clamp);
-    let mut parts = Parts::from(&supervisor.expect("allowed"));
+    let mut parts = Parts::try_from(&supervisor.expect("allowed")).expect("rules");
     for (input, centres) in parts.inputs.iter_mut().zip(centres) {
         for (at, term) in input.terms.iter_mut().enumerate() {
             let before = if at == 0 { centres[0] - 1.0 } else { centres[at - 1] };
@@ -66,7 +66,7 @@ fn a_tuner_with_numbers_and_uneven_sets_answers_as_a_system_whose_triangles_are_
     };
     let numbers = NumberTable::new([1, 2, 3].map(grid)).expect("finite");
     let supervisor = Supervisor::of_numbers(&numbers, RANGE, OutOfRange::Clamp).expect("allowed");
-    let mut parts = Parts::from(&supervisor);
+    let mut parts = Parts::try_from(&supervisor).expect("rules");
     let moved = [centres(0.1, 0.5), centres(0.5, 0.9)];
     for (input, centres) in parts.inputs.iter_mut().zip(moved) {
         for (at, term) in input.terms.iter_mut().enumerate() {

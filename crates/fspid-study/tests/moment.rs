@@ -65,6 +65,23 @@ fn a_moment_is_a_row_of_the_flight_and_its_rules_add_up_to_what_moved_the_gains(
 }
 
 #[test]
+fn a_network_has_a_moment_without_rules_and_adds_what_moved_the_gains() {
+    let rows = ["error", "change", "offset", "delta_kp", "delta_ki", "delta_kd"];
+    let rows = rows.map(|row| format!("{row} = [0.5, -1, 0.25, 2, 0.1, 0.3, -0.7, 1]"));
+    let network = format!("network = {{ {} }} #", rows.join(", "));
+    let text = file::starter().replace("table = \"mirrored\" ", &network);
+    let study = file::parse(&text, "network", None, &[]).expect("good");
+    let moment = Moment::of(&study, "FSPID", 0.3).expect("a sample");
+    let fuzzy = moment.fuzzy.as_ref().expect("a supervisor");
+    assert!(fuzzy.rules.is_empty() && fuzzy.increments.kp != 0.0, "{fuzzy:?}");
+    let moved = moment.step.gains.kp - moment.nominal.kp;
+    assert!((moved - fuzzy.increments.kp).abs() < 1e-12, "{moved} {fuzzy:?}");
+    assert_eq!(moment.json()["supervisor"]["rules"], serde_json::json!([]));
+    // No rule is ever the strongest.
+    assert_eq!(visits(&study, "FSPID"), [[0; 7]; 7]);
+}
+
+#[test]
 fn a_time_behind_the_end_and_an_unknown_name_have_no_moment() {
     let study = file::parse(file::starter(), "starter", None, &[]).expect("good");
     assert!(matches!(Moment::of(&study, "nobody", 0.0), Err(NoMoment::NoController(_))));

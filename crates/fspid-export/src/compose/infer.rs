@@ -2,6 +2,7 @@
 
 pub(crate) mod centroid;
 mod labels;
+mod network;
 mod numbers;
 
 use fspid_core::SelfTuner;
@@ -38,19 +39,23 @@ pub(super) fn functions<R: Real>(
             is_outside(),
             vec![Statement::Return(Some(Expression::Byte(OUT_OF_RANGE)))],
         )],
-        OutOfRange::Evaluate if supervisor.numbers().is_none() => Vec::new(),
+        OutOfRange::Evaluate if supervisor.has_labels() => Vec::new(),
         // The ends of the range are at three spacings, where the numbers limit once more.
         OutOfRange::Clamp | OutOfRange::Evaluate if ends_at_three_spacings(supervisor) => {
             Vec::new()
         }
         OutOfRange::Clamp | OutOfRange::Evaluate => vec![Statement::when(is_outside(), clamped())],
     };
-    match supervisor.numbers() {
-        Some(numbers) => {
+    match (supervisor.numbers(), supervisor.network()) {
+        (_, Some(network)) => {
+            functions.push(network::softsign());
+            body.extend(network::body(configuration, network));
+        }
+        (Some(numbers), None) => {
             functions.push(numbers::neighbour());
             body.extend(numbers::body(configuration, supervisor, numbers));
         }
-        None => {
+        (None, None) => {
             functions.push(exponential::function::<R>());
             functions.push(labels::grades(configuration, supervisor));
             functions.push(centroid::function::<R>(supervisor.defuzzifier(), policy)?);

@@ -55,6 +55,11 @@ pub enum Refusal {
         "its rules are evaluated beyond their range, where no table ends; out_of_range = \"clamp\" or \"error\" has one"
     )]
     BeyondRange,
+    /// A surface that no bound of a table is known for.
+    #[error(
+        "its supervisor is a network, for which no bound of a table is proved; --to c, rust, st or lua writes the network itself, which is smaller than a table"
+    )]
+    Network,
     /// A name that is too long for a language.
     #[error(
         "its name is too long for functions of MATLAB; allowed are {most} letters, and --prefix NAME gives another"

@@ -102,6 +102,9 @@ impl<'a> Judge<'a> {
         let weaker = matches!(change, "no magnitude" | "or for and")
             || change == "left out" && text.trim() == "return;";
         Some(match element {
+            _ if turned && self.program.function("softsign").is_some() => {
+                "a network answers both inputs turned as it answers them"
+            }
             _ if self.is_mirrored && (turned || from_centres) => {
                 "every rule concludes what the rule for both inputs turned concludes, and sets lie as far on both sides"
             }
@@ -224,7 +227,7 @@ const ASKED_ABOUT_HALF: usize = 400;
 fn is_below_half<R: Real>(controller: &Controller<R>, precision: Precision) -> bool {
     let Controller::SelfTuning(fspid) = controller else { return false };
     let supervisor = fspid.tuner().supervisor();
-    if supervisor.numbers().is_some() {
+    if !supervisor.has_labels() {
         return false;
     }
     let centres = supervisor.sets().map(|[centre, _]| centre.to_f64());
@@ -265,7 +268,7 @@ fn has_halves<R: Real>(controller: &Controller<R>) -> bool {
     let supervisor = fspid.tuner().supervisor();
     let [[first, sigma], [second, _], ..] = supervisor.sets().map(|it| it.map(|it| it.to_f64()));
     let half_way = 0.5 * (second - first) / sigma;
-    supervisor.numbers().is_none()
+    supervisor.has_labels()
         && supervisor.defuzzifier() == Defuzzifier::Exact
         && supervisor.out_of_range() != OutOfRange::Evaluate
         && (libm::exp(-0.5 * half_way * half_way) - 0.5).abs() < 1e-5

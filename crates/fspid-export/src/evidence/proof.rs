@@ -24,7 +24,7 @@ fn obstacle<R: Real>(subject: &Subject<'_, R>) -> Option<&'static str> {
     };
     let (settings, supervisor) = (fspid.tuner().settings(), fspid.tuner().supervisor());
     let accumulates = fspid.tuner_equations().structure.law == LawKind::Accumulating;
-    let has_labels = supervisor.numbers().is_none();
+    let has_labels = supervisor.has_labels();
     if accumulates && settings.gain_limits.is_none() {
         return Some(
             "gains that accumulate without limits have no bound; gain_limits would give them one",

@@ -40,7 +40,8 @@ pub(super) fn of(table: &SurfaceTable, supervisor: &Supervisor<f64>) -> Found {
         return Found { bounds: [0, 1, 2].map(rounded), boxes: 0 };
     }
     let range = supervisor.range();
-    let Ok(system) = System::new(Parts::from(supervisor)) else {
+    let system = Parts::try_from(supervisor).ok().and_then(|parts| System::new(parts).ok());
+    let Some(system) = system else {
         // Nothing is known but that both lie in the range.
         return Found { bounds: [2.0 * range; 3], boxes: 0 };
     };

@@ -36,7 +36,7 @@ pub struct Deviation {
 pub fn is_sampled(controller: &Controller<f64>) -> bool {
     let Controller::SelfTuning(fspid) = controller else { return false };
     let supervisor = fspid.tuner().supervisor();
-    supervisor.numbers().is_none() && supervisor.defuzzifier() != Defuzzifier::Exact
+    supervisor.has_labels() && supervisor.defuzzifier() != Defuzzifier::Exact
 }
 
 /// A supervisor's three outputs over a grid of its inputs.
@@ -75,7 +75,10 @@ impl SurfaceTable {
             return Err(Refusal::Points { found: points });
         }
         let supervisor = tuner.supervisor();
-        let has_labels = supervisor.numbers().is_none();
+        if supervisor.network().is_some() {
+            return Err(Refusal::Network);
+        }
+        let has_labels = supervisor.has_labels();
         let policy = supervisor.out_of_range();
         if has_labels && policy == OutOfRange::Evaluate {
             return Err(Refusal::BeyondRange);

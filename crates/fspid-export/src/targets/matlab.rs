@@ -62,7 +62,10 @@ fn function(prefix: &str, program: &Program) -> Result<String, Refusal> {
 /// The supervisor as a `.fis`, and what there is to say of it.
 fn system(supervisor: &Supervisor<f64>) -> (Option<String>, Vec<String>) {
     let sampled = as_sampled(supervisor);
-    let parts = Parts::from(sampled.as_ref().unwrap_or(supervisor));
+    let parts = match Parts::try_from(sampled.as_ref().unwrap_or(supervisor)) {
+        Ok(parts) => parts,
+        Err(no_rules) => return (None, vec![format!("no .fis: {no_rules}")]),
+    };
     let written = match fis::write(&parts, WriteOptions { lossy: true }) {
         Ok(written) => written,
         Err(problems) => return (None, vec![format!("no .fis: {problems}")]),

@@ -127,7 +127,7 @@ const AROUND_POWERS: usize = 16;
 /// Where the exponent of a grade is half of the logarithm of 2, and the sum behind it has the most to do.
 fn powers<R: Real>(flight: &mut Flight<'_, R>, fspid: &Fspid<R>, event: Event<R>) {
     let supervisor = fspid.tuner().supervisor();
-    if supervisor.numbers().is_some() {
+    if !supervisor.has_labels() {
         return;
     }
     let [.., [spacing, sigma], _, _] = supervisor.sets().map(|set| set.map(Real::to_f64));

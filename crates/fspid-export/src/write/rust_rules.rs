@@ -1,7 +1,7 @@
 //! The rules of a supervisor in Rust.
 
 use fspid_core::fuzzy::{
-    Defuzzifier, Label, NumberTable, Output, RuleTable, Supervisor, SupervisorNumbers,
+    Defuzzifier, Label, Network, NumberTable, Output, RuleTable, Supervisor, SupervisorNumbers,
 };
 use fspid_numeric::Real;
 
@@ -10,6 +10,9 @@ use super::rust_text::{Number, item, list};
 pub(super) fn supervisor<R: Real>(number: Number, supervisor: &Supervisor<R>) -> String {
     let parts = parts(number, supervisor.parts());
     let (head, rules) = match (supervisor.numbers(), supervisor.table()) {
+        _ if let Some(weights) = supervisor.network() => {
+            ("Supervisor::of_network_unchecked", network(number, weights))
+        }
         (Some(numbers), _) => ("Supervisor::of_numbers_unchecked", number_table(number, numbers)),
         (None, table) => {
             // Rules that conclude no numbers conclude labels.
@@ -73,6 +76,12 @@ fn label_table(table: &RuleTable) -> String {
     };
     let rows = |output| Label::ALL.iter().map(|error| row(output, *error)).collect();
     format!("RuleTable::new({})", grids(rows, "Grid::new(", ")"))
+}
+
+fn network<R: Real>(number: Number, network: &Network<R>) -> String {
+    let rows: Vec<String> =
+        network.rows().iter().map(|row| format!("    {},\n", reals(number, row))).collect();
+    format!("Network::new_unchecked([\n{}])", rows.concat())
 }
 
 fn number_table<R: Real>(number: Number, table: &NumberTable<R>) -> String {

@@ -90,6 +90,7 @@ pub(super) fn used_names(text: &str, module: &str) -> Vec<&'static str> {
         "fuzzy" => &[
             "Defuzzifier",
             "Grid",
+            "Network",
             "NumberTable",
             "OutOfRange",
             "RuleTable",

@@ -19,7 +19,7 @@ pub(crate) fn paper(sampling: Sampling) -> Parts {
     let table = RuleTable::parse([grids[1], grids[3], grids[5]]).unwrap();
     let supervisor =
         Supervisor::new(&table, 5.0_f64, Defuzzifier::Exact, OutOfRange::Evaluate).unwrap();
-    let mut parts = Parts::from(&supervisor);
+    let mut parts = Parts::try_from(&supervisor).expect("rules");
     for output in &mut parts.outputs {
         output.defuzzifier = output.defuzzifier.with_sampling(sampling);
     }

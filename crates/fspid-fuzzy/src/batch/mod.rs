@@ -178,7 +178,7 @@ impl<R: Real> Batch<'_, R> {
         &mut self,
         simd: S,
     ) -> Result<(), BatchError> {
-        let Some(consequents) = self.supervisor.consequents() else {
+        let Some(beside) = self.supervisor.beside() else {
             return self.answer_one_by_one();
         };
         let high = V::simd_from(simd, self.supervisor.range());
@@ -192,7 +192,7 @@ impl<R: Real> Batch<'_, R> {
 
             let error = Vector::new(error.max(low).min(high));
             let change = Vector::new(change.max(low).min(high));
-            let [kp, ki, kd] = self.supervisor.increments_in_lanes(consequents, error, change);
+            let [kp, ki, kd] = self.supervisor.increments_in_lanes(&beside, error, change);
             store(kp.0, &mut self.answers.kp[places.clone()]);
             store(ki.0, &mut self.answers.ki[places.clone()]);
             store(kd.0, &mut self.answers.kd[places.clone()]);

@@ -41,5 +41,6 @@ pub use parts::{
     Membership, Output, OutputTerm, Parts, Rule, RuleBlock, Statement, Term, Universe, Variable,
 };
 pub(crate) use program::{Program, STACK, Step};
+pub use supervisor::NoRules;
 pub use trace::{Contribution, Firing};
 pub use workspace::Workspace;

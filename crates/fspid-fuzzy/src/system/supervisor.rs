@@ -1,8 +1,9 @@
-//! The paper's supervisor written out as a general system.
+//! The supervisor of rules written out as a general system.
 
 use alloc::string::{String, ToString};
 use alloc::vec;
 use alloc::vec::Vec;
+use core::fmt;
 
 use super::defuzzifier::{Defuzzifier, SetReading};
 use super::norms::{SNorm, TNorm};
@@ -17,10 +18,27 @@ use crate::number_table::NumberGrid;
 use crate::rule_table;
 use crate::supervisor::Supervisor;
 
-impl From<&Supervisor<f64>> for Parts {
+/// Why a supervisor is no general system: it is a network.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NoRules;
+
+impl fmt::Display for NoRules {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("the supervisor is a network: it has no sets and no rules")
+    }
+}
+
+impl core::error::Error for NoRules {}
+
+impl TryFrom<&Supervisor<f64>> for Parts {
+    type Error = NoRules;
+
     /// Inputs `error` and `change`, outputs `delta_kp`, `delta_ki`, `delta_kd`; answers the same bits, and
     /// where rules conclude numbers the same but for rounding.
-    fn from(supervisor: &Supervisor<f64>) -> Self {
+    fn try_from(supervisor: &Supervisor<f64>) -> Result<Self, NoRules> {
+        if supervisor.network().is_some() {
+            return Err(NoRules);
+        }
         let range = supervisor.range();
         let universe = Some(Universe { lower: -range, upper: range });
         let numbers = supervisor.numbers();
@@ -53,7 +71,7 @@ impl From<&Supervisor<f64>> for Parts {
             None => TNorm::default(),
             Some(_) => TNormKind::AlgebraicProduct.into(),
         };
-        Self {
+        Ok(Self {
             name: "supervisor".to_string(),
             description: "Fuzzy supervisor of a self-tuning PID controller".to_string(),
             inputs: ["error", "change"].map(input).into(),
@@ -68,7 +86,7 @@ impl From<&Supervisor<f64>> for Parts {
                 activation: Activation::General,
                 rules: rules(supervisor),
             }],
-        }
+        })
     }
 }
 

@@ -17,7 +17,7 @@ fn parts(text: &str, rule: Defuzzifier) -> Parts {
     let grids: Vec<&str> = text.split("\"\"\"").collect();
     let table = RuleTable::parse([grids[1], grids[3], grids[5]]).expect("a shipped table");
     let supervisor = Supervisor::new(&table, 5.0, rule, OutOfRange::Clamp).expect("allowed");
-    Parts::from(&supervisor)
+    Parts::try_from(&supervisor).expect("rules")
 }
 
 fn system(text: &str) -> System {

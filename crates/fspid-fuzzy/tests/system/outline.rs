@@ -17,7 +17,8 @@ fn paper(table: &str, range: f64) -> Parts {
     let grids: Vec<&str> = table.split("\"\"\"").collect();
     let table = RuleTable::parse([grids[1], grids[3], grids[5]]).expect("a shipped table");
     let rule = fspid_fuzzy::Defuzzifier::Exact;
-    Parts::from(&Supervisor::new(&table, range, rule, OutOfRange::Evaluate).expect("allowed"))
+    Parts::try_from(&Supervisor::new(&table, range, rule, OutOfRange::Evaluate).expect("allowed"))
+        .expect("rules")
 }
 
 #[test]

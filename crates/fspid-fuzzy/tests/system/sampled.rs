@@ -140,7 +140,7 @@ fn the_general_path_has_the_reference_answers_in_every_mode() {
                 if number(1) != range {
                     range = number(1);
                     let supervisor = Supervisor::new(&grids, range, rule, OutOfRange::Evaluate);
-                    let partition = Parts::from(&supervisor.expect("allowed"));
+                    let partition = Parts::try_from(&supervisor.expect("allowed")).expect("rules");
                     both = Some([system(partition.clone()), system(general(partition))]);
                 }
                 for system in both.iter().flatten() {

@@ -27,7 +27,7 @@ fn the_paper_s_supervisor_answers_the_same_bits_as_a_general_system() {
     ];
     for (range, rule) in [5.0, 40.0, 0.3].into_iter().flat_map(|r| rules.map(|d| (r, d))) {
         let fixed = supervisor(range, rule);
-        let general = System::new(Parts::from(&fixed)).expect("allowed");
+        let general = System::new(Parts::try_from(&fixed).expect("rules")).expect("allowed");
         let mut workspace = general.workspace();
         for n in 0..400 {
             let error = range * libm::sin(f64::from(n) * 0.37) * 1.2;

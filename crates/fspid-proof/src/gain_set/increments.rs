@@ -6,6 +6,7 @@ use fspid_fuzzy::audit::Reach;
 use fspid_fuzzy::system::{Parts, System};
 use fspid_numeric::scalar::Interval;
 
+use super::network::Net;
 use super::numbers::Numbers;
 use super::{EVERYWHERE, GainSet, NoBound, law};
 use crate::solve::never;
@@ -75,7 +76,8 @@ impl IncrementMap {
         divisions: usize,
         stops: fn() -> bool,
     ) -> Result<Option<Self>, NoBound> {
-        let system = System::new(Parts::from(tuner.supervisor())).ok();
+        let parts = Parts::try_from(tuner.supervisor()).ok();
+        let system = parts.and_then(|parts| System::new(parts).ok());
         let mut enclosure = Enclosure::new(tuner, system.as_ref());
         // The origin is in every dead zone, also in one without width.
         let rest = match tuner.settings().dead_zone {
@@ -147,7 +149,7 @@ impl Side {
 
 /// True where answers beyond the range are those at its border.
 fn is_level(supervisor: &Supervisor<f64>) -> bool {
-    supervisor.out_of_range() == OutOfRange::Clamp || supervisor.numbers().is_some()
+    supervisor.out_of_range() == OutOfRange::Clamp || !supervisor.has_labels()
 }
 
 /// Sides of the cells along an input: of even widths as the even sets see them.
@@ -234,6 +236,8 @@ pub(super) struct Enclosure<'a> {
     reach: Option<Reach<'a>>,
     /// Rules that conclude numbers.
     numbers: Option<Numbers<'a>>,
+    /// A network in place of rules.
+    net: Option<Net<'a>>,
     /// Where every answer of the supervisor lies.
     universe: Interval,
     slack: Interval,
@@ -246,8 +250,10 @@ impl<'a> Enclosure<'a> {
         let supervisor = tuner.supervisor();
         let (range, rule) = (supervisor.range(), supervisor.defuzzifier());
         let samples = samples(rule);
-        let slack = range * (ROUNDING + ROUNDING_PER_SAMPLE * f64::from(samples));
-        let has_labels = supervisor.numbers().is_none();
+        let net = supervisor.network().map(|network| Net { network, range });
+        let of_rules = range * (ROUNDING + ROUNDING_PER_SAMPLE * f64::from(samples));
+        let slack = net.map_or(of_rules, |net| net.slack());
+        let has_labels = supervisor.has_labels();
         let reach = system.filter(|_| has_labels && is_dense(rule)).map(Reach::new);
         let slack = Interval::between(-slack, slack);
         let half = if has_labels { furthest(range, rule) } else { range };
@@ -260,7 +266,7 @@ impl<'a> Enclosure<'a> {
                 .map(f64::abs)
         });
         let numbers = supervisor.numbers().map(|table| Numbers { table, range });
-        Self { reach, numbers, universe, slack, zone }
+        Self { reach, numbers, net, universe, slack, zone }
     }
 
     fn cell(&mut self, sides: [Side; 2]) -> IncrementCell {
@@ -278,7 +284,8 @@ impl<'a> Enclosure<'a> {
         let asked = sides.map(|side| side.asked);
         let answers = self.reach.as_mut().map(|reach| reach.over(&asked));
         let known: Option<[Interval; 3]> = answers.and_then(|answers| answers.try_into().ok());
-        let known = known.or_else(|| self.numbers.as_ref().map(|numbers| numbers.over(asked)));
+        let known = known.or_else(|| self.numbers.map(|numbers| numbers.over(asked)));
+        let known = known.or_else(|| self.net.map(|net| net.over(asked)));
         let (slack, universe) = (self.slack, self.universe);
         let delta = known.map_or([universe; 3], |known| {
             known.map(|delta| (delta + slack).intersection(universe).unwrap_or(universe))

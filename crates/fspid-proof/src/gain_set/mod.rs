@@ -23,6 +23,7 @@ mod held;
 mod hull;
 mod increments;
 mod law;
+mod network;
 mod numbers;
 mod over;
 mod produced;

@@ -7,6 +7,7 @@ use fspid_fuzzy::system::{Parts, System};
 use fspid_numeric::scalar::Interval;
 
 use super::increments::is_dense;
+use super::network::Net;
 use super::numbers::Numbers;
 
 /// Bounds may be so far apart. Increments and inputs are in the same unit, and slopes of some 1 to 3.
@@ -92,13 +93,27 @@ impl IncrementSlopes {
             let slopes = moved(Numbers { table, range }.slopes(), sets);
             return Ok(Self { slopes, off: OFF * range });
         }
+        if let Some(network) = supervisor.network() {
+            let net = Net { network, range };
+            let mut slopes = net.slopes(within);
+            for slopes in &mut slopes {
+                for (slope, side) in slopes.iter_mut().zip(&within) {
+                    // Beyond the range the increments are level.
+                    if !inside(side) {
+                        *slope = slope.hull(Interval::ZERO);
+                    }
+                }
+            }
+            return Ok(Self { slopes, off: 2.0 * net.slack() });
+        }
         if !is_dense(supervisor.defuzzifier()) {
             return Err(NoSlopes::Unbounded);
         }
         let even = |side: f64, centres: Option<SetCentres<f64>>| {
             centres.map_or(side, |centres| (centres.warp(side, range) * (1.0 + MOVED)).min(range))
         };
-        let system = System::new(Parts::from(supervisor)).map_err(|_| NoSlopes::Unbounded)?;
+        let parts = Parts::try_from(supervisor).map_err(|_| NoSlopes::Unbounded)?;
+        let system = System::new(parts).map_err(|_| NoSlopes::Unbounded)?;
         let sides = [even(within[0].min(range), sets[0]), even(within[1].min(range), sets[1])];
         let domain = sides.map(|side| if inside(&side) { [-side, side] } else { [-range, range] });
         let options = SurfaceOptions {

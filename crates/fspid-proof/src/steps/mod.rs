@@ -102,7 +102,7 @@ pub(crate) fn not_covered(description: &LoopDescription) -> Option<&'static str>
         let tuner = fspid.tuner();
         if !tuner.is_plain() {
             return Some(
-                "a supervisor whose rules conclude numbers, that sees something else than error and change, through sets that are not even, or whose gains something follows is not flown in sets",
+                "a supervisor that is a network or whose rules conclude numbers, that sees something else than error and change, through sets that are not even, or whose gains something follows is not flown in sets",
             );
         }
         // What they reach is no box, and the middle of a box need be none of them.

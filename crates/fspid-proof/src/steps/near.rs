@@ -15,7 +15,7 @@ use crate::recheck::input_rows;
 /// The rules of a self-tuner, made ready to be enclosed.
 pub(super) fn system(description: &LoopDescription) -> Option<System> {
     let Controller::SelfTuning(fspid) = &description.controller else { return None };
-    System::new(fspid_fuzzy::system::Parts::from(fspid.tuner().supervisor())).ok()
+    System::new(fspid_fuzzy::system::Parts::try_from(fspid.tuner().supervisor()).ok()?).ok()
 }
 
 /// Corners of all gains that the controller can have in the ellipsoid $z^T P z \le$ `level` around rest.

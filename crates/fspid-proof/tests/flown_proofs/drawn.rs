@@ -5,7 +5,7 @@ use fspid_core::{
     GainLimits, Gains, Guard, InputScale, InputSets, IntegralForm, Law, Limits, Pid, PidConfig,
     ReferenceModel, SecondInput, SelfTuner, SetCentres, SetpointWeights, TunerSettings,
 };
-use fspid_fuzzy::{Defuzzifier, NumberTable, OutOfRange, RuleTable, Supervisor};
+use fspid_fuzzy::{Defuzzifier, Network, NumberTable, OutOfRange, RuleTable, Supervisor};
 use fspid_sim::actuator::{Actuator, Lag};
 use fspid_sim::sensor::{PITCH, Sensor, SensorModel};
 use fspid_sim::signal::{Disturbance, Entry, Profile, Shape};
@@ -72,6 +72,25 @@ pub(crate) fn scenario(dice: &mut Dice) -> Scenario {
 /// The same with a self-tuner of another structure than the paper's: what it sees, how its sets lie, what its rules
 /// conclude, what follows its gains, and more often than not a law that remembers.
 pub(crate) fn structured(dice: &mut Dice) -> Scenario {
+    structured_by(dice, |dice, plain, settings| {
+        let numbers = dice.happens(0.5).then(|| numbers(dice, 5.0, plain.out_of_range()));
+        (numbers.unwrap_or(*plain), settings)
+    })
+}
+
+/// The same with a network in the place of rules.
+pub(crate) fn networked(dice: &mut Dice) -> Scenario {
+    structured_by(dice, |dice, plain, settings| {
+        let settings = TunerSettings { input_sets: InputSets::EVEN, ..settings };
+        (network(dice, 5.0, plain.out_of_range()), settings)
+    })
+}
+
+/// The supervisor in the place of a plain one, and the settings around it.
+type Another =
+    fn(&mut Dice, &Supervisor<f64>, TunerSettings<f64>) -> (Supervisor<f64>, TunerSettings<f64>);
+
+fn structured_by(dice: &mut Dice, another_of: Another) -> Scenario {
     of_controllers(dice, |dice, config, size| {
         let weights =
             SetpointWeights { proportional: dice.between(0.2, 1.2), ..config.setpoint_weights };
@@ -80,13 +99,9 @@ pub(crate) fn structured(dice: &mut Dice) -> Scenario {
         let Controller::SelfTuning(fspid) = controller(dice, config, size) else {
             return controller(dice, config, size);
         };
-        let (plain, range) = (fspid.tuner(), 5.0);
+        let plain = fspid.tuner();
         let settings = another(dice, *plain.settings(), plain.nominal());
-        let supervisor = if dice.happens(0.5) {
-            numbers(dice, range, plain.supervisor().out_of_range())
-        } else {
-            *plain.supervisor()
-        };
+        let (supervisor, settings) = another_of(dice, plain.supervisor(), settings);
         let tuner = SelfTuner::new(plain.nominal(), supervisor, settings).expect("allowed");
         Controller::SelfTuning(Fspid::new(tuner, config).expect("allowed"))
     })
@@ -146,6 +161,14 @@ fn numbers(dice: &mut Dice, range: f64, policy: OutOfRange) -> Supervisor<f64> {
     };
     let table = NumberTable::new([grid(), grid(), grid()]).expect("finite");
     Supervisor::of_numbers(&table, range, policy).expect("allowed")
+}
+
+fn network(dice: &mut Dice, range: f64, policy: OutOfRange) -> Supervisor<f64> {
+    let steep = dice.sized(0.3, 6.0);
+    let rows = [steep, steep, 2.0, 1.0, 1.0, 1.0];
+    let rows = rows.map(|size| [0; 8].map(|_| dice.between(-size, size)));
+    let network = Network::new(rows).expect("allowed");
+    Supervisor::of_network(&network, range, policy).expect("allowed")
 }
 
 fn of_controllers(

@@ -20,6 +20,14 @@ fn every_flight_of_a_proved_loop_of_another_structure_settles_over_its_whole_ran
     settle(&STRUCTURES, drawn::structured);
 }
 
+/// With these numbers networks are proved quickly, with gains that remember and over a range as well.
+const NETWORKS: [u64; 4] = [4, 6, 7, 10];
+
+#[test]
+fn every_flight_of_a_proved_loop_with_a_network_settles_over_its_whole_range() {
+    settle(&NETWORKS, drawn::networked);
+}
+
 #[test]
 fn every_flight_of_a_proved_loop_settles_over_its_whole_range() {
     settle(&SCENARIOS, drawn::scenario);

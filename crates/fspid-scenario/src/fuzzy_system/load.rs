@@ -113,7 +113,8 @@ fn shipped(name: &str, options: Options<'_>) -> Result<Loaded, LoadError> {
         };
         question.supervisor().map_err(LoadError::Refused)?
     };
-    let mut parts = Parts::from(&supervisor);
+    let mut parts = Parts::try_from(&supervisor)
+        .map_err(|error| LoadError::Refused(Refused::one(error.to_string())))?;
     parts.name = name.to_owned();
     let system = built(parts)?;
     Ok(Loaded { system: changed(system, options)?, notes: Vec::new() })

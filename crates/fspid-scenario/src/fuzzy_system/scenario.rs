@@ -43,7 +43,8 @@ pub fn of_study(study: &Study, shown: &str, name: Option<&str>) -> Result<Loaded
         };
         return Err(LoadError::Refused(Refused::one(told)));
     };
-    let mut parts = Parts::from(tuner.supervisor());
+    let mut parts = Parts::try_from(tuner.supervisor())
+        .map_err(|error| LoadError::Refused(Refused::one(format!("{name}: {error}"))))?;
     parts.name = (*name).to_owned();
     let mut notes = Vec::new();
     if !tuner.settings().input_sets.are_even() {

@@ -123,11 +123,26 @@ const GUIDED: [[&str; 5]; 3] = [
     ],
 ];
 
+/// The supervisor that becomes a network, and the network.
+const NETWORK: [&str; 2] = [
+    "supervisor.table = \"printed\"\nsupervisor.range = 5.0\nsupervisor.second_input",
+    "supervisor.network.error = [1.5, -2.0, 0.5, 3.0, 1.0, -0.5, 2.5, 0.25]
+supervisor.network.change = [0.5, 1.0, -1.5, 0.25, 2.0, 1.25, -0.75, 3.0]
+supervisor.network.offset = [0.5, -0.5, 1.0, -1.0, 1.5, -1.5, 2.0, 0.25]
+supervisor.network.delta_kp = [0.2, -0.1, 0.3, 0.15, -0.25, 0.05, 0.1, -0.2]
+supervisor.network.delta_ki = [0.1, 0.2, -0.3, 0.25, 0.15, -0.05, 0.3, 0.35]
+supervisor.network.delta_kd = [-0.2, 0.1, 0.4, -0.15, 0.25, 0.45, -0.1, 0.05]
+supervisor.range = 5.0\nsupervisor.second_input",
+];
+
 /// The files with every key, once for each set-point, and once for each speed, altitude and wind.
 pub(crate) fn texts() -> Vec<String> {
     let whole = text("crates/fspid-scenario/tests/scenarios/every-key.toml");
     let flying = text("crates/fspid-scenario/tests/scenarios/every-key-aircraft.toml");
-    let commands = SETPOINTS.map(|setpoint| whole.replace(SETPOINTS[0], setpoint));
+    let commands = SETPOINTS.map(|setpoint| {
+        let text = whole.replace(SETPOINTS[0], setpoint);
+        if setpoint == SETPOINTS[1] { text.replace(NETWORK[0], NETWORK[1]) } else { text }
+    });
     let varied = |text: String, of: [&str; 4]| {
         let parts = VARIATIONS[0].into_iter().zip(of);
         parts.fold(text, |text, (from, to)| text.replace(from, to))
@@ -153,7 +168,8 @@ pub(crate) fn texts() -> Vec<String> {
     let guided = text("crates/fspid-scenario/tests/scenarios/every-key-autopilot.toml");
     let guided = GUIDED.map(|units| {
         let parts = GUIDED[0].into_iter().zip(units);
-        parts.fold(guided.clone(), |text, (from, to)| text.replace(from, to))
+        let text = parts.fold(guided.clone(), |text, (from, to)| text.replace(from, to));
+        if units == GUIDED[1] { text.replace(NETWORK[0], NETWORK[1]) } else { text }
     });
     commands.into_iter().chain(flights).chain(simulated).chain(guided).collect()
 }

@@ -9,6 +9,7 @@ mod contests;
 mod dispersions;
 mod marks;
 mod messages;
+mod network;
 mod numbers;
 mod overrides;
 mod reading;

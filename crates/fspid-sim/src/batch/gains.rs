@@ -21,7 +21,7 @@ fn parked() -> TunerEquations<f64> {
 #[derive(Clone, Debug)]
 pub(super) struct SelfTuners<const W: usize> {
     supervisor: Supervisor<f64>,
-    /// Where rules conclude numbers, each lane has its own: candidates of a search fly side by side.
+    /// Where rules conclude numbers, and of networks, each lane has its own: candidates of a search fly side by side.
     own: Option<Box<[Supervisor<f64>; W]>>,
     instructions: InstructionSet,
     structure: TunerStructure,
@@ -42,7 +42,7 @@ impl<const W: usize> SelfTuners<W> {
         let TunerEquations { numbers, gains, .. } = parked();
         Self {
             supervisor,
-            own: supervisor.numbers().map(|_| Box::new([supervisor; W])),
+            own: (!supervisor.has_labels()).then(|| Box::new([supervisor; W])),
             instructions,
             structure: fspid.tuner_equations().structure,
             numbers: numbers.map(|&number| [number; W]),
@@ -63,8 +63,9 @@ impl<const W: usize> SelfTuners<W> {
             return Some("what its supervisor sees");
         }
         let (one, other) = (&self.supervisor, fspid.tuner().supervisor());
-        let only_numbers_differ = one.numbers().is_some()
-            && other.numbers().is_some()
+        let are_alike = one.numbers().is_some() && other.numbers().is_some()
+            || one.network().is_some() && other.network().is_some();
+        let only_numbers_differ = are_alike
             && one.range().to_bits() == other.range().to_bits()
             && one.out_of_range() == other.out_of_range();
         (!only_numbers_differ && one != other).then_some("its supervisor")
@@ -175,7 +176,7 @@ impl<const W: usize> SelfTuners<W> {
     #[inline(always)]
     fn inferred(&self, error: &Lanes<W>, change: &Lanes<W>, plain: &mut Mask<W>) -> [Lanes<W>; 3] {
         if let Some(own) = &self.own {
-            return interpolated(own, error, change, plain);
+            return one_by_one(own, error, change, plain);
         }
         let [mut kp, mut ki, mut kd] = [[0.0; W]; 3];
         let (mut clamped, mut underflowed) = ([false; W], [false; W]);
@@ -229,9 +230,9 @@ impl<const W: usize> SelfTuners<W> {
     }
 }
 
-/// What the numbers of each lane answer.
+/// What the supervisor of each lane answers.
 #[inline(never)]
-fn interpolated<const W: usize>(
+fn one_by_one<const W: usize>(
     supervisors: &[Supervisor<f64>; W],
     error: &Lanes<W>,
     change: &Lanes<W>,

@@ -8,8 +8,10 @@ use fspid_core::fuzzy::{OutOfRange, Supervisor};
 use fspid_core::{Fspid, Gains, IntegralForm, Sample};
 use fspid_numeric::Scalar;
 
+use super::network::FlownNetwork;
 use super::numbers::{
-    CELLS, CELLS_AT, GAIN, GAINS_AT, NUMBERS, PID, SETS_AT, TUNER, TUNER_AT, numbers, sets,
+    CELLS, CELLS_AT, GAIN, GAINS_AT, NUMBERS, PID, SETS_AT, TUNER, TUNER_AT, WEIGHTS_AT, numbers,
+    sets,
 };
 use super::program::{Program, Recorded};
 use crate::batch::Refusal;
@@ -225,8 +227,19 @@ impl Rules<'_> {
         (error_rad.abs() <= self.zone[0]) & (second_rad.abs() <= self.zone[1])
     }
 
+    /// The network with these numbers of a controller; nothing where there are rules.
+    fn network<'n>(&self, numbers: &'n [f64]) -> Option<FlownNetwork<'n>> {
+        let supervisor = self.supervisor();
+        let weights = &numbers[WEIGHTS_AT..];
+        supervisor.network().map(|_| FlownNetwork { weights, range: supervisor.range() })
+    }
+
     /// What the rules add to each gain, before any factor.
-    fn deltas(&self, seen: [f64; 2], cells: &[f64]) -> [f64; 3] {
+    fn deltas(&self, seen: [f64; 2], numbers: &[f64]) -> [f64; 3] {
+        if let Some(network) = self.network(numbers) {
+            return network.deltas(seen);
+        }
+        let cells = &numbers[CELLS_AT..SETS_AT];
         let [row, column] = self.places(seen);
         [0, 1, 2].map(|gain| {
             let cell =
@@ -236,7 +249,8 @@ impl Rules<'_> {
         })
     }
 
-    /// Hands what the increments are worth to what is seen, to the cells and to the places of the sets; answers the first.
+    /// Hands what the increments are worth to what is seen, to the cells and to the places of the sets, or to the weights;
+    /// answers the first.
     fn back(
         &self,
         seen: [f64; 2],
@@ -244,6 +258,9 @@ impl Rules<'_> {
         numbers: &[f64],
         gradient: &mut [f64],
     ) -> [f64; 2] {
+        if let Some(network) = self.network(numbers) {
+            return network.back(seen, worth, &mut gradient[WEIGHTS_AT..]);
+        }
         let [row, column] = self.places(seen);
         let cells = &numbers[CELLS_AT..SETS_AT];
         let (mut by_row, mut by_column) = (0.0, 0.0);
@@ -278,7 +295,7 @@ pub(super) struct Laws<'a, const W: usize> {
     behind_worth: Vec<[f64; W]>,
     rules: Vec<Rules<'a>>,
     numbers: Vec<[f64; NUMBERS]>,
-    /// Of cells and places of sets; the others are what the programs have summed up.
+    /// Of cells, places of sets and weights; the others are what the programs have summed up.
     gradients: Vec<[f64; NUMBERS]>,
 }
 
@@ -384,8 +401,7 @@ impl<'a, const W: usize> Laws<'a, W> {
             for (lane, rules) in self.rules.iter().enumerate() {
                 let [error, second, error_rad, second_rad] = parts.map(|it| it[lane]);
                 if !rules.is_silent([error_rad, second_rad]) {
-                    let cells = &self.numbers[lane][CELLS_AT..SETS_AT];
-                    let of_lane = rules.deltas([error, second], cells);
+                    let of_lane = rules.deltas([error, second], &self.numbers[lane]);
                     for (delta, of_lane) in deltas.iter_mut().zip(of_lane) {
                         delta[lane] = of_lane;
                     }
@@ -469,7 +485,7 @@ impl<'a, const W: usize> Laws<'a, W> {
 /// The rules of a self-tuner that can be differentiated.
 fn rules_of(flight: usize, fspid: &Fspid<f64>) -> Result<Rules<'_>, Refusal> {
     let supervisor = fspid.tuner().supervisor();
-    if supervisor.numbers().is_none() {
+    if supervisor.has_labels() {
         return Err(Refusal::Part { flight, what: "rules that conclude labels" });
     }
     if supervisor.out_of_range() == OutOfRange::Error {

@@ -31,6 +31,7 @@
 
 mod flight;
 mod law;
+mod network;
 mod numbers;
 mod plant;
 mod price;

@@ -1,9 +1,10 @@
 //! The numbers of a controller in one row: what a gradient has an entry for.
 
 use fspid_core::equations::{GainNumbers, PidNumbers, TunerEquations, TunerNumbers};
-use fspid_core::fuzzy::Output;
+use fspid_core::fuzzy::{Network, Output};
 use fspid_core::{Fspid, Gains, SetCentres};
 
+use super::network::WEIGHTS;
 use crate::controller::Controller;
 
 /// Numbers of [`PidNumbers`], [`TunerNumbers`] and of one [`GainNumbers`].
@@ -15,20 +16,21 @@ pub(super) const CELLS: usize = 49;
 /// Centres of the small and the medium sets of both inputs.
 pub(super) const SETS: usize = 4;
 /// Numbers of a controller.
-pub const NUMBERS: usize = PID + TUNER + 3 * GAIN + 3 * CELLS + SETS;
+pub const NUMBERS: usize = PID + TUNER + 3 * GAIN + 3 * CELLS + SETS + WEIGHTS;
 
 /// Where the parts begin.
 pub(super) const TUNER_AT: usize = PID;
 pub(super) const GAINS_AT: usize = TUNER_AT + TUNER;
 pub(super) const CELLS_AT: usize = GAINS_AT + 3 * GAIN;
 pub(super) const SETS_AT: usize = CELLS_AT + 3 * CELLS;
+pub(super) const WEIGHTS_AT: usize = SETS_AT + SETS;
 
 /// Places of the nominal `kp` and `kd`, from which what moves with the gains is counted: they are those of the gains.
 pub(super) const NOMINAL: [(usize, usize); 2] = [(6, GAINS_AT), (7, GAINS_AT + 2 * GAIN)];
 
 /// The numbers of a controller, in the order of a gradient: those of [`PidNumbers`], of [`TunerNumbers`], of
-/// [`GainNumbers`] for kp, ki and kd, what the rules conclude row by row for the same, and where the small and the medium
-/// sets of the error and of what stands beside it lie. Fixed gains stand in the place of the nominal ones. Numbers that a
+/// [`GainNumbers`] for kp, ki and kd, what the rules conclude row by row for the same, where the small and the medium
+/// sets of the error and of what stands beside it lie, and the weights of a network row by row. Fixed gains stand in the place of the nominal ones. Numbers that a
 /// controller does not have are as if they did nothing.
 #[must_use]
 pub fn numbers(controller: &Controller) -> [f64; NUMBERS] {
@@ -60,6 +62,9 @@ pub fn numbers(controller: &Controller) -> [f64; NUMBERS] {
                 (0..CELLS).for_each(|cell| put(cells.map_or(0.0, |cells| cells[cell])));
             }
             sets(fspid).into_iter().flatten().for_each(&mut put);
+            let network = fspid.tuner().supervisor().network();
+            let weights = network.map(|network| network.rows().as_flattened());
+            (0..WEIGHTS).for_each(|weight| put(weights.map_or(0.0, |weights| weights[weight])));
         }
     }
     all
@@ -101,5 +106,8 @@ pub fn names(controller: &Controller) -> Vec<String> {
             .iter()
             .flat_map(|input| ["small", "medium"].map(|set| format!("{set} sets of the {input}"))),
     );
+    names.extend(Network::<f64>::ROWS.iter().flat_map(|row| {
+        (1..=WEIGHTS / Network::<f64>::ROWS.len()).map(move |unit| format!("{row} of unit {unit}"))
+    }));
     names
 }

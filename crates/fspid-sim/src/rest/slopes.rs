@@ -59,7 +59,13 @@ impl Holding<'_> {
         if zone.is_some_and(|zone| error_rad.abs() < zone.error_rad && zone.change_rad > 0.0) {
             return [Slopes::default(); DIRECTIONS];
         }
-        let away = AROUND * self.fspid.tuner().supervisor().range();
+        let supervisor = self.fspid.tuner().supervisor();
+        let away = AROUND * supervisor.range();
+        let is_inside = centre.iter().all(|seen| seen.abs() + away < supervisor.range());
+        if supervisor.network().is_some() && is_inside {
+            // A network has no kinks but at the ends of its range, and at rest its slopes are zero.
+            return [self.slopes_at(centre); DIRECTIONS];
+        }
         core::array::from_fn(|index| {
             let turns = (index as f64 + 0.5) / DIRECTIONS as f64;
             let (sine, cosine) = sin_cos(2.0 * PI * turns);

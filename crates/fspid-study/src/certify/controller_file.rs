@@ -6,7 +6,8 @@ use fspid_core::{
     ReferenceModel, SecondInput, SelfTuner, SetCentres, SetpointWeights, TunerSettings,
 };
 use fspid_fuzzy::{
-    Defuzzifier, Label, NumberGrid, NumberTable, OutOfRange, Output, RuleTable, Supervisor,
+    Defuzzifier, Label, Network, NetworkRow, NumberGrid, NumberTable, OutOfRange, Output,
+    RuleTable, Supervisor,
 };
 use fspid_sim::Controller;
 use serde::{Deserialize, Serialize};
@@ -79,11 +80,14 @@ struct TunerFile {
     range: f64,
     defuzzifier: String,
     out_of_range: String,
-    /// None where rules conclude numbers.
+    /// None where rules conclude numbers, and for a network.
     rules: Option<RulesFile>,
     /// What the rules conclude in place of labels.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     numbers: Option<NumbersFile>,
+    /// What stands in the place of rules.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    network: Option<NetworkFile>,
     /// None for the change of the error.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     second_input: Option<SecondInputFile>,
@@ -118,6 +122,18 @@ struct NumbersFile {
     delta_kp: NumberGrid<f64>,
     delta_ki: NumberGrid<f64>,
     delta_kd: NumberGrid<f64>,
+}
+
+/// A weight of each hidden unit in each row.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct NetworkFile {
+    error: NetworkRow<f64>,
+    change: NetworkRow<f64>,
+    offset: NetworkRow<f64>,
+    delta_kp: NetworkRow<f64>,
+    delta_ki: NetworkRow<f64>,
+    delta_kd: NetworkRow<f64>,
 }
 
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -282,6 +298,7 @@ impl TunerFile {
             out_of_range: supervisor.out_of_range().name().to_owned(),
             rules: supervisor.table().as_ref().map(RulesFile::of),
             numbers: supervisor.numbers().map(NumbersFile::of),
+            network: supervisor.network().map(NetworkFile::of),
             second_input: SecondInputFile::of(settings.second_input),
             error_set_centres: settings.input_sets.error.map(centres),
             change_set_centres: settings.input_sets.change.map(centres),
@@ -336,18 +353,25 @@ impl TunerFile {
                 self.defuzzifier
             ));
         }
-        match (&self.rules, &self.numbers) {
-            (Some(rules), None) => {
+        let built = match (&self.rules, &self.numbers, &self.network) {
+            (Some(rules), None, None) => {
                 Supervisor::new(&rules.build()?, self.range, defuzzifier, policy)
-                    .map_err(said("supervisor"))
             }
-            (None, Some(numbers)) => Supervisor::of_numbers(&numbers.build()?, self.range, policy)
-                .map_err(said("supervisor")),
-            (Some(_), Some(_)) => {
-                Err("rules and numbers: one of them is what rules conclude".to_owned())
+            (None, Some(numbers), None) => {
+                Supervisor::of_numbers(&numbers.build()?, self.range, policy)
             }
-            (None, None) => Err("rules: none, and no numbers in their place".to_owned()),
-        }
+            (None, None, Some(network)) => {
+                Supervisor::of_network(&network.build()?, self.range, policy)
+            }
+            (None, None, None) => {
+                return Err("rules: none, and no numbers or network in their place".to_owned());
+            }
+            _ => {
+                let told = "rules, numbers and network: one of them is what answers";
+                return Err(told.to_owned());
+            }
+        };
+        built.map_err(said("supervisor"))
     }
 }
 
@@ -422,6 +446,19 @@ impl NumbersFile {
     }
 }
 
+impl NetworkFile {
+    fn of(network: &Network<f64>) -> Self {
+        let [error, change, offset, delta_kp, delta_ki, delta_kd] = *network.rows();
+        Self { error, change, offset, delta_kp, delta_ki, delta_kd }
+    }
+
+    fn build(&self) -> Result<Network<f64>, String> {
+        let Self { error, change, offset, delta_kp, delta_ki, delta_kd } = self;
+        let rows = [*error, *change, *offset, *delta_kp, *delta_ki, *delta_kd];
+        Network::new(rows).map_err(said("network"))
+    }
+}
+
 impl RulesFile {
     fn of(table: &RuleTable) -> Self {
         let rows = |output: Output| -> Vec<String> {
@@ -469,6 +506,39 @@ mod tests {
             tuner.numbers = None;
         }
         let told = file.build(dt_s).expect_err("nothing is concluded");
-        assert_eq!(told, "rules: none, and no numbers in their place");
+        assert_eq!(told, "rules: none, and no numbers or network in their place");
+    }
+
+    #[test]
+    fn a_network_is_written_with_its_weights_and_read_again_and_others_are_refused() {
+        let rows = ["error", "change", "offset", "delta_kp", "delta_ki", "delta_kd"];
+        let rows = rows.map(|row| format!("{row} = [0.5, -1, 0.25, 2, 0.1, 0.3, -0.7, 1]"));
+        let network = format!("network = {{ {} }} #", rows.join(", "));
+        let text = fspid_scenario::file::starter().replace("table = \"mirrored\" ", &network);
+        let study = fspid_scenario::file::parse(&text, "mine.toml", None, &[]).expect("a scenario");
+        let controller = &study.scenario.controllers[1].controller;
+        let (mut file, dt_s) = (ControllerFile::of(controller), study.scenario.timing.dt_s());
+        assert_eq!(file.build(dt_s).as_ref(), Ok(controller));
+        let weight = |file: &mut ControllerFile, weight: f64| {
+            let network = file.tuner.as_mut().and_then(|tuner| tuner.network.as_mut());
+            network.expect("a network").delta_ki[3] = weight;
+        };
+        weight(&mut file, 1.5);
+        assert_ne!(file.build(dt_s).as_ref(), Ok(controller));
+        weight(&mut file, -2e6);
+        let told = file.build(dt_s).expect_err("too large");
+        assert!(
+            told.starts_with("network: delta_ki: the weight of unit 4 is -2000000.0"),
+            "{told}"
+        );
+        if let Some(tuner) = &mut file.tuner {
+            tuner.numbers = Some(NumbersFile {
+                delta_kp: [[0.0; 7]; 7],
+                delta_ki: [[0.0; 7]; 7],
+                delta_kd: [[0.0; 7]; 7],
+            });
+        }
+        let told = file.build(dt_s).expect_err("two things answer");
+        assert_eq!(told, "rules, numbers and network: one of them is what answers");
     }
 }

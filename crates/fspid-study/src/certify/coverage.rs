@@ -323,6 +323,11 @@ pub const COVERAGE: &[KeyCoverage] = &[
         "the interpolation of the numbers is enclosed over everything that the supervisor can see",
     ),
     row(
+        "controller.supervisor.network.*",
+        Covered,
+        "what the network answers is enclosed over everything that the supervisor can see, with its rounding",
+    ),
+    row(
         "controller.supervisor.defuzzifier",
         Covered,
         "as it is, with the rounding of its sums; a certificate with more than 10 000 samples is refused",

@@ -37,10 +37,11 @@ pub struct RuleMarks {
     pub along: [Along; 2],
 }
 
-/// The marks of each gain's rules; nothing for a supervisor that is no system, which none is.
+/// The marks of each gain's rules; nothing for a network, which has none.
 #[must_use]
 pub fn rule_marks(supervisor: &Supervisor<f64>) -> Vec<RuleMarks> {
-    let Ok(system) = System::new(Parts::from(supervisor)) else { return Vec::new() };
+    let Ok(parts) = Parts::try_from(supervisor) else { return Vec::new() };
+    let Ok(system) = System::new(parts) else { return Vec::new() };
     let rules = rule_base(&system).outputs.into_iter();
     let grids = rules.zip(Output::ALL).filter_map(|(rules, output)| Some((output, rules.grid?)));
     grids.map(|(output, grid)| of_grid(supervisor, output, &grid)).collect()

@@ -14,11 +14,11 @@ pub struct Fuzzy {
     pub seen: [f64; 2],
     /// The same as its even sets see them.
     pub warped: [f64; 2],
-    /// Grade of each label of both.
+    /// Grade of each label of both; zeros for a network, which has none.
     pub grades: [[f64; LABEL_COUNT]; 2],
     /// What it adds to each gain, scaled.
     pub increments: Gains<f64>,
-    /// Rules that fire, the strongest first.
+    /// Rules that fire, the strongest first; none for a network.
     pub rules: Vec<Fired>,
 }
 
@@ -65,11 +65,11 @@ impl Fuzzy {
             centres.map_or(input, |centres| centres.warp(input, range))
         };
         let warped = [warp(sets.error, seen[0]), warp(sets.change, seen[1])];
-        let rules = fired(
-            &System::new(Parts::from(supervisor)).ok()?,
-            warped,
-            tuner.settings().output_scale,
-        )?;
+        let rules = match Parts::try_from(supervisor) {
+            Ok(parts) => fired(&System::new(parts).ok()?, warped, tuner.settings().output_scale)?,
+            // A network has none.
+            Err(_) => Vec::new(),
+        };
         let grades = warped.map(|input| supervisor.grades(input));
         Some(Self { seen, warped, grades, increments, rules })
     }

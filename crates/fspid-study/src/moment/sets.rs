@@ -19,7 +19,7 @@ pub struct SetCurves {
     pub grades: [[Vec<f64>; LABEL_COUNT]; 2],
 }
 
-/// Grades of the sets of a tuner over its range, with the places to which their centres were moved.
+/// Grades of the sets of a tuner over its range, with the places to which their centres were moved; zeros for a network.
 #[must_use]
 pub fn set_curves(tuner: &SelfTuner<f64>) -> SetCurves {
     let (supervisor, sets) = (tuner.supervisor(), tuner.settings().input_sets);
@@ -40,7 +40,7 @@ fn even(centres: Option<SetCentres<f64>>, input: f64, range: f64) -> f64 {
 }
 
 /// Of how many samples of a controller's flight each rule is the strongest, by the places of its labels; zeros for a
-/// controller without a supervisor, and for one that sees no change.
+/// controller without a supervisor or with a network, and for one that sees no change.
 #[must_use]
 pub fn visits(study: &Study, name: &str) -> [[u32; LABEL_COUNT]; LABEL_COUNT] {
     let mut counts = [[0; LABEL_COUNT]; LABEL_COUNT];
@@ -49,6 +49,9 @@ pub fn visits(study: &Study, name: &str) -> [[u32; LABEL_COUNT]; LABEL_COUNT] {
         return counts;
     };
     let (supervisor, sets) = (fspid.tuner().supervisor(), fspid.tuner().settings().input_sets);
+    if supervisor.network().is_some() {
+        return counts;
+    }
     let strongest = |input: f64, centres| {
         let grades = supervisor.grades(even(centres, input, supervisor.range()));
         let order = grades.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));

@@ -32,8 +32,11 @@ pub fn exact(table: &RuleTable, range: f64) -> Option<Supervisor<f64>> {
     Supervisor::new(table, range, Defuzzifier::Exact, OutOfRange::Clamp).ok()
 }
 
-/// Fig. 4: input sets from the supervisor itself, output sets from their definition.
+/// Fig. 4: input sets from the supervisor itself, output sets from their definition; none for a network.
 pub fn sets(prefix: &str, supervisor: &Supervisor<f64>) -> Vec<Figure> {
+    if supervisor.network().is_some() {
+        return Vec::new();
+    }
     let range = supervisor.range();
     let grid = nodes(range, POINTS + 1);
     let curve = |index: usize| {
@@ -158,7 +161,7 @@ pub fn rule_tables(prefix: &str, name: &str, table: &RuleTable, marks: Marks) ->
     NAMES.into_iter().map(figure).collect()
 }
 
-/// The rules of a supervisor, labels or numbers.
+/// The rules of a supervisor, labels or numbers; none for a network.
 pub fn rules(prefix: &str, name: &str, supervisor: &Supervisor<f64>) -> Vec<Figure> {
     if let Some(table) = supervisor.table() {
         return rule_tables(prefix, name, &table, Marks::None);

@@ -1,6 +1,7 @@
 //! The report of a user's own scenario: verdict first.
 
-use fspid_core::{GainCoupling, InputSets, SecondInput, TunerSettings};
+use fspid_core::{GainCoupling, InputSets, SecondInput, SelfTuner};
+use fspid_fuzzy::UNITS;
 use fspid_sim::{Controller, Plant};
 use serde::Serialize;
 
@@ -291,7 +292,7 @@ fn tuning(index: usize, named: &fspid_sim::NamedController) -> Option<Tuning> {
     Some(Tuning {
         name: named.name.clone(),
         accumulating: law == "accumulating",
-        structure: structure(fspid.tuner().settings()),
+        structure: structure(fspid.tuner()),
         law,
         sets: supervisor::sets(&prefix("sets"), supervisor),
         tables: supervisor::rules(&prefix("rules"), &named.name, supervisor),
@@ -305,9 +306,15 @@ fn tuning(index: usize, named: &fspid_sim::NamedController) -> Option<Tuning> {
     })
 }
 
-/// What differs from a supervisor that sees the error and its change through even sets.
-fn structure(settings: &TunerSettings<f64>) -> Vec<String> {
-    let mut sentences = Vec::new();
+/// What differs from a supervisor of rules that sees the error and its change through even sets.
+fn structure(tuner: &SelfTuner<f64>) -> Vec<String> {
+    let (settings, mut sentences) = (tuner.settings(), Vec::new());
+    if tuner.supervisor().network().is_some() {
+        sentences.push(format!(
+            "The supervisor is a network of {UNITS} hidden units: it has no rules and no sets, adds nothing at rest, and \
+             answers a fall as a rise. Its surfaces show all that it answers."
+        ));
+    }
     let instead = "What tables and figures call change of error is this.";
     match settings.second_input {
         SecondInput::Change => {}
@@ -347,7 +354,11 @@ fn structure(settings: &TunerSettings<f64>) -> Vec<String> {
 fn at_rest(fspid: &fspid_core::Fspid<f64>, supervisor: &fspid_fuzzy::Supervisor<f64>) -> PageTable {
     let caption = "At rest, with error and change zero. The last column is what the gains become after one second \
                    under an accumulating law, and at once under a memoryless one.";
-    let head = ["gain", "rules add, supervisor units", "nominal gain", "gain at rest"];
+    let adds = match supervisor.network() {
+        Some(_) => "network adds, supervisor units",
+        None => "rules add, supervisor units",
+    };
+    let head = ["gain", adds, "nominal gain", "gain at rest"];
     let mut table = PageTable::new(caption, &head);
     let (nominal, rest) = (fspid.tuner().nominal(), fspid.tuner().gains_at_rest());
     let added = supervisor::at_rest(supervisor).unwrap_or([f64::NAN; 3]);

@@ -20,6 +20,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use fspid_numeric::InstructionSet;
+use fspid_optimise::Scale;
 use fspid_scenario::file::Study;
 use fspid_scenario::measure::Measure;
 use fspid_scenario::requirement::Requirement;
@@ -388,13 +389,25 @@ fn check_what_is_free(problem: &TuningProblem) -> Result<(), String> {
     Ok(())
 }
 
-/// Coordinates of each mark, and whether it is a grid of numbers.
+/// Coordinates of each mark, and whether they are numbers of the controller itself: cells of a grid, or weights of a network.
+///
+/// Such a coordinate moves its number in a straight line wherever the others are.
 fn coordinates_of(problem_space: &crate::space::Space) -> Vec<(Range<usize>, bool)> {
     let mut from = 0;
     let parts = problem_space.parameters().iter().map(|mark| {
         let range = from..from + mark.dimensions();
         from = range.end;
-        (range, matches!(mark.free, Free::Numbers(_)))
+        let is_straight = match &mark.free {
+            Free::Numbers(_) => true,
+            Free::Number(number) => number.scale == Scale::Linear && is_weight(mark.path.text()),
+            Free::Grid(_) => false,
+        };
+        (range, is_straight)
     });
     parts.collect()
+}
+
+/// True for a place in the network of a supervisor.
+fn is_weight(path: &str) -> bool {
+    path.contains(".supervisor.network.")
 }

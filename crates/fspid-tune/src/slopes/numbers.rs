@@ -8,7 +8,7 @@ use crate::flights::{Flights, FlownCase};
 
 /// Width of the differences, of the cube: numbers of a controller are smooth, and known to 10⁻¹⁵.
 const STEP: f64 = 1e-6;
-/// Width for cells of a grid of numbers, which are straight lines rounded to a few digits.
+/// Width for cells of a grid of numbers, which are straight lines rounded to a few digits, and for weights of a network.
 const GRID_STEP: f64 = 0.25;
 /// Two points at which controllers of different cases are compared; no search begins there.
 const PROBES: [f64; 2] = [0.381_966_011_25, 0.723_606_797_75];
@@ -20,9 +20,9 @@ pub(super) struct Construction {
     first: Vec<usize>,
     /// Number of the controller of each flight.
     class: Vec<usize>,
-    /// For each controller the columns of cells of grids, which never change.
+    /// For each controller the columns of cells of grids and of weights, which never change.
     straight: Vec<Vec<Option<Vec<f64>>>>,
-    /// Coordinates that are cells of a grid.
+    /// Coordinates that are cells of a grid or weights.
     is_cell: Vec<bool>,
     /// Case and run of the first flight with each controller.
     jobs: Vec<(usize, usize)>,
@@ -60,8 +60,8 @@ impl Construction {
             class.push(place);
         }
         let mut is_cell = vec![false; dimension];
-        for (range, is_grid) in super::coordinates_of(space) {
-            is_cell[range].fill(is_grid);
+        for (range, is_straight) in super::coordinates_of(space) {
+            is_cell[range].fill(is_straight);
         }
         let mut jobs_of = Vec::with_capacity(first.len());
         for job in &first {

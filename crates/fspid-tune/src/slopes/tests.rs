@@ -132,12 +132,25 @@ most = 1.05
 "#;
 
 fn problem(required: &str, changes: &[(&str, &str)]) -> Result<TuningProblem, TuneError> {
+    problem_of(&[], required, changes)
+}
+
+/// The same with other changes before the grid and what is required are filled in.
+fn problem_of(
+    before: &[(&str, &str)],
+    required: &str,
+    changes: &[(&str, &str)],
+) -> Result<TuningProblem, TuneError> {
     let grid = (0..7).map(|i| {
         let row = (0..7).map(|j: i32| format!("{:.2}", f64::from((i - 3) * (j - 3)) / 18.0));
         format!("[{}]", row.collect::<Vec<_>>().join(","))
     });
     let grid = format!("[{}]", grid.collect::<Vec<_>>().join(","));
-    let text = SCENARIO.replace("GRID", &grid).replace("REQUIRED", required);
+    let text = before.iter().fold(SCENARIO.to_owned(), |text, (from, to)| {
+        assert!(text.contains(from), "{from}");
+        text.replace(from, to)
+    });
+    let text = text.replace("GRID", &grid).replace("REQUIRED", required);
     let text = changes.iter().fold(text, |text, (from, to)| {
         assert!(text.contains(from), "{from}");
         text.replace(from, to)
@@ -185,6 +198,34 @@ fn compare(problem: &TuningProblem, step: f64, tolerance: f64) -> usize {
 #[test]
 fn slopes_of_costs_limits_and_requirements_of_flights_are_those_of_differences() {
     let problem = problem(OF_FLIGHTS, &[]).expect("a tuning");
+    assert_eq!(compare(&problem, 1e-5, 2e-3), 0, "no loop is asked");
+}
+
+/// Free weights in the place of rules.
+fn network() -> String {
+    let rows = ["error", "change", "offset", "delta_kp", "delta_ki", "delta_kd"];
+    let rows = rows.iter().zip([1.5, -1.1, 0.9, 0.7, -0.6, 0.5]).map(|(row, first)| {
+        let weight = |unit: u32| {
+            let start =
+                f64::from(unit + 1) * first * if unit.is_multiple_of(2) { 0.4 } else { -0.3 };
+            format!("{{ tune = [-6.0, 6.0], start = {start:.3} }}")
+        };
+        let weights: Vec<String> = (0..8).map(weight).collect();
+        format!("supervisor.network.{row} = [{}]\n", weights.join(", "))
+    });
+    rows.collect()
+}
+
+#[test]
+fn slopes_of_the_weights_of_a_network_are_those_of_differences() {
+    let rules = "supervisor.numbers.delta_kp = { tune = \"numbers\", reach = 0.4, symmetric = true, start = GRID }
+supervisor.numbers.delta_ki = GRID
+supervisor.numbers.delta_kd = GRID
+";
+    let sets = "supervisor.error_set_centres = [{ tune = [0.02, 0.49], start = 0.3 }, 0.7]\n";
+    let changes = [(rules, network()), (sets, String::new())];
+    let changes = changes.each_ref().map(|(from, to)| (*from, to.as_str()));
+    let problem = problem_of(&changes, OF_FLIGHTS, &[]).expect("a tuning");
     assert_eq!(compare(&problem, 1e-5, 2e-3), 0, "no loop is asked");
 }
 

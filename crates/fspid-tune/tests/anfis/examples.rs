@@ -70,7 +70,7 @@ fn the_product_of_two_sincs_is_learned_as_well_as_another_tool_does() {
 fn the_papers_supervisor_is_taught_to_a_system_of_numbers() {
     let table = rule_table("printed").expect("it is carried");
     let supervisor = Supervisor::new(&table, 5.0, Defuzzifier::Exact, OutOfRange::Clamp);
-    let teacher = Parts::from(&supervisor.expect("allowed"));
+    let teacher = Parts::try_from(&supervisor.expect("allowed")).expect("rules");
     let data = Data::taught(&teacher, &[15, 15]).expect("a teacher");
     // Other points, so that what was learned by heart does not count.
     let between = Data::taught(&teacher, &[22, 22]).expect("a teacher");

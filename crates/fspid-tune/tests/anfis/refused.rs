@@ -50,7 +50,7 @@ fn a_table_without_a_column_is_refused_by_its_heading() {
 fn a_system_whose_conclusions_are_sets_is_refused_until_they_are_replaced() {
     let table = rule_table("printed").expect("it is carried");
     let supervisor = Supervisor::new(&table, 5.0, Defuzzifier::Exact, OutOfRange::Clamp);
-    let parts = Parts::from(&supervisor.expect("allowed"));
+    let parts = Parts::try_from(&supervisor.expect("allowed")).expect("rules");
     let data = Data::taught(&parts, &[3, 3]).expect("a teacher");
     let refused = learn(&parts, &data, &Plan::default()).expect_err("sets").to_string();
     assert!(refused.starts_with("output `delta_kp`: its conclusions are not joined"), "{refused}");

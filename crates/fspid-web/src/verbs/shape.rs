@@ -56,7 +56,7 @@ fn centres(tuner: &SelfTuner<f64>) -> Value {
     json!({ "error": one(sets.error), "change": one(sets.change) })
 }
 
-/// The three grids, labels or numbers, by the keys that a file has for them.
+/// The three grids, labels or numbers, by the keys that a file has for them; nothing in them for a network.
 fn rules(supervisor: &Supervisor<f64>) -> Value {
     let table = supervisor.table();
     let grid = |output: Output| match (&table, supervisor.numbers()) {
@@ -70,7 +70,8 @@ fn rules(supervisor: &Supervisor<f64>) -> Value {
     };
     let grids: Map<String, Value> =
         Output::ALL.into_iter().map(|output| (output.name().to_owned(), grid(output))).collect();
-    json!({ "are_labels": table.is_some(), "grids": grids })
+    let is_network = supervisor.network().is_some();
+    json!({ "are_labels": table.is_some(), "is_network": is_network, "grids": grids })
 }
 
 /// Cells that break the symmetry of their grid.
@@ -83,4 +84,20 @@ fn odd(supervisor: &Supervisor<f64>) -> Vec<Value> {
         })
     };
     cells.iter().map(one).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fspid_fuzzy::{Network, OutOfRange};
+
+    #[test]
+    fn a_network_says_that_it_is_one_and_has_no_cells_to_draw() {
+        let network = Network::new([[0.5; 8]; 6]).expect("allowed");
+        let supervisor = Supervisor::of_network(&network, 1.0, OutOfRange::Clamp).expect("allowed");
+        let rules = rules(&supervisor);
+        assert_eq!((&rules["is_network"], &rules["are_labels"]), (&json!(true), &json!(false)));
+        assert_eq!(rules["grids"]["delta_kp"], Value::Null);
+        assert!(odd(&supervisor).is_empty() && rule_marks(&supervisor).is_empty());
+    }
 }

@@ -1,11 +1,11 @@
-//! The supervisor: rules that conclude labels, or numbers.
+//! The supervisor: rules that conclude labels, or numbers, or a network in their place.
 
-use fspid_fuzzy::{Defuzzifier, FuzzyError, LABEL_COUNT, NumberTable, Supervisor};
+use fspid_fuzzy::{Defuzzifier, FuzzyError, LABEL_COUNT, Network, NumberTable, Supervisor, UNITS};
 
 use super::{data, judged};
 use crate::file::files::Files;
 use crate::file::spec::controller as keys;
-use crate::file::spec::data::{NUMBER_DELTA_KD, NUMBER_DELTA_KI, NUMBER_DELTA_KP};
+use crate::file::spec::data::{NETWORK_ROWS, NUMBER_DELTA_KD, NUMBER_DELTA_KI, NUMBER_DELTA_KP};
 use crate::keyed::Section;
 use crate::system_text::{Format, LoadError, Options, numbers_of, read};
 use fspid_diagnostics::Report;
@@ -25,6 +25,12 @@ pub(super) fn supervisor(
     if !part.given(keys::TABLE) {
         let before = report.count();
         refuse_defuzzifier(report, part);
+        if let Some(network) = part.get(keys::NETWORK) {
+            refuse_sets(report, part);
+            let supervisor = Supervisor::of_network(&of_rows(network)?, range, policy);
+            let supervisor = judged(report, (part, keys::RANGE), supervisor);
+            return supervisor.filter(|_| report.count() == before);
+        }
         let table = numbers(report, files, part, range)?;
         let supervisor = Supervisor::of_numbers(&table, range, policy);
         let supervisor = judged(report, (part, keys::RANGE), supervisor);
@@ -43,10 +49,34 @@ pub(super) fn supervisor(
     judged(report, (part, key), supervisor)
 }
 
+/// A network has no sets whose centres could lie anywhere.
+fn refuse_sets(report: &mut Report, part: &Section) {
+    for key in [keys::ERROR_SET_CENTRES, keys::CHANGE_SET_CENTRES] {
+        if part.given(key) {
+            let path = part.path(key);
+            report.value(part.at(key), &path, "a network has no sets", "only with rules");
+        }
+    }
+}
+
+/// The network of a sound section.
+fn of_rows(section: &Section) -> Option<Network<f64>> {
+    let mut rows = [[0.0; UNITS]; 6];
+    for (key, row) in NETWORK_ROWS.into_iter().zip(&mut rows) {
+        for (weight, (number, _)) in row.iter_mut().zip(section.get(key)?) {
+            *weight = *number;
+        }
+    }
+    Network::new(rows).ok()
+}
+
 /// Numbers are weighted; nothing is left to choose.
 fn refuse_defuzzifier(report: &mut Report, part: &Section) {
     if part.given(keys::DEFUZZIFIER) {
-        let message = "rules that conclude numbers are not defuzzified";
+        let message = match part.given(keys::NETWORK) {
+            true => "a network is not defuzzified",
+            false => "rules that conclude numbers are not defuzzified",
+        };
         let path = part.path(keys::DEFUZZIFIER);
         report.value(part.at(keys::DEFUZZIFIER), &path, message, "only with `table`");
     }

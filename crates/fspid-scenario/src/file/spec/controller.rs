@@ -1,6 +1,6 @@
 //! The controllers.
 
-use super::data::{GRIDS_TABLE, NUMBER_GRIDS_TABLE};
+use super::data::{GRIDS_TABLE, NETWORK_TABLE, NUMBER_GRIDS_TABLE};
 use super::{ANGLE_LIMIT_DEG, angle};
 use crate::carried::rule_table_names;
 use crate::keyed::KindOf;
@@ -417,11 +417,11 @@ pub(crate) const TUNER: &[KeyRow] =
 static SUPERVISOR_TABLE: Table = choosing(
     "The supervisor: it sees the error and something beside it, and answers increments of the gains.",
     &[
-        &[&TABLE, &NUMBERS, &SYSTEM, &RANGE, &DEFUZZIFIER, &OUT_OF_RANGE, &ERROR_SIGN],
+        &[&TABLE, &NUMBERS, &SYSTEM, &NETWORK, &RANGE, &DEFUZZIFIER, &OUT_OF_RANGE, &ERROR_SIGN],
         &[&ERROR_SCALE, &ERROR_SET_CENTRES, &SECOND_INPUT, &MODEL, &CHANGE],
         &[&CHANGE_SCALE, &CHANGE_SET_CENTRES, &OUTPUT_SCALE],
     ],
-    &[one_of!(TABLE, NUMBERS, SYSTEM)],
+    &[one_of!(TABLE, NUMBERS, SYSTEM, NETWORK)],
 );
 
 pub(crate) const TABLE: Key<Rules<'static>> = optional(
@@ -439,6 +439,8 @@ pub(crate) const SYSTEM: Key<str> = optional(
     FILE_PATH,
     "A file with such rules (.toml, .fis, .t2fis, .fcl, .fll, .xml), as `fspid learn` writes it.",
 );
+pub(crate) const NETWORK: Key<Section> =
+    optional("network", table(&NETWORK_TABLE), "No rules, but a small neural network.");
 pub(crate) const RANGE: Key<f64> = required(
     "range",
     number("", Range::Between(1e-100, 1e100)),
@@ -470,7 +472,7 @@ pub(crate) const ERROR_SCALE: Key<f64> = defaulted(
 pub(crate) const ERROR_SET_CENTRES: Key<(f64, f64)> = optional(
     "error_set_centres",
     interval("", Range::Between(0.0, 1.0)),
-    "Centres of the small and the medium sets of the error, as parts of the range; a third and two thirds if left out.",
+    "Centres of the small and the medium sets of the error, as parts of the range; a third and two thirds if left out. A network has none.",
 );
 pub(crate) const SECOND_INPUT: Key<SecondInputWord> = defaulted(
     "second_input",

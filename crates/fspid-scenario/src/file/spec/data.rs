@@ -1,10 +1,10 @@
 //! Plant files and rule tables.
 
 use crate::keyed::{
-    GRID, Key, KeyRow, NUMBER_GRID, Range, Section, TEXT, Table, finite, number, optional, plain,
-    positive, required, table, word,
+    GRID, Key, KeyRow, NUMBER_GRID, Range, Section, TEXT, Table, finite, number, numbers, optional,
+    plain, positive, required, table, word,
 };
-use fspid_fuzzy::{Grid, NumberGrid};
+use fspid_fuzzy::{Grid, LARGEST_WEIGHT, NumberGrid, UNITS};
 use fspid_sim::ElevatorSign;
 
 use super::scenario::COEFFICIENTS;
@@ -72,6 +72,37 @@ pub(crate) const NUMBER_DELTA_KD: Key<NumberGrid<f64>> =
 pub(super) static NUMBER_GRIDS_TABLE: Table = plain(
     "Three grids of seven lists of seven numbers, each within the range; rows are the error from NB to PB, columns its change.",
     &[&[&NUMBER_DELTA_KP, &NUMBER_DELTA_KI, &NUMBER_DELTA_KD]],
+);
+
+/// Hidden units, as a number for each is written.
+const EACH_UNIT: (usize, usize) = (UNITS, UNITS);
+
+const fn weights(name: &'static str, doc: &'static str) -> Key<[f64]> {
+    let range = Range::Between(-LARGEST_WEIGHT, LARGEST_WEIGHT);
+    required(name, numbers("", range, EACH_UNIT), doc)
+}
+
+/// Rows of a network, in the order of [`fspid_fuzzy::Network::ROWS`].
+pub(crate) const NETWORK_ROWS: [Key<[f64]>; 6] = [
+    weights("error", "Weight of the error in each of the eight hidden units."),
+    weights("change", "Weight of what is seen beside it in each of them."),
+    weights("offset", "Offset of each of them."),
+    weights("delta_kp", "Weight of each of them in the increment of the proportional gain."),
+    weights("delta_ki", "Weight of each of them in the increment of the integral gain."),
+    weights("delta_kd", "Weight of each of them in the increment of the derivative gain."),
+];
+
+/// A network in place of rules.
+pub(super) static NETWORK_TABLE: Table = plain(
+    "A network of eight hidden units: silent at rest, the same for a mirrored flight, its answers within the range.",
+    &[&[
+        &NETWORK_ROWS[0],
+        &NETWORK_ROWS[1],
+        &NETWORK_ROWS[2],
+        &NETWORK_ROWS[3],
+        &NETWORK_ROWS[4],
+        &NETWORK_ROWS[5],
+    ]],
 );
 
 pub(crate) const RULE_SOURCE: Key<str> = optional("source", TEXT, "Where the rules come from.");

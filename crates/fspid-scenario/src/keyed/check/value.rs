@@ -171,7 +171,10 @@ fn numbers(
             0 => "the list is empty".to_owned(),
             count => format!("{count} numbers"),
         };
-        let allowed = format!("{least} to {most} numbers");
+        let allowed = match least == most {
+            true => format!("{most} numbers"),
+            false => format!("{least} to {most} numbers"),
+        };
         report.value(item.place, path, message, allowed);
         return None;
     }

@@ -20,7 +20,7 @@ pub(super) struct TunerSlopes<'a> {
 
 /// The supervisor of a tuner as a general system; `None` where it is none, which does not happen.
 pub(super) fn system_of(supervisor: &Supervisor<f64>) -> Option<System> {
-    System::new(Parts::from(supervisor)).ok()
+    System::new(Parts::try_from(supervisor).ok()?).ok()
 }
 
 impl<'a> TunerSlopes<'a> {

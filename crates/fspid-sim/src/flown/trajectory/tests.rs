@@ -127,7 +127,7 @@ fn compared(controller: &Controller, samples: &[Sample<f64>]) -> Result<[usize; 
 }
 
 /// The same controller without what brings states or slopes of its own: a reference model, uneven sets,
-/// rules that conclude numbers. Along flights fewer are linearised, see `SelfTuner::is_plain`.
+/// rules that conclude numbers or a network. Along flights fewer are linearised, see `SelfTuner::is_plain`.
 fn derivable(controller: Controller) -> Controller {
     let Controller::SelfTuning(fspid) = controller else {
         return controller;
@@ -141,9 +141,9 @@ fn derivable(controller: Controller) -> Controller {
         input_sets: InputSets::EVEN,
         ..*tuner.settings()
     };
-    let supervisor = match tuner.supervisor().numbers() {
-        Some(_) => labels(tuner.supervisor().out_of_range()),
-        None => *tuner.supervisor(),
+    let supervisor = match tuner.supervisor().has_labels() {
+        false => labels(tuner.supervisor().out_of_range()),
+        true => *tuner.supervisor(),
     };
     let tuner = SelfTuner::new(tuner.nominal(), supervisor, settings).expect("allowed");
     Controller::SelfTuning(Fspid::new(tuner, *fspid.config()).expect("allowed"))

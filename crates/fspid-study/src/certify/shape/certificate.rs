@@ -201,6 +201,7 @@ const TUNER: Shape = Object(&[
     key("out_of_range", Text(32)),
     key("rules", OrNull(&RULES)),
     optional("numbers", NUMBERS),
+    optional("network", NETWORK),
     optional("second_input", SECOND_INPUT),
     optional("error_set_centres", CENTRES),
     optional("change_set_centres", CENTRES),
@@ -212,6 +213,19 @@ const NUMBERS: Shape = Object(&[
     key("delta_kp", NUMBER_GRID),
     key("delta_ki", NUMBER_GRID),
     key("delta_kd", NUMBER_GRID),
+]);
+/// A weight of each hidden unit.
+const WEIGHTS: Shape = List(
+    &Number(-fspid_core::fuzzy::LARGEST_WEIGHT, fspid_core::fuzzy::LARGEST_WEIGHT),
+    [fspid_core::fuzzy::UNITS, fspid_core::fuzzy::UNITS],
+);
+const NETWORK: Shape = Object(&[
+    key("error", WEIGHTS),
+    key("change", WEIGHTS),
+    key("offset", WEIGHTS),
+    key("delta_kp", WEIGHTS),
+    key("delta_ki", WEIGHTS),
+    key("delta_kd", WEIGHTS),
 ]);
 const SECOND_INPUT: Shape = Kinds(
     "kind",

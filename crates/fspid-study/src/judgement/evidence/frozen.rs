@@ -21,8 +21,8 @@ pub(super) fn require_whole_map(controller: &Controller) -> Result<(), NotEvalua
         let why = "the accumulating law adds increments up, so that the gains go beyond the map";
         return Err(NotEvaluated::BeyondMap { why });
     }
-    // Where rules conclude numbers, answers beyond the range are those of its ends.
-    let is_level = tuner.supervisor().numbers().is_some();
+    // Where rules conclude numbers, and of a network, answers beyond the range are those of its ends.
+    let is_level = !tuner.supervisor().has_labels();
     if tuner.supervisor().out_of_range() == OutOfRange::Evaluate && !is_level {
         let why = "inputs beyond the supervisor's range are evaluated, and the map ends there";
         return Err(NotEvaluated::BeyondMap { why });
