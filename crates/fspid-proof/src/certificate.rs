@@ -5,6 +5,7 @@ use fspid_lti::Matrix;
 use crate::description::LoopDescription;
 use crate::family::Family;
 use crate::limits;
+use crate::nonlinear::Nonlinear;
 use crate::recheck::Rechecked;
 use crate::scope::{LeftOut, Range, Scope};
 use crate::steps::Steps;
@@ -32,6 +33,8 @@ pub struct Certificate {
     pub steps: Option<Steps>,
     /// Plants and actuators beside the one of the description, of which the return to rest is claimed.
     pub family: Option<Family>,
+    /// The nonlinear aircraft near its trim, where something is claimed of it.
+    pub nonlinear: Option<Nonlinear>,
 }
 
 /// What is claimed.

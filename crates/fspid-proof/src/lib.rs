@@ -17,6 +17,7 @@ mod description;
 mod family;
 pub mod gain_set;
 mod limits;
+mod nonlinear;
 mod prove;
 mod recheck;
 mod remembered;
@@ -35,6 +36,10 @@ pub use family::{
     Part as FamilyPart, Uncertain, numbers, prove_family,
 };
 pub use limits::{AtLimit, pitch_within};
+pub use nonlinear::{
+    CheckedNonlinear, Nonlinear, NonlinearError, NonlinearVerdict, NotNonlinear,
+    Reach, prove_nonlinear,
+};
 pub use prove::{Effort, Largest, Outcome, Verdict, certify, is_proved};
 pub use recheck::{Kept, RecheckError, Rechecked, Remains};
 pub use rest::NoRest;

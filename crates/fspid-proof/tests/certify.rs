@@ -241,6 +241,7 @@ fn a_certificate_that_asks_nothing_of_the_loop_does_not_hold() {
         claim: Claim::SProcedure { form: Matrix::identity(size), rate: 1.0, multipliers },
         level: None,
         family: None,
+        nonlinear: None,
     };
     let refused = s_procedure(vec![]).check().expect_err("no cones");
     assert!(refused.to_string().contains("double cones"), "{refused}");

@@ -120,6 +120,7 @@ impl Part {
             level: None,
             steps: None,
             family: None,
+            nonlinear: None,
             ..certificate.clone()
         }
     }

@@ -444,6 +444,7 @@ impl<'a> Prover<'a> {
             level,
             steps: None,
             family: None,
+            nonlinear: None,
         };
         let set = self.set(factor);
         let recheck = Recheck::with(&certificate, self.enclosed.clone(), set, &self.slopes).ok()?;

@@ -49,6 +49,7 @@ impl<'a> Region<'a> {
             claim: Claim::BoundedRate(claim.clone()),
             steps: None,
             family: None,
+            nonlinear: None,
             level: None,
         };
         let recheck =

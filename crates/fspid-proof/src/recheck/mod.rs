@@ -15,6 +15,7 @@ use crate::description::NotProvable;
 use crate::family::{CheckedFamily, FamilyError};
 use crate::gain_set::{Cone, GainSet, HeldGains, IncrementMap, KnownSlopes, NoSlopes, producible};
 use crate::limits;
+use crate::nonlinear::{CheckedNonlinear, NonlinearError};
 use crate::rest::{NoRest, Rest};
 use crate::sizes::{self, WrongSizes};
 use crate::solve::never;
@@ -50,6 +51,8 @@ pub struct Rechecked {
     pub stepped: Option<Stepped>,
     /// Members of a family; none where none is claimed.
     pub family: Option<CheckedFamily>,
+    /// The nonlinear aircraft; none where nothing is claimed of it.
+    pub nonlinear: Option<CheckedNonlinear>,
 }
 
 /// Where a law keeps its gains to a rate.
@@ -110,6 +113,9 @@ pub enum RecheckError {
     /// The family is not proved.
     #[error(transparent)]
     Family(#[from] FamilyError),
+    /// Nothing is proved of the nonlinear aircraft.
+    #[error(transparent)]
+    Nonlinear(#[from] NonlinearError),
     /// The certificate does not fit together.
     #[error("{what}")]
     Malformed {
@@ -247,6 +253,12 @@ impl<'a> Recheck<'a> {
             .as_ref()
             .map(|family| family.check(self.certificate, &self.set, self.stops));
         let family = family.transpose()?;
+        let nonlinear = self
+            .certificate
+            .nonlinear
+            .as_ref()
+            .map(|claim| claim.check(self.certificate, &self.set, self.stops));
+        let nonlinear = nonlinear.transpose()?;
         let bounds = self.set.bounds();
         Ok(Rechecked {
             cells: self.set.cells.len(),
@@ -260,6 +272,7 @@ impl<'a> Recheck<'a> {
             remains_rad,
             stepped,
             family,
+            nonlinear,
         })
     }
 

@@ -272,6 +272,7 @@ impl CertificateFile {
             level: self.level,
             steps,
             family,
+            nonlinear: None,
         };
         let stated = limits_of(&certificate);
         if self.limits != stated {
