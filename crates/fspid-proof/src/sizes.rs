@@ -133,12 +133,18 @@ pub(crate) fn check(certificate: &Certificate) -> Result<(), WrongSizes> {
         wrong.within(("steps.loads", "parts of the loads"), steps.loads, [1, MOST_LOADS]);
         wrong.of_form("steps.near_rest.form", &steps.terminal.form, states);
     }
+    if let Some(claim) = &certificate.nonlinear {
+        wrong.of_form("nonlinear.form", &claim.form, description.states());
+    }
     let family = certificate.family.iter().flat_map(|family| &family.parts);
     let claims = family.map(|part| (&part.claim, Range::REST));
     let inequalities = claims
         .chain([(&certificate.claim, certificate.range)])
         .map(|(claim, range)| most_inequalities(certificate, claim, range))
         .fold(0, u64::saturating_add);
+    // Each corner of the nonlinear motion is asked as a loop of its own.
+    let corners = if certificate.nonlinear.is_some() { NONLINEAR_CORNERS } else { 0 };
+    let inequalities = inequalities.saturating_add(inequalities.saturating_mul(corners));
     let work = inequalities.saturating_mul((states as u64).saturating_pow(3));
     wrong.push(("claim", "products of the re-check"), work, [0, MOST_WORK]);
     if wrong.found.is_empty() { Ok(()) } else { Err(WrongSizes(wrong.found)) }
@@ -174,6 +180,9 @@ fn most_inequalities(certificate: &Certificate, claim: &Claim, range: Range) -> 
         Claim::SequenceGrowth { inputs, .. } => inputs.len() as u64 + 1,
     }
 }
+
+/// Corners of the nonlinear motion at most.
+const NONLINEAR_CORNERS: u64 = 1 << fspid_aircraft::enclosure::MOTION;
 
 #[derive(Default)]
 struct Sizes {

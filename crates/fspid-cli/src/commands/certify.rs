@@ -44,6 +44,9 @@ pub(crate) struct Arguments {
     /// Certify as well, at once, all plants and actuators that the scenario's dispersions can draw.
     #[arg(long, conflicts_with = "check")]
     family: bool,
+    /// Certify as well the nonlinear aircraft in a box around its trim, which the search makes as large as it can.
+    #[arg(long, conflicts_with = "check")]
+    nonlinear: bool,
     /// Write the certificates into this folder.
     #[arg(long, value_name = "DIR")]
     out: Option<Folder>,
@@ -75,7 +78,7 @@ fn prove(path: &Path, arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::input(format_args!("there is no controller `{name}`{known}")));
     }
     let telling = Telling::for_standard_error();
-    let certification = watched(&template, (only, arguments.family), telling);
+    let certification = watched(&template, (only, arguments), telling);
     // The answer begins on an empty line.
     if telling == Telling::Line {
         tell(telling, "");
@@ -105,7 +108,7 @@ fn prove(path: &Path, arguments: &Arguments) -> Result<(), Failure> {
 /// Certifies, and tells whom and for how long.
 fn watched(
     template: &Template,
-    (only, family): (Option<&str>, bool),
+    (only, arguments): (Option<&str>, &Arguments),
     telling: Telling,
 ) -> Result<Certification, SimError> {
     let whom = Mutex::new(String::new());
@@ -121,12 +124,18 @@ fn watched(
             }
         };
         let certification = Certification::watched(template.study(), only, &effort, &mut tell)?;
-        match family {
+        let certification = match arguments.family {
             true => certification.with_families(template, &effort, &mut |name| {
                 tell(&format!("all that can be drawn of {name}"));
+            })?,
+            false => certification,
+        };
+        Ok(match arguments.nonlinear {
+            true => certification.with_nonlinear(template.study(), &effort, &mut |name| {
+                tell(&format!("the nonlinear aircraft with {name}"));
             }),
-            false => Ok(certification),
-        }
+            false => certification,
+        })
     })
 }
 

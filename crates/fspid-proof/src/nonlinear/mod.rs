@@ -185,15 +185,15 @@ impl Nonlinear {
         &self,
         model: &LoopModel<Interval>,
         set: &GainSet,
-        within: &[[Vec<Interval>; MOTION]],
+        within: &[[Vec<Interval>; MOTION]; 2],
     ) -> Result<usize, NonlinearError> {
         let form = IntervalMatrix::from(&self.form);
         let mut rows = Vec::new();
         for (_, held) in set.held_corners() {
             let arriving = model.arriving_row(points(held.gains));
             rows.push((arriving.clone(), self.reach.command_rad.next_down()));
-            for piece in within {
-                let own = piece.iter().zip(self.reach.motion);
+            for end in within {
+                let own = end.iter().zip(self.reach.motion);
                 rows.extend(own.map(|(row, reach)| (of_loop(row, &arriving), reach.next_down())));
             }
         }

@@ -28,9 +28,6 @@ use crate::check::{ActuatorLag, ContinuousPlant, IntervalMatrix, LagOf, NotProve
 use crate::check::{exponential, held, printed};
 use crate::description::LoopDescription;
 
-/// Pieces of a sample in which the motion is told apart.
-const PIECES: u32 = 8;
-
 /// Place of the elevator among what the motion depends on; of an actuator's deflection among the states.
 const ELEVATOR: usize = 4;
 
@@ -64,8 +61,8 @@ impl Reach {
 pub(crate) struct Transition {
     /// Plants between which the one of every sample lies.
     pub(crate) corners: Vec<SampledPlant<Interval>>,
-    /// Rows over states and arriving command, of θ, q, V, α and elevator in every piece of a sample.
-    pub(crate) within: Vec<[Vec<Interval>; MOTION]>,
+    /// Rows over states and arriving command, of θ, q, V, α and elevator: where none is too large, none is within a sample.
+    pub(crate) within: [[Vec<Interval>; MOTION]; 2],
     /// How far each state may be off at the end of a sample by what is not told apart, at most about.
     pub(crate) blurs: Vec<f64>,
 }
@@ -299,10 +296,13 @@ impl Motion {
         SampledPlant { states, rows: rows.concat(), rate: (0..states).map(unit).collect() }
     }
 
-    /// Rows of what the motion depends on at every time t of a sample, piece by piece, as the mean value theorem has them:
+    /// Rows of what the motion depends on at both ends of a sample, as the mean value theorem has them:
     ///
     /// $$ \Phi(t) \in I + t\, [A_0 - D, A_0 + D] \pm (e^{(|A_0| + D) T} - I - (|A_0| + D) T) $$
-    fn within(&self, bounds: &Rows, all: &Rows, dt_s: Interval) -> Vec<[Vec<Interval>; MOTION]> {
+    ///
+    /// At every matrix of the middle the size of a row at a state is convex in t: where it is small enough at 0 and at T, it
+    /// is between.
+    fn within(&self, bounds: &Rows, all: &Rows, dt_s: Interval) -> [[Vec<Interval>; MOTION]; 2] {
         let sizes = magnitudes(&self.middle);
         let entry = |time_s: Interval, row: usize, column: usize| {
             let unit = if row == column { Interval::ONE } else { Interval::ZERO };
@@ -311,18 +311,16 @@ impl Motion {
             let words = (all[row][column] - unit - dt_s * bounds[row][column]).upper().max(0.0);
             unit + time_s * slope + Interval::between(-words, words)
         };
-        let at = |piece: u32| {
-            let share = |end: u32| Interval::point(f64::from(end)) / Interval::point(f64::from(PIECES));
-            let time_s = dt_s * share(piece).hull(share(piece + 1));
-            let own = |row: usize| (0..=self.states).map(move |column| (row, column));
-            let mut rows: [Vec<Interval>; MOTION] = core::array::from_fn(|row| own(row).map(|(row, column)| entry(time_s, row, column)).collect());
+        [Interval::ZERO, dt_s].map(|time_s| {
+            let own =
+                |row: usize| (0..=self.states).map(|column| entry(time_s, row, column)).collect();
+            let mut rows: [Vec<Interval>; MOTION] = core::array::from_fn(own);
             if self.lag == LagOf::None {
                 // The elevator is the command that arrives, at once.
                 rows[ELEVATOR].fill(Interval::ZERO);
                 rows[ELEVATOR][self.states] = Interval::ONE;
             }
             rows
-        };
-        (0..PIECES).map(at).collect()
+        })
     }
 }

@@ -14,6 +14,7 @@ use super::family_file::FamilyFile;
 use super::json_text;
 use super::loop_file::LoopFile;
 use super::no_certificate::NoCertificate;
+use super::nonlinear_file::NonlinearFile;
 use super::shape::{self, CERTIFICATE, Wrong};
 use super::steps_file::StepsFile;
 
@@ -61,6 +62,8 @@ struct CertificateFile {
     steps: Option<StepsFile>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     family: Option<FamilyFile>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    nonlinear: Option<NonlinearFile>,
 }
 
 /// What becomes of limits.
@@ -175,6 +178,7 @@ pub fn to_text(certificate: &Certificate, origin: &Origin) -> String {
         level: certificate.level,
         steps: certificate.steps.as_ref().map(StepsFile::of),
         family: certificate.family.as_ref().map(FamilyFile::of),
+        nonlinear: certificate.nonlinear.as_ref().map(NonlinearFile::of),
     };
     file.content_digest = Some(file.content());
     let value = serde_json::to_value(&file).unwrap_or_else(|error| json!(error.to_string()));
@@ -258,8 +262,10 @@ impl CertificateFile {
         let steps = self.steps.as_ref().map(StepsFile::build).transpose();
         let steps = kept(&mut problems, "steps", steps);
         let family = kept(&mut problems, "family", self.family.map(FamilyFile::build).transpose());
-        let parts = description.zip(claim).zip(left_out).zip(steps).zip(family);
-        let Some(((((description, claim), left_out), steps), family)) = parts else {
+        let nonlinear = self.nonlinear.map(NonlinearFile::build).transpose();
+        let nonlinear = kept(&mut problems, "nonlinear", nonlinear);
+        let parts = description.zip(claim).zip(left_out).zip(steps).zip(family).zip(nonlinear);
+        let Some((((((description, claim), left_out), steps), family), nonlinear)) = parts else {
             return Err(NoCertificate { problems });
         };
         let certificate = Certificate {
@@ -272,7 +278,7 @@ impl CertificateFile {
             level: self.level,
             steps,
             family,
-            nonlinear: None,
+            nonlinear,
         };
         let stated = limits_of(&certificate);
         if self.limits != stated {

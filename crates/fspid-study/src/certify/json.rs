@@ -6,14 +6,16 @@ use serde_json::{Value, json};
 
 use super::scope::{Told, told_deg};
 use super::text::found;
-use super::{Around, Certification, Certified, CheckedFile, Comparison, NotProvable, Seal, family};
+use super::{
+    Around, Certification, Certified, CheckedFile, Comparison, NotProvable, Seal, family, nonlinear,
+};
 use crate::json::{merged, present, with_null_reasons};
 
 /// Version of the answer's shape.
 const SCHEMA: u32 = 2;
 
 /// Why keys of these answers are null.
-const NULLS: [(&str, &str); 13] = [
+const NULLS: [(&str, &str); 15] = [
     ("decay_per_sample", "the claim is one of growth, or no rate is proved"),
     (
         "law_keeps_to_the_rate",
@@ -27,6 +29,8 @@ const NULLS: [(&str, &str); 13] = [
     ("open_because", "there is an answer, or nothing more is known of why there is none"),
     ("at", "no question can be asked of the family, or the loop as it is is not proved"),
     ("parts", "the family is not proved"),
+    ("box", "nothing is proved of the nonlinear aircraft"),
+    ("begins_within_deg", "nothing is proved of the nonlinear aircraft"),
     ("not_proved", "no factor was tried and not proved"),
     ("bearing", "the certificate does not hold"),
     ("bearing_in_words", "the certificate does not hold"),
@@ -51,7 +55,9 @@ fn result(certified: &Certified) -> Value {
         |reason: &NotProvable| json!({ "verdict": "not provable", "reason": reason.to_string() });
     let family = certified.family.as_ref().map(family::in_json);
     let around = certified.around.as_ref().map(Around::json);
-    let besides = present(json!({ "family": family, "outer_loops": around }));
+    let nonlinear = certified.nonlinear.as_ref().map(nonlinear::in_json);
+    let besides =
+        present(json!({ "family": family, "nonlinear": nonlinear, "outer_loops": around }));
     let proved = |found: &Outcome| outcome(found, certified.around.as_ref());
     merged([of, certified.outcome.as_ref().map_or_else(refused, proved), besides])
 }
@@ -132,7 +138,10 @@ impl CheckedFile {
                 }),
                 Err(doubt) => json!({ "reason": doubt.to_string() }),
             },
-            present(json!({ "against": self.against.as_ref().map(comparison) })),
+            present(json!({
+                "nonlinear": self.nonlinear().map(|(claim, it)| nonlinear::proved_in_json(claim, &it)),
+                "against": self.against.as_ref().map(comparison),
+            })),
         ]);
         with_null_reasons(answer, &NULLS)
     }

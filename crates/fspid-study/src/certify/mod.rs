@@ -18,6 +18,8 @@ mod json;
 mod json_text;
 mod loop_file;
 mod no_certificate;
+mod nonlinear;
+mod nonlinear_file;
 mod scope;
 mod shape;
 mod steps_file;
@@ -43,6 +45,7 @@ pub use coverage::{COVERAGE, KeyCoverage, Treatment, coverage_table};
 pub use family::{FamilyAnswer, NoFamily};
 pub use file::{Origin, SCHEMA, Seal, from_text, to_text};
 pub use no_certificate::NoCertificate;
+pub use nonlinear::{NoNonlinear, NonlinearAnswer};
 pub use scope::in_short as scope_in_short;
 pub use shape::Wrong;
 
@@ -57,6 +60,8 @@ pub struct Certified {
     pub outcome: Result<Outcome, NotProvable>,
     /// What came of all that the dispersions can draw, where that was asked.
     pub family: Option<FamilyAnswer>,
+    /// What came of the nonlinear aircraft near its trim, where that was asked.
+    pub nonlinear: Option<NonlinearAnswer>,
     /// What flies around the loop, where that is an autopilot.
     pub around: Option<Around>,
     /// Where its certificates come from.
@@ -64,13 +69,14 @@ pub struct Certified {
 }
 
 impl Certified {
-    /// True if stability is proved, of the whole family where that was asked, and outer loops around it are held at rest.
+    /// True if stability is proved, of the whole family and of the nonlinear aircraft where these were asked, and outer loops around it are held at rest.
     #[must_use]
     pub fn is_proved(&self) -> bool {
         let itself =
             matches!(&self.outcome, Ok(outcome) if matches!(outcome.verdict, Verdict::Proved(..)));
         itself
             && self.family.as_ref().is_none_or(FamilyAnswer::is_proved)
+            && self.nonlinear.as_ref().is_none_or(NonlinearAnswer::is_proved)
             && self.around.as_ref().is_none_or(Around::is_held)
     }
 
@@ -140,6 +146,7 @@ impl Certification {
                     outcome: described
                         .and_then(|loop_| certify(&loop_, &asked(study, plant, &loop_), effort)),
                     family: None,
+                    nonlinear: None,
                     around: around.clone(),
                     origin: Origin {
                         program: env!("CARGO_PKG_VERSION").to_owned(),
@@ -187,6 +194,26 @@ impl Certification {
             }
         }
         Ok(self)
+    }
+
+    /// Certifies the nonlinear aircraft near its trim, with each of the loops that is proved. Tells the name of each
+    /// controller before; where the effort was stopped, the loop has no answer.
+    #[must_use]
+    pub fn with_nonlinear(
+        mut self,
+        study: &Study,
+        effort: &Effort,
+        tell: &mut dyn FnMut(&str),
+    ) -> Self {
+        for certified in &mut self.results {
+            let Ok(outcome) = &mut certified.outcome else { continue };
+            tell(&certified.controller);
+            match nonlinear::certified(study, outcome, effort) {
+                Ok(answer) => certified.nonlinear = Some(answer),
+                Err(stopped) => certified.outcome = Err(stopped),
+            }
+        }
+        self
     }
 
     /// A file name for a certificate, which no other controller of the scenario has.

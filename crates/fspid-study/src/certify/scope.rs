@@ -4,7 +4,7 @@
 use fspid_proof::{Certificate, LeftOut, Range, Rechecked, Scope, Stepped};
 use serde_json::{Value, json};
 
-use super::family;
+use super::{family, nonlinear};
 use crate::json::merged;
 use crate::metrics::short;
 use fspid_scenario::units::degrees;
@@ -15,6 +15,7 @@ pub(super) struct Told {
     stable: Option<Scope>,
     left_out: Vec<LeftOut>,
     family: Vec<String>,
+    nonlinear: Option<String>,
 }
 
 impl Told {
@@ -24,7 +25,9 @@ impl Told {
         let stable = certificate.claim.is_of_stability().then_some(scope);
         let family = certificate.family.as_ref().zip(rechecked.family);
         let family = family.map_or_else(Vec::new, |(family, it)| family::sentences(family, it));
-        Self { stable, left_out, family }
+        let nonlinear = certificate.nonlinear.as_ref().zip(rechecked.nonlinear);
+        let nonlinear = nonlinear.map(|(claim, it)| nonlinear::sentence(certificate, claim, &it));
+        Self { stable, left_out, family, nonlinear }
     }
 
     /// As [`of`](Self::of) of a certificate that was read and held against no scenario: what its words make of its plants
@@ -34,6 +37,11 @@ impl Told {
         if !told.family.is_empty() {
             let words = "proved are the plants in the file; that they are those of the numbers named is computed by --against SCENARIO";
             told.family.push(words.to_owned());
+        }
+        if let Some(sentence) = &mut told.nonlinear {
+            sentence.push_str(
+                "; everything was enclosed anew from the aircraft in the file; that it is the scenario's is asked by --against SCENARIO",
+            );
         }
         told
     }
@@ -51,6 +59,7 @@ impl Told {
             sentences.extend(scope.stepped.map(|stepped| ("steps", steps(&stepped))));
         }
         sentences.extend(self.family.iter().map(|sentence| ("family", sentence.clone())));
+        sentences.extend(self.nonlinear.iter().map(|it| ("nonlinear", it.clone())));
         let left_out = self.left_out.iter().enumerate();
         sentences.extend(left_out.map(|(place, one)| {
             (if place == 0 { "not in this claim" } else { "" }, one.to_string())

@@ -35,6 +35,9 @@ fn push(out: &mut String, certified: &Certified) {
             if let Some(family) = certified.family.as_ref().filter(|it| !it.is_proved()) {
                 out.push_str(&format!("  family             {}\n", family.text()));
             }
+            if let Some(nonlinear) = certified.nonlinear.as_ref().filter(|it| !it.is_proved()) {
+                out.push_str(&format!("  nonlinear          {}\n", nonlinear.text()));
+            }
         }
     }
 }
