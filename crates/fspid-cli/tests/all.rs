@@ -6,6 +6,7 @@ mod bench;
 mod campaign;
 mod certify;
 mod certify_family;
+mod certify_nonlinear;
 mod cli;
 mod common;
 mod equations;

@@ -37,8 +37,8 @@ pub use family::{
 };
 pub use limits::{AtLimit, pitch_within};
 pub use nonlinear::{
-    CheckedNonlinear, Nonlinear, NonlinearError, NonlinearVerdict, NotNonlinear,
-    Reach, prove_nonlinear,
+    CheckedNonlinear, Nonlinear, NonlinearError, NonlinearVerdict, NotNonlinear, Reach,
+    prove_nonlinear,
 };
 pub use prove::{Effort, Largest, Outcome, Verdict, certify, is_proved};
 pub use recheck::{Kept, RecheckError, Rechecked, Remains};

@@ -12,7 +12,7 @@ use crate::aerodynamics::derivatives::{
 use crate::atmosphere::Environment;
 use crate::data::{DerivativeData, Laws, Loading, Moment};
 use crate::trim::TrimTarget;
-use crate::validity::Range;
+use crate::validity::{Range, Validity};
 
 /// What the motion depends on: θ, q, V, α and the elevator as the derivatives count it, all from the trim.
 pub const MOTION: usize = 5;
@@ -50,8 +50,10 @@ pub struct MotionNumbers {
     pub longitudinal: Longitudinal,
     /// Drag and thrust away from the reference.
     pub laws: Laws,
-    /// Where the derivatives are worth something.
+    /// Angles of attack for which the derivatives are worth something.
     pub alpha_rad: Range,
+    /// Airspeeds for which they are, Mach numbers among it.
+    pub airspeeds_m_s: Range,
     /// Stops of the elevator.
     pub elevator_rad: Range,
 }
@@ -78,20 +80,26 @@ impl MotionNumbers {
     ) -> Self {
         let own = DerivativeData { loading: Loading::default(), ..*data };
         let Geometry { area_m2, chord_m, span_m: _ } = data.geometry;
+        let Validity { airspeed_m_s, mach, alpha_rad, .. } = data.validity;
+        let air = environment.air_at(target.altitude_m);
         Self {
             mass_kg: data.mass_kg(),
             iy_kg_m2: data.mass_properties().iy_kg_m2,
             aft_chords: data.cg_aft_chords(),
             airspeed_m_s: target.airspeed_m_s,
             flight_path_rad: target.flight_path_rad,
-            density_kg_m3: environment.air_at(target.altitude_m).density_kg_m3,
+            density_kg_m3: air.density_kg_m3,
             gravity_m_s2: environment.gravity_m_s2,
             area_m2,
             chord_m,
             reference_airspeed_m_s: data.reference.airspeed_m_s,
             longitudinal: own.force_model(laws).longitudinal,
             laws,
-            alpha_rad: data.validity.alpha_rad,
+            alpha_rad,
+            airspeeds_m_s: Range {
+                min: airspeed_m_s.min.max(mach.min * air.speed_of_sound_m_s),
+                max: airspeed_m_s.max.min(mach.max * air.speed_of_sound_m_s),
+            },
             elevator_rad: data.travel.elevator_rad,
         }
     }
@@ -168,9 +176,8 @@ impl MotionNumbers {
         let (mass, gravity) = (number(self.mass_kg), number(self.gravity_m_s2));
         let thrust_n = trim_thrust_n * self.thrust_share(speed);
         let (sine, cosine) = ((theta - alpha).sin(), (theta - alpha).cos());
-        let across_n = mass * gravity * cosine
-            - pressure_n * steady(&lift)
-            - thrust_n * alpha.sin();
+        let across_n =
+            mass * gravity * cosine - pressure_n * steady(&lift) - thrust_n * alpha.sin();
         let carried = mass * speed + pressure_n * half_chord_s * lift.alpha_rate;
         let alpha_rate = (across_n + mass * speed * q) / carried;
         let with_rate = |row: &LongitudinalCoefficient<T>| {
@@ -178,8 +185,7 @@ impl MotionNumbers {
         };
         let drag = with_rate(&drag) + self.polar_bend::<T>() * alpha.square();
         let along = (thrust_n * alpha.cos() - pressure_n * drag) / mass - gravity * sine;
-        let turning =
-            pressure_n * number(self.chord_m) * with_rate(&pitch) / number(self.iy_kg_m2);
+        let turning = pressure_n * number(self.chord_m) * with_rate(&pitch) / number(self.iy_kg_m2);
         [q, turning, along, alpha_rate]
     }
 

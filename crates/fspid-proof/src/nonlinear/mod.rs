@@ -10,6 +10,8 @@
 //! a simulation integrates them.
 
 mod search;
+#[cfg(test)]
+mod tests;
 mod transition;
 
 use fspid_aircraft::enclosure::{EnclosedTrim, MOTION, MotionNumbers};
@@ -95,7 +97,9 @@ impl From<RecheckError> for NonlinearError {
 #[must_use]
 pub(crate) fn not_covered(description: &LoopDescription) -> Option<&'static str> {
     if description.resolves_in_steps() {
-        return Some("a sensor resolves in steps; resolution_deg and resolution_deg_s need to be 0");
+        return Some(
+            "a sensor resolves in steps; resolution_deg and resolution_deg_s need to be 0",
+        );
     }
     if description.actuator.bias_rad() != 0.0 {
         return Some("the actuator has a bias, so that rest is not at the trim");
@@ -163,17 +167,19 @@ impl Nonlinear {
         let around = |centre: Interval, reach: f64| centre + Interval::between(-reach, reach);
         let [_, _, speed, alpha, elevator] = self.aircraft.at_trim(trim);
         let [_, _, by_speed, by_alpha, by_elevator] = self.reach.motion;
-        let inside = |it: Interval, least: f64, most: f64| least <= it.lower() && it.upper() <= most;
+        let inside =
+            |it: Interval, least: f64, most: f64| least <= it.lower() && it.upper() <= most;
         let beyond = |what, allowed| Err(NonlinearError::Beyond { what, allowed });
-        let MotionNumbers { alpha_rad, elevator_rad, .. } = &self.aircraft;
+        let MotionNumbers { alpha_rad, elevator_rad, airspeeds_m_s, .. } = &self.aircraft;
         if !inside(around(alpha, by_alpha), alpha_rad.min, alpha_rad.max) {
-            return beyond("the angle of attack", "the range that its derivatives are known for");
+            return beyond("the angle of attack", "the range that the derivatives are known for");
         }
         if !inside(around(elevator, by_elevator), elevator_rad.min, elevator_rad.max) {
             return beyond("the elevator", "its travel");
         }
-        if !(around(speed, by_speed).lower() > 0.0) {
-            return beyond("the airspeed", "0");
+        let slowest = airspeeds_m_s.min.max(f64::MIN_POSITIVE);
+        if !inside(around(speed, by_speed), slowest, airspeeds_m_s.max) {
+            return beyond("the airspeed", "the range that the derivatives are known for");
         }
         Ok(())
     }

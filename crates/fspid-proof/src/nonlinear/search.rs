@@ -8,7 +8,7 @@ use fspid_aircraft::enclosure::{MOTION, MotionNumbers};
 use fspid_core::Gains;
 use fspid_lti::Matrix;
 use fspid_numeric::scalar::Interval;
-use fspid_sim::loop_model::LoopModel;
+use fspid_sim::loop_model::{LoopModel, SampledPlant};
 
 use super::transition::{Reach, Transition};
 use super::{CheckedNonlinear, Nonlinear, NonlinearError, not_covered, of_loop};
@@ -43,6 +43,8 @@ const MOST_BOXES: usize = 60;
 const LEVELS: i32 = 8;
 /// Shares of the decay at the corners that are claimed, if they are proved.
 const RATES: [f64; 3] = [0.8, 0.5, 0.2];
+/// Numbers of the motion before this one bend little: pitch and pitch rate.
+const STIFF: usize = 2;
 /// Samples of the flight that the box has its shape of.
 const FLIGHT_SAMPLES: usize = 6000;
 
@@ -65,7 +67,9 @@ pub enum NotNonlinear {
     #[error("no straight flight is found that the derivatives hold, or not only one")]
     NoTrim,
     /// However small the box, no form falls in it.
-    #[error("however small the box around the trim, no form was found that falls under all motions in it")]
+    #[error(
+        "however small the box around the trim, no form was found that falls under all motions in it"
+    )]
     NoForm,
     /// What was found is not proved.
     #[error("what was found is not proved: {0}")]
@@ -163,12 +167,7 @@ impl Search<'_> {
     }
 
     /// The box with the most of the pitch angle that is found.
-    fn largest(
-        &self,
-        shape: Reach,
-        rate: f64,
-        known: &impl Fn(Reach) -> bool,
-    ) -> Option<Found> {
+    fn largest(&self, shape: Reach, rate: f64, known: &impl Fn(Reach) -> bool) -> Option<Found> {
         let mut boxes = 0;
         let mut tried = |reach: Reach, best: &Option<Found>| -> Option<Found> {
             boxes += 1;
@@ -251,15 +250,35 @@ impl Search<'_> {
         Ok((transition, loops))
     }
 
+    /// Loops between corners that the form is made for: θ and q bend little, and stand in their middle.
+    fn apart(&self, transition: &Transition) -> Vec<LoopModel<f64>> {
+        let bits = transition.sides.iter().enumerate();
+        let fixed =
+            bits.filter(|(_, number)| **number < STIFF).fold(0, |sum, (bit, _)| sum | 1 << bit);
+        let corners = &transition.corners;
+        let settings = self.description().settings();
+        let kept = (0..corners.len()).filter(|corner| corner & fixed == 0);
+        let middle = |corner: usize| {
+            let own = (0..corners.len()).filter(|it| it & !fixed == corner);
+            let (mut sum, mut count) = (vec![0.0; corners[corner].rows.len()], 0.0);
+            for other in own {
+                count += 1.0;
+                for (sum, it) in sum.iter_mut().zip(&corners[other].rows) {
+                    *sum += it.midpoint();
+                }
+            }
+            let rate = corners[corner].rate.iter().map(|it| it.midpoint()).collect();
+            let rows = sum.into_iter().map(|it| it / count).collect();
+            let plant = SampledPlant { states: corners[corner].states, rows, rate };
+            LoopModel::new(plant, settings.clone())
+        };
+        kept.map(middle).collect()
+    }
+
     /// A form for a box, with the widest ellipsoid inside of it.
-    fn form_for(
-        &self,
-        reach: Reach,
-        rate: f64,
-        known: Option<&Matrix>,
-    ) -> Option<Found> {
+    fn form_for(&self, reach: Reach, rate: f64, known: Option<&Matrix>) -> Option<Found> {
         let (transition, loops) = self.loops(&reach.scaled(1.0 + ROOM)).ok()?;
-        let middles: Vec<LoopModel<f64>> = loops.iter().map(LoopModel::midpoint).collect();
+        let middles = self.apart(&transition);
         let matrices = self.prover.matrices_of(&middles, self.set)?;
         let direction = middles.first()?.pitch_off(1.0);
         let mut rows = self.prover.limited(self.set)?;
@@ -269,9 +288,8 @@ impl Search<'_> {
             WidestProblem { matrices: &matrices, rows: &rows, directions: &directions, rate };
         let effort = solve::Effort { stops: self.effort.stops, ..solve::Effort::default() };
         let from = |form: &Matrix| widest(&problem, form, &effort);
-        let form = known.and_then(from).or_else(|| {
-            from(&self.prover.common_at(&matrices, rate)?)
-        })?;
+        let form =
+            known.and_then(from).or_else(|| from(&self.prover.common_at(&matrices, rate)?))?;
         let size: f64 = (0..direction.len())
             .flat_map(|i| (0..direction.len()).map(move |j| (i, j)))
             .map(|(i, j)| direction[i] * form.get(i, j).unwrap_or(f64::NAN) * direction[j])

@@ -59,8 +59,10 @@ impl Reach {
 
 /// Everything that a sample may make of a state in the box.
 pub(crate) struct Transition {
-    /// Plants between which the one of every sample lies.
+    /// Plants between which the one of every sample lies, by the bits of their numbers: of each side, below or above.
     pub(crate) corners: Vec<SampledPlant<Interval>>,
+    /// Which number of the motion each side is.
+    pub(crate) sides: Vec<usize>,
     /// Rows over states and arriving command, of θ, q, V, α and elevator: where none is too large, none is within a sample.
     pub(crate) within: [[Vec<Interval>; MOTION]; 2],
     /// How far each state may be off at the end of a sample by what is not told apart, at most about.
@@ -123,7 +125,8 @@ impl Transition {
         };
         let corners = (0..1_usize << turned.len()).map(corner).collect();
         let blurs = wide[..motion.states].iter().map(|row| motion.size_of(row, reach)).collect();
-        Ok(Self { corners, within: motion.within(&bounds, &all, dt_s), blurs })
+        let sides = motion.moved.iter().map(|(number, _)| *number).collect();
+        Ok(Self { corners, sides, within: motion.within(&bounds, &all, dt_s), blurs })
     }
 }
 
@@ -173,7 +176,8 @@ fn with_slope(a: &Rows, by: &Rows, dt_s: Interval) -> Result<(Rows, Rows), NotPr
         whole[place][size..].copy_from_slice(by);
     }
     let whole = grown(&whole, dt_s)?;
-    let part = |from: usize| whole[..size].iter().map(|row| row[from..from + size].to_vec()).collect();
+    let part =
+        |from: usize| whole[..size].iter().map(|row| row[from..from + size].to_vec()).collect();
     Ok((part(0), part(size)))
 }
 

@@ -11,11 +11,11 @@
 
 use fspid_lti::Matrix;
 
+use super::Effort;
 use super::barrier::{Derivatives, Part, barrier, newton_step};
 use super::dense::{Dense, add_scaled, dot};
 use super::inequality::{Inequality, System};
 use super::symmetric::{pack, unpack};
-use super::Effort;
 
 /// Factor of the weight of the objective from one centre to the next.
 const HEAVIER: f64 = 6.0;

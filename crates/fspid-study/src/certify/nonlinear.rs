@@ -28,9 +28,7 @@ pub enum NonlinearAnswer {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoNonlinear {
     /// What flies is a linear plant.
-    #[error(
-        "what flies is a linear plant; an [aircraft] with model = \"nonlinear\" is asked for"
-    )]
+    #[error("what flies is a linear plant; an [aircraft] with model = \"nonlinear\" is asked for")]
     Linear,
     /// What flies is another simulator.
     #[error("what flies is another simulator, whose equations are not known")]
@@ -44,7 +42,9 @@ pub enum NoNonlinear {
     #[error("the aircraft's forces are tables or formulas, and only derivatives are enclosed")]
     NoDerivatives,
     /// Outer loops move set-point and throttle.
-    #[error("outer loops move the set-point and may move the throttle, which stand still in the claim")]
+    #[error(
+        "outer loops move the set-point and may move the throttle, which stand still in the claim"
+    )]
     OuterLoops,
     /// Numbers that are none, of a trim beyond the atmosphere.
     #[error("the trim has no finite numbers")]
@@ -115,8 +115,7 @@ pub(super) fn certified(
         return Ok(NonlinearAnswer::LinearNotProved);
     };
     let verdict = prove_nonlinear(certificate, &aircraft, effort)?;
-    let answer =
-        NonlinearAnswer::Verdict(Box::new(verdict.clone()), Box::new(certificate.clone()));
+    let answer = NonlinearAnswer::Verdict(Box::new(verdict.clone()), Box::new(certificate.clone()));
     if let NonlinearVerdict::Proved(claim, checked) = verdict {
         let whole = Certificate { nonlinear: Some(*claim), ..certificate.clone() };
         let rechecked = Rechecked { nonlinear: Some(checked), ..rechecked.clone() };
@@ -139,10 +138,9 @@ pub(super) fn sentence(
     let speed = format!("{speed_m_s:.2} m/s ({:.2} ft/s)", speed_m_s / FOOT_M);
     let dt_s = certificate.description.controller.config().dt_s;
     let decay = match claim.rate {
-        rate if rate < 1.0 => format!(
-            " at least as fast as with a time constant of {:.1} s",
-            -dt_s / libm::log(rate)
-        ),
+        rate if rate < 1.0 => {
+            format!(" at least as fast as with a time constant of {:.1} s", -dt_s / libm::log(rate))
+        }
         _ => String::new(),
     };
     format!(

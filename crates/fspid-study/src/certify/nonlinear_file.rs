@@ -44,6 +44,7 @@ pub(super) struct AircraftFile {
     drag_law: DragFile,
     thrust_law: ThrustFile,
     alpha_rad: [Option<f64>; 2],
+    airspeeds_m_s: [Option<f64>; 2],
     elevator_rad: [Option<f64>; 2],
 }
 
@@ -126,7 +127,8 @@ impl NonlinearFile {
 
 impl AircraftFile {
     pub(super) fn of(numbers: &MotionNumbers) -> Self {
-        let MotionNumbers { longitudinal, laws, alpha_rad, elevator_rad, .. } = *numbers;
+        let MotionNumbers { longitudinal, laws, alpha_rad, airspeeds_m_s, elevator_rad, .. } =
+            *numbers;
         let Longitudinal { lift, drag, pitch, thrust_speed } = longitudinal;
         Self {
             mass_kg: numbers.mass_kg,
@@ -152,6 +154,7 @@ impl AircraftFile {
                 ThrustLaw::WithSpeed => ThrustFile::WithSpeed,
             },
             alpha_rad: ends(alpha_rad),
+            airspeeds_m_s: ends(airspeeds_m_s),
             elevator_rad: ends(elevator_rad),
         }
     }
@@ -185,6 +188,7 @@ impl AircraftFile {
                 },
             },
             alpha_rad: range(self.alpha_rad),
+            airspeeds_m_s: range(self.airspeeds_m_s),
             elevator_rad: range(self.elevator_rad),
         }
     }

@@ -116,6 +116,7 @@ const AIRCRAFT: Shape = Object(&[
     key("drag_law", Word(&["linear", "polar"])),
     key("thrust_law", Word(&["constant", "with-speed"])),
     key("alpha_rad", ENDS),
+    key("airspeeds_m_s", ENDS),
     key("elevator_rad", ENDS),
 ]);
 
