@@ -21,7 +21,7 @@ use fspid_numeric::scalar::Interval;
 use fspid_sim::loop_model::LoopModel;
 
 use crate::certificate::{Certificate, Claim};
-use crate::check::{IntervalMatrix, NotProved, inside_limits, reach};
+use crate::check::{NotProved, inside_limit, reach};
 use crate::description::LoopDescription;
 use crate::gain_set::{GainSet, KnownSlopes};
 use crate::recheck::{Recheck, RecheckError};
@@ -193,7 +193,6 @@ impl Nonlinear {
         set: &GainSet,
         within: &[[Vec<Interval>; MOTION]; 2],
     ) -> Result<usize, NonlinearError> {
-        let form = IntervalMatrix::from(&self.form);
         let mut rows = Vec::new();
         for (_, held) in set.held_corners() {
             let arriving = model.arriving_row(points(held.gains));
@@ -203,7 +202,9 @@ impl Nonlinear {
                 rows.extend(own.map(|(row, reach)| (of_loop(row, &arriving), reach.next_down())));
             }
         }
-        inside_limits(&form, self.level, &rows)?;
+        for (row, limit) in &rows {
+            inside_limit(&self.form, self.level, row, *limit)?;
+        }
         Ok(rows.len())
     }
 

@@ -187,3 +187,34 @@ impl Chart {
         None
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of one state that may come to a half either way the widest form is 4, whatever is asked of its decay; of two that
+    /// are turned and shrunk, the direction that is not asked for costs nothing.
+    #[test]
+    fn the_widest_ellipsoid_is_that_of_the_limit() {
+        let matrices = [Matrix::from_rows(&[[0.5]]).expect("finite")];
+        let (rows, directions) = ([vec![2.0]], [vec![1.0]]);
+        let problem =
+            WidestProblem { matrices: &matrices, rows: &rows, directions: &directions, rate: 1.0 };
+        let start = Matrix::identity(1);
+        let found = widest(&problem, &start, &Effort::default()).expect("it falls");
+        let form = found.get(0, 0).expect("there");
+        assert!(form > 4.0 && form < 4.0 * (1.0 + 2.0 * GAP), "{form}");
+
+        let turned = [Matrix::from_rows(&[[0.6, 0.6], [-0.6, 0.6]]).expect("finite")];
+        let (rows, directions) = ([vec![1.0, 0.0]], [vec![1.0, 0.0]]);
+        let problem =
+            WidestProblem { matrices: &turned, rows: &rows, directions: &directions, rate: 1.0 };
+        let found = widest(&problem, &Matrix::identity(2), &Effort::default()).expect("it falls");
+        let form = found.get(0, 0).expect("there");
+        assert!(form > 1.0 && form < 1.0 + 2.0 * GAP, "{form}");
+        // Where the form does not fall there is nothing to begin with.
+        let grows = [Matrix::from_rows(&[[1.1, 0.0], [0.0, 0.5]]).expect("finite")];
+        let problem = WidestProblem { matrices: &grows, ..problem };
+        assert!(widest(&problem, &Matrix::identity(2), &Effort::default()).is_none());
+    }
+}

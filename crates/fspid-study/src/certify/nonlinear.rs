@@ -133,9 +133,9 @@ pub(super) fn sentence(
     let Reach { motion, command_rad } = claim.reach;
     let [pitch, rate, speed_m_s, alpha, elevator] = motion;
     let [pitch, rate, alpha, elevator, command] =
-        [pitch, rate, alpha, elevator, command_rad].map(|it| format!("{:.2}", degrees(it)));
+        [pitch, rate, alpha, elevator, command_rad].map(|it| above(degrees(it)));
     let begins = below(degrees(checked.pitch_within_rad), 3);
-    let speed = format!("{speed_m_s:.2} m/s ({:.2} ft/s)", speed_m_s / FOOT_M);
+    let speed = format!("{} m/s ({} ft/s)", above(speed_m_s), above(speed_m_s / FOOT_M));
     let dt_s = certificate.description.controller.config().dt_s;
     let decay = match claim.rate {
         rate if rate < 1.0 => {
@@ -147,6 +147,11 @@ pub(super) fn sentence(
         "the equations of motion themselves: a flight that begins in the certified ellipsoid, so with the pitch angle up to {begins} deg off and nothing else, stays within {pitch} deg of pitch, {rate} deg/s of pitch rate, {speed} of airspeed, {alpha} deg of angle of attack and {elevator} deg of elevator from the trim (commands within {command} deg), at samples and between them, meets no limit, and comes to rest at the trim{decay}; so with the set-point at the trim, no load, sensors without bias, wings level, the throttle of the trim, still air that has everywhere the density of the trim ({density} kg/m³), above the ground; the steps in which a simulation integrates are not covered, and all else here is about the linear model",
         density = short(claim.aircraft.density_kg_m3),
     )
+}
+
+/// Rounded up to two decimals, so that what is said to be kept is.
+fn above(value: f64) -> String {
+    format!("{:.2}", libm::ceil(100.0 * value) / 100.0)
 }
 
 /// Rounded down to so many decimals, so that what is said is not more than what is proved.
