@@ -348,7 +348,7 @@ impl Search<'_> {
 
 /// What the ellipsoid is to hold: the pitch angle, and, with weight, what one sample may be off by.
 ///
-/// Of states that are off by b at the end of a sample the root of the form may grow by $\sqrt{P_{ii}}\, b_i$, where the rate
+/// Of states that are off by b at the end of a sample the root of the form may grow by $\sqrt{P_{ii}} b_i$, where the rate
 /// has room for $1 - \rho$ at the edge.
 fn directions(
     pitch: &[f64],

@@ -1,6 +1,6 @@
 //! One sample of the nonlinear motion: matrices between which every one of them lies, as long as it stays in a box.
 //!
-//! By the mean value theorem the motion from the trim is $\dot x(t) = A(t)\, x(t)$ with x over plant, actuator and the held
+//! By the mean value theorem the motion from the trim is $\dot x(t) = A(t) x(t)$ with x over plant, actuator and the held
 //! command, as long as x stays in the box, where
 //!
 //! $$ A(t) = A_0 + \sum_i \tfrac{1}{2} x_i(t) A_i + R(t), \qquad |x_i| \le r_i, \quad |R| \le \hat R $$
@@ -11,8 +11,8 @@
 //! entries:
 //!
 //! $$ \Phi \in e^{A_0 T} + \sum_i \tfrac{1}{2} \bar x_i L_i + [-W, W], \qquad
-//!    W = L_{|A_0|}(\hat R) + \sum_i \frac{T^2}{4} d_i\, e^{|A_0| T} |A_i A_0 - A_0 A_i|\, e^{|A_0| T}
-//!    + \left( e^{(|A_0| + D) T} - e^{|A_0| T} - L_{|A_0|}(D) \right) $$
+//!    W = L_{|A_0|}(\hat R) + \sum_i \frac{T^2}{4} d_i e^{|A_0| T} |A_i A_0 - A_0 A_i| e^{|A_0| T} +
+//!    \left( e^{(|A_0| + D) T} - e^{|A_0| T} - L_{|A_0|}(D) \right) $$
 //!
 //! with $D = \sum_i \tfrac{1}{2} r_i |A_i| + \hat R$ and $d_i \ge |\tfrac{1}{2} (x_i - \bar x_i)|$ from how fast $x_i$ can move
 //! in the box. A loop's matrix is affine in its sampled plant, so that the corners of the means $\bar x$ span all of them.
@@ -302,7 +302,7 @@ impl Motion {
 
     /// Rows of what the motion depends on at both ends of a sample, as the mean value theorem has them:
     ///
-    /// $$ \Phi(t) \in I + t\, [A_0 - D, A_0 + D] \pm (e^{(|A_0| + D) T} - I - (|A_0| + D) T) $$
+    /// $$ \Phi(t) \in I + t [A_0 - D, A_0 + D] \pm (e^{(|A_0| + D) T} - I - (|A_0| + D) T) $$
     ///
     /// At every matrix of the middle the size of a row at a state is convex in t: where it is small enough at 0 and at T, it
     /// is between.
