@@ -5,6 +5,8 @@
 //! arithmetic. The derivatives of the equations of motion are written out, not differenced. For aircraft of derivatives to
 //! which nothing is added (no configurations, Mach rows, ground or engine of their own).
 
+mod motion;
+
 use fspid_numeric::scalar::{Base, Dual, Interval, Scalar};
 
 use crate::aerodynamics::derivatives::{
@@ -13,6 +15,9 @@ use crate::aerodynamics::derivatives::{
 use crate::atmosphere::{AirModel, Environment, SCALE_K_M, Stratum};
 use crate::data::{DerivativeData, Laws, Moment};
 use crate::trim::TrimTarget;
+use crate::validity::Range;
+
+pub use motion::{MOTION, MotionNumbers, MotionOver};
 
 /// Rounding of the standard atmosphere's powers, as a share.
 const AIR_ROUNDING: f64 = 1e-12;
@@ -69,6 +74,11 @@ fn point<T: Scalar>(value: f64) -> T {
     T::constant(value)
 }
 
+/// Where a trim is looked for.
+fn searched(alpha: Range) -> Interval {
+    Interval::between(alpha.min.max(-0.8), alpha.max.min(0.8))
+}
+
 /// Every number of a row as it is.
 fn fixed<T: Scalar>(row: LongitudinalCoefficient) -> LongitudinalCoefficient<T> {
     let LongitudinalCoefficient { reference, alpha, alpha_rate, pitch_rate, speed, elevator } = row;
@@ -116,7 +126,7 @@ impl<T: Sought> EnclosedFlight<T> {
             longitudinal,
             geometry: data.geometry,
             reference_airspeed_m_s: data.reference.airspeed_m_s,
-            alpha_rad: Interval::between(alpha.min.max(-0.8), alpha.max.min(0.8)),
+            alpha_rad: searched(alpha),
             laws,
             environment,
         }

@@ -7,6 +7,7 @@ mod enclosure;
 mod envelope;
 mod flight;
 mod loading;
+mod motion;
 mod qualities;
 mod support;
 mod trim_and_linearise;

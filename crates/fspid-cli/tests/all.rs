@@ -8,6 +8,7 @@ mod certify;
 mod certify_cases;
 mod certify_disturbances;
 mod certify_family;
+mod certify_nonlinear;
 mod cli;
 mod common;
 mod equations;

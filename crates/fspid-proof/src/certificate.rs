@@ -6,6 +6,7 @@ use crate::description::LoopDescription;
 use crate::disturbances::DisturbanceBound;
 use crate::family::Family;
 use crate::limits;
+use crate::nonlinear::Nonlinear;
 use crate::recheck::Rechecked;
 use crate::scope::{LeftOut, Range, Scope};
 use crate::steps::Steps;
@@ -35,6 +36,8 @@ pub struct Certificate {
     pub family: Option<Family>,
     /// What disturbances do at most, from rest.
     pub disturbances: Vec<DisturbanceBound>,
+    /// The nonlinear aircraft near its trim, where something is claimed of it.
+    pub nonlinear: Option<Nonlinear>,
 }
 
 /// What is claimed.

@@ -18,6 +18,7 @@ mod disturbances;
 mod family;
 pub mod gain_set;
 mod limits;
+mod nonlinear;
 mod prove;
 mod recheck;
 mod remembered;
@@ -39,6 +40,10 @@ pub use family::{
     Part as FamilyPart, Uncertain, numbers, prove_family,
 };
 pub use limits::{AtLimit, pitch_within};
+pub use nonlinear::{
+    CheckedNonlinear, Nonlinear, NonlinearError, NonlinearVerdict, NotNonlinear, Reach,
+    prove_nonlinear,
+};
 pub use prove::{
     Effort, Largest, Outcome, Unbounded, Verdict, bound_disturbances, certify, is_proved,
 };

@@ -139,6 +139,9 @@ pub(crate) fn check(certificate: &Certificate) -> Result<(), WrongSizes> {
     for bound in &certificate.disturbances {
         wrong.of_form("disturbances.form", &bound.form, states);
     }
+    if let Some(claim) = &certificate.nonlinear {
+        wrong.of_form("nonlinear.form", &claim.form, description.states());
+    }
     let family = certificate.family.iter().flat_map(|family| &family.parts);
     let claims = family.map(|part| (&part.claim, Range::REST));
     let inequalities = claims
@@ -147,6 +150,9 @@ pub(crate) fn check(certificate: &Certificate) -> Result<(), WrongSizes> {
         .fold(0, u64::saturating_add);
     let again = most_inequalities(certificate, &certificate.claim, certificate.range);
     let inequalities = inequalities.saturating_add(again.saturating_mul(bounds as u64));
+    // Each corner of the nonlinear motion is asked as a loop of its own.
+    let corners = if certificate.nonlinear.is_some() { NONLINEAR_CORNERS } else { 0 };
+    let inequalities = inequalities.saturating_add(inequalities.saturating_mul(corners));
     let work = inequalities.saturating_mul((states as u64).saturating_pow(3));
     wrong.push(("claim", "products of the re-check"), work, [0, MOST_WORK]);
     if wrong.found.is_empty() { Ok(()) } else { Err(WrongSizes(wrong.found)) }
@@ -182,6 +188,9 @@ fn most_inequalities(certificate: &Certificate, claim: &Claim, range: Range) -> 
         Claim::SequenceGrowth { inputs, .. } => inputs.len() as u64 + 1,
     }
 }
+
+/// Corners of the nonlinear motion at most.
+const NONLINEAR_CORNERS: u64 = 1 << fspid_aircraft::enclosure::MOTION;
 
 #[derive(Default)]
 struct Sizes {

@@ -242,6 +242,7 @@ fn a_certificate_that_asks_nothing_of_the_loop_does_not_hold() {
         level: None,
         family: None,
         disturbances: Vec::new(),
+        nonlinear: None,
     };
     let refused = s_procedure(vec![]).check().expect_err("no cones");
     assert!(refused.to_string().contains("double cones"), "{refused}");

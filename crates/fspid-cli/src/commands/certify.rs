@@ -54,6 +54,9 @@ pub(crate) struct Arguments {
     /// Bound as well, from rest, what gusts and disturbances at the elevator do to pitch angle and command.
     #[arg(long, conflicts_with_all = ["check", "cases"])]
     disturbances: bool,
+    /// Certify as well the nonlinear aircraft in a box around its trim, which the search makes as large as it can.
+    #[arg(long, conflicts_with_all = ["check", "cases"])]
+    nonlinear: bool,
     /// Write the certificates into this folder.
     #[arg(long, value_name = "DIR")]
     out: Option<Folder>,
@@ -208,6 +211,10 @@ fn watched(
         if arguments.family {
             let mut told = |name: &str| tell(&format!("all that can be drawn of {name}"));
             certification = certification.with_families(template, &effort, &mut told)?;
+        }
+        if arguments.nonlinear {
+            let mut told = |name: &str| tell(&format!("the nonlinear aircraft with {name}"));
+            certification = certification.with_nonlinear(template.study(), &effort, &mut told);
         }
         Ok(certification)
     })

@@ -137,6 +137,40 @@ impl<S: Base, const N: usize> Div for Dual<S, N> {
     }
 }
 
+/// Duals of duals carry second derivatives along: of $f$ asked with variables of both kinds, the derivative with
+/// respect to input j of the derivative with respect to input i is $\partial_i \partial_j f$.
+impl<S: Base, const N: usize> Base for Dual<S, N> {
+    #[inline]
+    fn is_less(self, bound: Self) -> Option<bool> {
+        self.value.is_less(bound.value)
+    }
+
+    #[inline]
+    fn choose(self, bound: Self, then: Self, otherwise: Self) -> Self {
+        let (left, right) = (self.value, bound.value);
+        let value = left.choose(right, then.value, otherwise.value);
+        then.join(otherwise, value, |then, otherwise| left.choose(right, then, otherwise))
+    }
+
+    #[inline]
+    fn scaled(self, factor: Self) -> Self {
+        if self.is_zero() { self } else { self * factor }
+    }
+
+    fn unknown() -> Self {
+        Self { value: S::unknown(), derivative: [S::unknown(); N] }
+    }
+
+    fn is_zero(self) -> bool {
+        self.value.is_zero() && self.derivative.iter().all(|it| it.is_zero())
+    }
+
+    fn whole(self) -> Option<i32> {
+        let is_fixed = self.derivative.iter().all(|it| it.is_zero());
+        self.value.whole().filter(|_| is_fixed)
+    }
+}
+
 impl<S: Base, const N: usize> Scalar for Dual<S, N> {
     #[inline]
     fn constant(value: f64) -> Self {
@@ -231,5 +265,29 @@ impl<S: Base, const N: usize> Scalar for Dual<S, N> {
 
     fn floor(self) -> Self {
         Self::fixed(self.value.floor())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// $f = x^2 \sin y$: all second derivatives at once, against what is known of them.
+    #[test]
+    fn duals_of_duals_have_second_derivatives() {
+        let (x, y) = (1.5_f64, 0.4_f64);
+        let inner = Dual::<f64, 2>::variables([x, y]);
+        let [x2, y2] = Dual::<Dual<f64, 2>, 2>::variables(inner);
+        let f = x2.square() * y2.sin();
+        let second = |i: usize, j: usize| f.derivative[i].derivative[j];
+        let expected = [
+            [2.0 * libm::sin(y), 2.0 * x * libm::cos(y)],
+            [2.0 * x * libm::cos(y), -x * x * libm::sin(y)],
+        ];
+        for (i, row) in expected.iter().enumerate() {
+            for (j, value) in row.iter().enumerate() {
+                assert!((second(i, j) - value).abs() < 1e-14, "{i} {j}");
+            }
+        }
     }
 }

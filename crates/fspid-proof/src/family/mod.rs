@@ -121,6 +121,7 @@ impl Part {
             steps: None,
             family: None,
             disturbances: Vec::new(),
+            nonlinear: None,
             ..certificate.clone()
         }
     }

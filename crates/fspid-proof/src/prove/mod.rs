@@ -448,6 +448,7 @@ impl<'a> Prover<'a> {
             steps: None,
             family: None,
             disturbances: Vec::new(),
+            nonlinear: None,
         };
         let set = self.set(factor);
         let recheck = Recheck::with(&certificate, self.enclosed.clone(), set, &self.slopes).ok()?;

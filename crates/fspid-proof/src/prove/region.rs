@@ -50,6 +50,7 @@ impl<'a> Region<'a> {
             steps: None,
             family: None,
             disturbances: Vec::new(),
+            nonlinear: None,
             level: None,
         };
         let recheck =

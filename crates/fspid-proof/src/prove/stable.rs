@@ -7,6 +7,7 @@ use fspid_sim::loop_model::LoopModel;
 use super::Prover;
 use crate::certificate::{Certificate, Claim};
 use crate::gain_set::GainSet;
+use crate::limits;
 use crate::recheck::{Rechecked, cone_form};
 use crate::solve::{self, Condition, LyapunovProblem};
 
@@ -37,19 +38,45 @@ impl Prover<'_> {
     /// A claim of one form for several loops that differ in their plants alone, in ordinary arithmetic: what is to be asked
     /// of everything between them.
     pub(crate) fn common_of(&self, loops: &[LoopModel<f64>], set: &GainSet) -> Option<Claim> {
+        let form = self.common_at(&self.matrices_of(loops, set)?, 1.0)?;
+        Some(Claim::CommonQuadratic { form, rate: 1.0 })
+    }
+
+    /// One form that falls at a rate under some loops.
+    pub(crate) fn common_at(&self, matrices: &[Matrix], rate: f64) -> Option<Matrix> {
+        let conditions: Vec<Condition<'_>> =
+            matrices.iter().map(|matrix| Condition { matrix, cone: None }).collect();
+        let problem = LyapunovProblem { conditions: &conditions, cones: &[], rate };
+        match solve::common_lyapunov(&problem, &self.search()) {
+            solve::Verdict::Found(solution) => Some(solution.p),
+            solve::Verdict::NotFound { .. } => None,
+        }
+    }
+
+    /// Closed loops of several plants at the gains that span the set, if each of them is stable on its own.
+    pub(crate) fn matrices_of(
+        &self,
+        loops: &[LoopModel<f64>],
+        set: &GainSet,
+    ) -> Option<Vec<Matrix>> {
         let rest = self.rest(set).ok()?;
         let corners = self.held(set, 1.0, &rest).ok()?.held_hull(THINNED);
         let closed = loops.iter().map(|model| self.around(model.clone()).matrices(&corners));
-        let matrices = closed.collect::<Option<Vec<_>>>()?.concat();
-        let conditions: Vec<Condition<'_>> =
-            matrices.iter().map(|matrix| Condition { matrix, cone: None }).collect();
-        let problem = LyapunovProblem { conditions: &conditions, cones: &[], rate: 1.0 };
-        match solve::common_lyapunov(&problem, &self.search()) {
-            solve::Verdict::Found(solution) => {
-                Some(Claim::CommonQuadratic { form: solution.p, rate: 1.0 })
-            }
-            solve::Verdict::NotFound { .. } => None,
-        }
+        Some(closed.collect::<Option<Vec<_>>>()?.concat())
+    }
+
+    /// Rows from the state to everything that is limited, each over its limit, at the gains that span the set.
+    pub(crate) fn limited(&self, set: &GainSet) -> Option<Vec<Vec<f64>>> {
+        let rest = self.rest(set).ok()?;
+        let corners = self.held(set, 1.0, &rest).ok()?.held_hull(THINNED);
+        let rows = corners.iter().flat_map(|held| {
+            let model = self.model.with_change_gain(held.change_gain);
+            limits::rows(self.description, &model, held.gains, &rest)
+        });
+        let over = |(row, limit): (Vec<f64>, f64)| {
+            (limit > 0.0).then(|| row.iter().map(|it| it / limit).collect())
+        };
+        rows.map(over).collect()
     }
 
     /// True where something of bounded size may never cease.

@@ -17,6 +17,7 @@ use crate::disturbances::Disturbed;
 use crate::family::{CheckedFamily, FamilyError};
 use crate::gain_set::{Cone, GainSet, HeldGains, IncrementMap, KnownSlopes, NoSlopes, producible};
 use crate::limits;
+use crate::nonlinear::{CheckedNonlinear, NonlinearError};
 use crate::rest::{NoRest, Rest};
 use crate::sizes::{self, WrongSizes};
 use crate::solve::never;
@@ -56,6 +57,8 @@ pub struct Rechecked {
     /// What disturbances do at most, from rest, in the order of the certificate; what it has for limits alone is in each of
     /// the others.
     pub disturbed: Vec<Disturbed>,
+    /// The nonlinear aircraft; none where nothing is claimed of it.
+    pub nonlinear: Option<CheckedNonlinear>,
 }
 
 /// Where a law keeps its gains to a rate.
@@ -116,6 +119,9 @@ pub enum RecheckError {
     /// The family is not proved.
     #[error(transparent)]
     Family(#[from] FamilyError),
+    /// Nothing is proved of the nonlinear aircraft.
+    #[error(transparent)]
+    Nonlinear(#[from] NonlinearError),
     /// The certificate does not fit together.
     #[error("{what}")]
     Malformed {
@@ -254,6 +260,12 @@ impl<'a> Recheck<'a> {
             .as_ref()
             .map(|family| family.check(self.certificate, &self.set, self.stops));
         let family = family.transpose()?;
+        let nonlinear = self
+            .certificate
+            .nonlinear
+            .as_ref()
+            .map(|claim| claim.check(self.certificate, &self.set, self.stops));
+        let nonlinear = nonlinear.transpose()?;
         let bounds = self.set.bounds();
         Ok(Rechecked {
             cells: self.set.cells.len(),
@@ -268,6 +280,7 @@ impl<'a> Recheck<'a> {
             stepped,
             family,
             disturbed,
+            nonlinear,
         })
     }
 

@@ -28,15 +28,22 @@ const TRIALS_MAX: usize = 30;
 const REPAIRS: [f64; 4] = [0.0, 1e-14, 1e-11, 1e-8];
 
 /// First and second derivatives; of the second only the upper triangle.
-struct Derivatives {
+pub(super) struct Derivatives {
     gradient: Vec<f64>,
     hessian: Dense,
 }
 
+impl Derivatives {
+    /// Those of a linear function.
+    pub(super) fn linear(slope: &[f64]) -> Self {
+        let count = slope.len();
+        Self { gradient: slope.to_vec(), hessian: Dense::zeros(count, count) }
+    }
+}
+
 /// Derivatives at unknowns where all inequalities hold; `None` elsewhere.
 fn derivatives(system: &System, level: f64, x: &[f64], linear: &[f64]) -> Option<Derivatives> {
-    let count = system.len();
-    let mut sum = Derivatives { gradient: linear.to_vec(), hessian: Dense::zeros(count, count) };
+    let mut sum = Derivatives::linear(linear);
     for inequality in &system.inequalities {
         let inverse = system.value(inequality, x, level).cholesky()?.lower_inverse();
         let inverse = inverse.transpose_times(&inverse);
@@ -46,11 +53,11 @@ fn derivatives(system: &System, level: f64, x: &[f64], linear: &[f64]) -> Option
 }
 
 /// What one inequality adds; Z is its inverse.
-struct Part<'a> {
-    system: &'a System,
-    inequality: &'a Inequality,
-    level: f64,
-    inverse: Dense,
+pub(super) struct Part<'a> {
+    pub(super) system: &'a System,
+    pub(super) inequality: &'a Inequality,
+    pub(super) level: f64,
+    pub(super) inverse: Dense,
 }
 
 impl Part<'_> {
@@ -58,7 +65,7 @@ impl Part<'_> {
         if form.rated { self.level } else { 1.0 }
     }
 
-    fn add_to(&self, sum: &mut Derivatives) {
+    pub(super) fn add_to(&self, sum: &mut Derivatives) {
         for form in &self.inequality.forms {
             let after = form.factor.after(&self.inverse);
             self.add_slope(form, &form.factor.before(&after), &mut sum.gradient);
@@ -207,13 +214,13 @@ pub(super) fn centre(system: &System, level: f64, x: &[f64], steps_max: usize) -
     Some(centre)
 }
 
-struct Step {
-    direction: Vec<f64>,
+pub(super) struct Step {
+    pub(super) direction: Vec<f64>,
     /// Square root of the first derivative along the direction.
-    decrement: f64,
+    pub(super) decrement: f64,
 }
 
-fn newton_step(mut at: Derivatives) -> Option<Step> {
+pub(super) fn newton_step(mut at: Derivatives) -> Option<Step> {
     let right: Vec<f64> = at.gradient.iter().map(|value| -value).collect();
     let diagonal: Vec<f64> = (0..right.len()).map(|i| at.hessian[(i, i)]).collect();
     // Entries of very different size become comparable: ones on the diagonal.
@@ -259,7 +266,7 @@ fn step_length(system: &System, level: f64, x: &[f64], linear: &[f64], step: &St
 }
 
 /// Minus the sum of the logarithms of the determinants; `None` unless all matrices are positive definite.
-fn barrier(values: &[Dense]) -> Option<f64> {
+pub(super) fn barrier(values: &[Dense]) -> Option<f64> {
     let mut sum = 0.0;
     for value in values {
         let lower = value.cholesky()?;

@@ -19,6 +19,7 @@ mod lyapunov;
 mod parameter_dependent;
 mod stein;
 mod symmetric;
+mod widest;
 mod words;
 
 pub use cells::Part;
@@ -33,6 +34,7 @@ pub use parameter_dependent::{
     MovingForm, MovingProblem, MovingVerdict, moving_form, moving_form_over,
 };
 pub use stein::summed;
+pub use widest::{WidestProblem, widest};
 
 /// How much work a search may do.
 #[derive(Debug, Clone, Copy)]

@@ -8,7 +8,8 @@ use serde_json::{Value, json};
 use super::checked::CheckedFile;
 use super::controller_file::ControllerFile;
 use super::loop_file::LoopFile;
-use super::{asked, cases, family};
+use super::nonlinear_file::AircraftFile;
+use super::{asked, cases, family, nonlinear};
 use crate::analysis::lasting_plants;
 use fspid_scenario::file::{Study, Template};
 
@@ -60,7 +61,7 @@ impl CheckedFile {
 
 impl CheckedFile {
     /// As [`compare`](Self::compare) with a scenario that can be built with what its dispersions draw, so that a certified
-    /// family is compared as well.
+    /// family is compared as well, and the aircraft of a claim about the nonlinear one.
     ///
     /// # Errors
     /// As [`compare`](Self::compare).
@@ -68,6 +69,7 @@ impl CheckedFile {
         let study = template.study();
         self.compare(study)?;
         let of_one_choice = self.is_of_one_choice();
+        self.compare_nonlinear(study);
         let (Some(family), Some(against)) = (&self.certificate.family, &mut self.against) else {
             return Ok(());
         };
@@ -93,6 +95,25 @@ impl CheckedFile {
         let certified = family::box_in_words(&family.parameters);
         against.differences.push(Difference { path, certified, flown });
         Ok(())
+    }
+
+    /// Compares the aircraft of a claim about the nonlinear one with what flies, number by number.
+    fn compare_nonlinear(&mut self, study: &Study) {
+        let (Some(claim), Some(against)) = (&self.certificate.nonlinear, &mut self.against) else {
+            return;
+        };
+        let certified = json!(AircraftFile::of(&claim.aircraft));
+        match nonlinear::numbers(study) {
+            Ok(flown) => {
+                let flown = json!(AircraftFile::of(&flown));
+                walk(&mut against.differences, "nonlinear.aircraft", &certified, &flown);
+            }
+            Err(reason) => against.differences.push(Difference {
+                path: "nonlinear.aircraft".to_owned(),
+                certified: said(&certified),
+                flown: reason.to_string(),
+            }),
+        }
     }
 
     /// What a scenario has that the claim does not cover and does not say that it leaves out.

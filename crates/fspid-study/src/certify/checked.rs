@@ -2,7 +2,7 @@
 
 use super::no_certificate::NoCertificate;
 
-use fspid_proof::{Bearing, Certificate, RecheckError, Rechecked};
+use fspid_proof::{Bearing, Certificate, CheckedNonlinear, Nonlinear, RecheckError, Rechecked};
 
 use super::comparison::Comparison;
 use super::file::{self, Origin, Seal};
@@ -73,6 +73,12 @@ impl CheckedFile {
             }
             Bearing::OtherScale { .. } | Bearing::RateNotKept => Answer::SaysNothing(bearing),
         }
+    }
+
+    /// What is claimed of the nonlinear aircraft, where it is proved.
+    pub(super) fn nonlinear(&self) -> Option<(&Nonlinear, CheckedNonlinear)> {
+        let found = self.result.as_ref().ok().and_then(|rechecked| rechecked.nonlinear);
+        self.certificate.nonlinear.as_ref().zip(found)
     }
 
     /// True if the certificate proves the flown loop stable.

@@ -15,6 +15,7 @@ use super::family_file::FamilyFile;
 use super::json_text;
 use super::loop_file::LoopFile;
 use super::no_certificate::NoCertificate;
+use super::nonlinear_file::NonlinearFile;
 use super::shape::{self, CERTIFICATE, Wrong};
 use super::steps_file::StepsFile;
 
@@ -64,6 +65,8 @@ struct CertificateFile {
     family: Option<FamilyFile>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     disturbances: Vec<DisturbanceFile>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    nonlinear: Option<NonlinearFile>,
 }
 
 /// What becomes of limits.
@@ -179,6 +182,7 @@ pub fn to_text(certificate: &Certificate, origin: &Origin) -> String {
         steps: certificate.steps.as_ref().map(StepsFile::of),
         family: certificate.family.as_ref().map(FamilyFile::of),
         disturbances: certificate.disturbances.iter().map(DisturbanceFile::of).collect(),
+        nonlinear: certificate.nonlinear.as_ref().map(NonlinearFile::of),
     };
     file.content_digest = Some(file.content());
     let value = serde_json::to_value(&file).unwrap_or_else(|error| json!(error.to_string()));
@@ -265,9 +269,12 @@ impl CertificateFile {
         let disturbances = self.disturbances.iter().map(DisturbanceFile::build);
         let disturbances = disturbances.collect::<Result<Vec<_>, _>>();
         let disturbances = kept(&mut problems, "disturbances", disturbances);
-        let more = steps.zip(family).zip(disturbances);
+        let nonlinear = self.nonlinear.map(NonlinearFile::build).transpose();
+        let nonlinear = kept(&mut problems, "nonlinear", nonlinear);
+        let more = steps.zip(family).zip(disturbances.zip(nonlinear));
         let parts = description.zip(claim).zip(left_out).zip(more);
-        let Some((((description, claim), left_out), ((steps, family), disturbances))) = parts
+        let Some((((description, claim), left_out), ((steps, family), (disturbances, nonlinear)))) =
+            parts
         else {
             return Err(NoCertificate { problems });
         };
@@ -282,6 +289,7 @@ impl CertificateFile {
             steps,
             family,
             disturbances,
+            nonlinear,
         };
         let stated = limits_of(&certificate);
         if self.limits != stated {

@@ -8,7 +8,7 @@ use super::scope::{Told, told_deg};
 use super::text::found;
 use super::{
     Around, Certification, Certified, CheckedFile, Comparison, DisturbanceAnswer, NotProvable,
-    Seal, family,
+    Seal, family, nonlinear,
 };
 use crate::json::{merged, present, with_null_reasons};
 
@@ -16,7 +16,7 @@ use crate::json::{merged, present, with_null_reasons};
 const SCHEMA: u32 = 2;
 
 /// Why keys of these answers are null.
-const NULLS: [(&str, &str); 14] = [
+const NULLS: [(&str, &str); 16] = [
     ("decay_per_sample", "the claim is one of growth, or no rate is proved"),
     (
         "law_keeps_to_the_rate",
@@ -31,6 +31,8 @@ const NULLS: [(&str, &str); 14] = [
     ("open_because", "there is an answer, or nothing more is known of why there is none"),
     ("at", "no question can be asked of the family, or the loop as it is is not proved"),
     ("parts", "the family is not proved"),
+    ("box", "nothing is proved of the nonlinear aircraft"),
+    ("begins_within_deg", "nothing is proved of the nonlinear aircraft"),
     ("not_proved", "no factor was tried and not proved"),
     ("bearing", "the certificate does not hold"),
     ("bearing_in_words", "the certificate does not hold"),
@@ -56,8 +58,10 @@ fn result(certified: &Certified) -> Value {
     let family = certified.family.as_ref().map(family::in_json);
     let around = certified.around.as_ref().map(Around::json);
     let not_bounded = certified.disturbances.as_ref().and_then(DisturbanceAnswer::trouble);
+    let nonlinear = certified.nonlinear.as_ref().map(nonlinear::in_json);
     let besides = present(json!({
         "family": family,
+        "nonlinear": nonlinear,
         "outer_loops": around,
         "disturbances_not_bounded": not_bounded,
     }));
@@ -141,7 +145,10 @@ impl CheckedFile {
                 }),
                 Err(doubt) => json!({ "reason": doubt.to_string() }),
             },
-            present(json!({ "against": self.against.as_ref().map(comparison) })),
+            present(json!({
+                "nonlinear": self.nonlinear().map(|(claim, it)| nonlinear::proved_in_json(claim, &it)),
+                "against": self.against.as_ref().map(comparison),
+            })),
         ]);
         with_null_reasons(answer, &NULLS)
     }

@@ -23,6 +23,8 @@ mod json;
 mod json_text;
 mod loop_file;
 mod no_certificate;
+mod nonlinear;
+mod nonlinear_file;
 mod scope;
 mod shape;
 mod steps_file;
@@ -51,6 +53,7 @@ pub use disturbances::DisturbanceAnswer;
 pub use family::{FamilyAnswer, NoFamily};
 pub use file::{Origin, SCHEMA, Seal, from_text, to_text};
 pub use no_certificate::NoCertificate;
+pub use nonlinear::{NoNonlinear, NonlinearAnswer};
 pub use scope::in_short as scope_in_short;
 pub use shape::Wrong;
 
@@ -67,6 +70,8 @@ pub struct Certified {
     pub family: Option<FamilyAnswer>,
     /// What came of bounds of disturbances, where they were asked for.
     pub disturbances: Option<DisturbanceAnswer>,
+    /// What came of the nonlinear aircraft near its trim, where that was asked.
+    pub nonlinear: Option<NonlinearAnswer>,
     /// What flies around the loop, where that is an autopilot.
     pub around: Option<Around>,
     /// Where its certificates come from.
@@ -74,8 +79,8 @@ pub struct Certified {
 }
 
 impl Certified {
-    /// True if stability is proved, of the whole family and with bounds of disturbances where that was asked, and outer loops
-    /// around it are held at rest.
+    /// True if stability is proved, of the whole family, of the nonlinear aircraft and with bounds of disturbances where that was
+    /// asked, and outer loops around it are held at rest.
     #[must_use]
     pub fn is_proved(&self) -> bool {
         let itself =
@@ -83,6 +88,7 @@ impl Certified {
         itself
             && self.family.as_ref().is_none_or(FamilyAnswer::is_proved)
             && self.disturbances.as_ref().is_none_or(DisturbanceAnswer::is_bounded)
+            && self.nonlinear.as_ref().is_none_or(NonlinearAnswer::is_proved)
             && self.around.as_ref().is_none_or(Around::is_held)
     }
 
@@ -164,6 +170,7 @@ impl Certification {
                     outcome: described.and_then(|loop_| ask(&loop_, &asked(study, plant, &loop_))),
                     family: None,
                     disturbances: None,
+                    nonlinear: None,
                     around: around.clone(),
                     origin: Origin {
                         program: env!("CARGO_PKG_VERSION").to_owned(),
@@ -260,6 +267,26 @@ impl Certification {
             }
         }
         Ok(self)
+    }
+
+    /// Certifies the nonlinear aircraft near its trim, with each of the loops that is proved. Tells the name of each
+    /// controller before; where the effort was stopped, the loop has no answer.
+    #[must_use]
+    pub fn with_nonlinear(
+        mut self,
+        study: &Study,
+        effort: &Effort,
+        tell: &mut dyn FnMut(&str),
+    ) -> Self {
+        for certified in &mut self.results {
+            let Ok(outcome) = &mut certified.outcome else { continue };
+            tell(&certified.controller);
+            match nonlinear::certified(study, outcome, effort) {
+                Ok(answer) => certified.nonlinear = Some(answer),
+                Err(stopped) => certified.outcome = Err(stopped),
+            }
+        }
+        self
     }
 
     /// A file name for a certificate, which no other controller of the scenario has.

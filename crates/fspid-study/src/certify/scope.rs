@@ -5,7 +5,7 @@ use fspid_proof::{Certificate, LeftOut, Range, Rechecked, Scope, Stepped};
 use serde_json::{Value, json};
 
 use super::text::is_fixed;
-use super::{disturbances, family};
+use super::{disturbances, family, nonlinear};
 use crate::json::merged;
 use crate::metrics::short;
 use fspid_scenario::units::degrees;
@@ -18,6 +18,7 @@ pub(super) struct Told {
     family: Vec<String>,
     /// The gains do not move.
     is_fixed: bool,
+    nonlinear: Option<String>,
 }
 
 impl Told {
@@ -27,7 +28,9 @@ impl Told {
         let stable = certificate.claim.is_of_stability().then_some(scope);
         let family = certificate.family.as_ref().zip(rechecked.family);
         let family = family.map_or_else(Vec::new, |(family, it)| family::sentences(family, it));
-        Self { stable, left_out, family, is_fixed: is_fixed(certificate) }
+        let nonlinear = certificate.nonlinear.as_ref().zip(rechecked.nonlinear);
+        let nonlinear = nonlinear.map(|(claim, it)| nonlinear::sentence(certificate, claim, &it));
+        Self { stable, left_out, family, is_fixed: is_fixed(certificate), nonlinear }
     }
 
     /// As [`of`](Self::of) of a certificate that was read and held against no scenario: what its words make of its plants
@@ -37,6 +40,11 @@ impl Told {
         if !told.family.is_empty() {
             let words = "proved are the plants in the file; that they are those of the numbers named is computed by --against SCENARIO";
             told.family.push(words.to_owned());
+        }
+        if let Some(sentence) = &mut told.nonlinear {
+            sentence.push_str(
+                "; everything was enclosed anew from the aircraft in the file; that it is the scenario's is asked by --against SCENARIO",
+            );
         }
         told
     }
@@ -56,6 +64,7 @@ impl Told {
             sentences.extend(disturbed.into_iter().map(|it| ("disturbances", it)));
         }
         sentences.extend(self.family.iter().map(|sentence| ("family", sentence.clone())));
+        sentences.extend(self.nonlinear.iter().map(|it| ("nonlinear", it.clone())));
         let left_out = self.left_out.iter().enumerate();
         sentences.extend(left_out.map(|(place, one)| {
             let about = if place == 0 { "not in this claim" } else { "" };

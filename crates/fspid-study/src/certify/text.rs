@@ -39,6 +39,9 @@ fn push(out: &mut String, certified: &Certified) {
             if let Some(reason) = trouble {
                 out.push_str(&format!("  disturbances       NOT BOUNDED: {reason}\n"));
             }
+            if let Some(nonlinear) = certified.nonlinear.as_ref().filter(|it| !it.is_proved()) {
+                out.push_str(&format!("  nonlinear          {}\n", nonlinear.text()));
+            }
         }
     }
 }

@@ -41,6 +41,7 @@ const DISTURBANCE: Shape = Object(&[
     key("decay", RATE),
     key("gain", Positive(LARGE)),
     key("form", FORM),
+    optional("nonlinear", NONLINEAR),
 ]);
 
 /// Boxes of set-points, and parts of the loads.
@@ -88,6 +89,57 @@ const PLANTS: Shape = Object(&[
     key("reach", List(&NOT_NEGATIVE, [1, MOST_PARAMETERS])),
     key("pitch_rate", ROW),
     key("without_lag", Truth),
+]);
+
+/// The aircraft, the box, and what is claimed in it.
+const NONLINEAR: Shape = Object(&[
+    key("aircraft", AIRCRAFT),
+    key(
+        "box",
+        Object(&[
+            key("pitch_rad", Positive(ANGLE)),
+            key("pitch_rate_rad_s", Positive(ANGLE)),
+            key("airspeed_m_s", Positive(FACTOR)),
+            key("alpha_rad", Positive(ANGLE)),
+            key("elevator_rad", Positive(ANGLE)),
+            key("command_rad", Positive(ANGLE)),
+        ]),
+    ),
+    key("rate", RATE),
+    key("form", FORM),
+    key("level", Positive(LARGE)),
+]);
+
+const AIRCRAFT: Shape = Object(&[
+    key("mass_kg", Positive(FACTOR)),
+    key("iy_kg_m2", Positive(FACTOR)),
+    key("cg_aft_chords", REAL),
+    key("airspeed_m_s", Positive(FACTOR)),
+    key("flight_path_rad", END),
+    key("density_kg_m3", Positive(FACTOR)),
+    key("gravity_m_s2", Positive(FACTOR)),
+    key("area_m2", Positive(FACTOR)),
+    key("chord_m", Positive(FACTOR)),
+    key("reference_airspeed_m_s", Positive(FACTOR)),
+    key("lift", COEFFICIENT),
+    key("drag", COEFFICIENT),
+    key("pitch", COEFFICIENT),
+    key("thrust_speed", REAL),
+    key("drag_law", Word(&["linear", "polar"])),
+    key("thrust_law", Word(&["constant", "with-speed"])),
+    key("alpha_rad", ENDS),
+    key("airspeeds_m_s", ENDS),
+    key("elevator_rad", ENDS),
+]);
+
+/// A coefficient and its derivatives.
+const COEFFICIENT: Shape = Object(&[
+    key("reference", REAL),
+    key("alpha", REAL),
+    key("alpha_rate", REAL),
+    key("pitch_rate", REAL),
+    key("speed", REAL),
+    key("elevator", REAL),
 ]);
 
 /// Longest names.

@@ -1,0 +1,270 @@
+//! The nonlinear Navion, flown by its own equations through samples and through whole flights.
+
+use fspid_aircraft::Range as Known;
+use fspid_aircraft::aerodynamics::derivatives::{Longitudinal, LongitudinalCoefficient};
+use fspid_aircraft::data::Laws;
+use fspid_core::{Derivative, Pid, PidConfig};
+use fspid_sim::actuator::{Actuator, Lag};
+use fspid_sim::loop_model::Sensing;
+use fspid_sim::{Controller, ElevatorSign};
+
+use super::*;
+use crate::prove::{Effort, Verdict, certify};
+use crate::scope::Asked;
+
+const LAG_S: f64 = 0.1;
+const GAINS: Gains<f64> = Gains { kp: 0.82, ki: 0.43, kd: 0.165 };
+/// Steps of an integration within a sample: the error of fourth order is then below that of rounding.
+const STEPS: u32 = 20;
+
+/// Nelson's Navion at 176 ft/s and sea level, in SI.
+fn navion() -> MotionNumbers {
+    let row = |reference, alpha, alpha_rate, pitch_rate, elevator| LongitudinalCoefficient {
+        reference,
+        alpha,
+        alpha_rate,
+        pitch_rate,
+        speed: 0.0,
+        elevator,
+    };
+    MotionNumbers {
+        mass_kg: 1247.0,
+        iy_kg_m2: 4067.0,
+        aft_chords: 0.0,
+        airspeed_m_s: 53.64,
+        flight_path_rad: 0.0,
+        density_kg_m3: 1.2256,
+        gravity_m_s2: 9.815,
+        area_m2: 17.09,
+        chord_m: 1.737,
+        reference_airspeed_m_s: 53.64,
+        longitudinal: Longitudinal {
+            lift: row(0.406, 4.44, 0.0, 3.8, 0.355),
+            drag: row(0.05, 0.33, 0.0, 0.0, 0.0),
+            pitch: row(0.0, -0.683, -4.36, -9.96, -0.923),
+            thrust_speed: 0.0,
+        },
+        laws: Laws::default(),
+        alpha_rad: Known { min: -0.14, max: 0.17 },
+        airspeeds_m_s: Known { min: 32.0, max: 82.0 },
+        elevator_rad: Known { min: -0.43, max: 0.35 },
+    }
+}
+
+/// The loop around its linear model; the coefficients are those that the program prints of it.
+fn description() -> LoopDescription {
+    let config =
+        PidConfig { derivative: Derivative { filter_s: 0.05 }, ..PidConfig::sampled_every(0.01) };
+    let aircraft = navion();
+    let over = aircraft.over([1e-6; MOTION]).expect("a trim");
+    let middle = |it: Interval| it.midpoint();
+    let a = over.slopes.map(|row| [row[0], row[1], row[2], row[3]].map(middle));
+    let b = over.slopes.map(|row| [middle(row[4])]);
+    let system = fspid_lti::StateSpace::new(
+        Matrix::from_rows(&a).expect("finite"),
+        Matrix::from_rows(&b).expect("finite"),
+        Matrix::identity(4),
+        Matrix::zeros(4, 1),
+    );
+    let plant = fspid_aircraft::transfer_function(&system.expect("fits"), 0, 0).expect("a plant");
+    LoopDescription {
+        numerator: plant.numerator().coefficients().to_vec(),
+        denominator: plant.denominator().coefficients().to_vec(),
+        elevator_sign: ElevatorSign::NoseDownPositive,
+        actuator: Actuator::new(Lag::first_order(LAG_S).expect("allowed")),
+        pitch: Sensing::DIRECT,
+        rate: Sensing::DIRECT,
+        controller: Controller::Fixed(Pid::new(GAINS, config).expect("allowed")),
+    }
+}
+
+/// Numbers in -1..1 that differ.
+fn draw(number: u32) -> f64 {
+    let golden = 0.618_033_988_749_895 * f64::from(number);
+    2.0 * (golden - libm::floor(golden)) - 1.0
+}
+
+/// The nonlinear aircraft with its lag: states from the trim, and where they were on the way.
+struct Flown {
+    aircraft: MotionNumbers,
+    centre: [f64; MOTION],
+    thrust_n: f64,
+}
+
+impl Flown {
+    fn new() -> Self {
+        let aircraft = navion();
+        let trim = aircraft.trim().expect("a trim");
+        let centre = aircraft.at_trim(&trim).map(Interval::midpoint);
+        Self { aircraft, centre, thrust_n: trim.thrust_n.midpoint() }
+    }
+
+    /// Rates of θ, q, V, α and of the deflection, which is counted as the command is.
+    fn rate(&self, state: &[f64; MOTION], command: f64) -> [f64; MOTION] {
+        let [theta, q, speed, alpha, deflection] = *state;
+        let off = [theta, q, speed, alpha, -deflection];
+        let at = core::array::from_fn(|i| self.centre[i] + off[i]);
+        let [theta, q, speed, alpha] = self.aircraft.rates(self.thrust_n, at);
+        [theta, q, speed, alpha, (command - deflection) / LAG_S]
+    }
+
+    /// One sample with a held command; `seen` is shown every state on the way.
+    fn sample(
+        &self,
+        mut state: [f64; MOTION],
+        command: f64,
+        mut seen: impl FnMut(&[f64; MOTION]),
+    ) -> [f64; MOTION] {
+        let step_s = 0.01 / f64::from(STEPS);
+        let moved = |from: &[f64; MOTION], by: &[f64; MOTION], time_s: f64| -> [f64; MOTION] {
+            core::array::from_fn(|i| from[i] + time_s * by[i])
+        };
+        for _ in 0..STEPS {
+            seen(&state);
+            let k1 = self.rate(&state, command);
+            let k2 = self.rate(&moved(&state, &k1, 0.5 * step_s), command);
+            let k3 = self.rate(&moved(&state, &k2, 0.5 * step_s), command);
+            let k4 = self.rate(&moved(&state, &k3, step_s), command);
+            let mean = core::array::from_fn(|i| (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]) / 6.0);
+            state = moved(&state, &mean, step_s);
+        }
+        seen(&state);
+        state
+    }
+}
+
+/// Of a flight through one sample the means of what bends are computed: with these, in place of corners, the enclosure
+/// is narrow, and the end of the sample has to lie in it.
+#[test]
+fn samples_flown_by_the_equations_lie_where_the_means_of_what_bends_say() {
+    let flown = Flown::new();
+    let reach = Reach { motion: [0.12, 0.3, 2.0, 0.07, 0.15], command_rad: 0.2 };
+    let transition = Transition::of(&description(), &navion(), &reach).expect("enclosed");
+    let below = &transition.corners[0];
+    let columns = below.states + 1;
+    let mut narrowest = f64::INFINITY;
+    for number in 0..200_u32 {
+        let share = |which: u32| 0.8 * draw(13 * number + which);
+        let state: [f64; MOTION] =
+            core::array::from_fn(|i| reach.motion[i] * share(u32::try_from(i).expect("few")));
+        let command = reach.command_rad * share(9);
+        let (mut sum, mut ends) = ([0.0; MOTION], Vec::new());
+        let end = flown.sample(state, command, |at| ends.push(*at));
+        for pair in ends.windows(2) {
+            for (i, sum) in sum.iter_mut().enumerate() {
+                *sum += 0.5 * (pair[0][i] + pair[1][i]) / f64::from(STEPS);
+            }
+        }
+        let from: Vec<f64> = state.into_iter().chain([command]).collect();
+        for (row, end) in end.into_iter().enumerate().take(4) {
+            let mut found = Interval::ZERO;
+            for (column, from) in from.iter().enumerate() {
+                let entry = |plant: &fspid_sim::loop_model::SampledPlant<Interval>| {
+                    plant.rows[row * columns + column]
+                };
+                let mut by = entry(below);
+                for (side, which) in transition.sides.iter().enumerate() {
+                    // The elevator is counted the other way round than the deflection.
+                    let sign = if *which == 4 { -1.0 } else { 1.0 };
+                    let part = 0.5 * (1.0 + sign * sum[*which] / reach.motion[*which]);
+                    let above = entry(&transition.corners[1 << side]);
+                    by = by + Interval::point(part * (above.midpoint() - entry(below).midpoint()));
+                }
+                found = found + by * Interval::point(*from);
+            }
+            assert!(found.contains(end), "sample {number}, row {row}: {end} not in {found:?}");
+            let moved = (end - state[row]).abs();
+            if moved > 1e-3 {
+                narrowest = narrowest.min(found.width() / moved);
+            }
+        }
+    }
+    // And it is no enclosure of everything.
+    assert!(narrowest < 0.05, "{narrowest}");
+}
+
+fn linear() -> Certificate {
+    let outcome = certify(&description(), &Asked::rest(), &Effort::default()).expect("provable");
+    match outcome.verdict {
+        Verdict::Proved(certificate, _) => certificate,
+        other => panic!("{other:?}"),
+    }
+}
+
+/// Loops of the controller around the flown plant: rows of the loop's matrix but for the plant's own.
+fn fly(
+    claim: &Nonlinear,
+    start: &[f64],
+    samples: usize,
+    mut seen: impl FnMut(&[f64; MOTION]),
+) -> Vec<f64> {
+    let flown = Flown::new();
+    let model = description().enclosed().expect("a model").midpoint();
+    let (matrix, arriving) = (model.closed(GAINS), model.arriving_row(GAINS));
+    let along = |row: &Vec<f64>, z: &[f64]| row.iter().zip(z).map(|(r, z)| r * z).sum::<f64>();
+    let mut z = start.to_vec();
+    for _ in 0..samples {
+        let command = along(&arriving, &z);
+        assert!(command.abs() <= claim.reach.command_rad);
+        let state = core::array::from_fn(|i| z[i]);
+        let next = flown.sample(state, command, &mut seen);
+        let memory: Vec<f64> = matrix[MOTION..].iter().map(|row| along(row, &z)).collect();
+        z = next.into_iter().chain(memory).collect();
+    }
+    z
+}
+
+#[test]
+fn flights_that_begin_at_the_edge_of_the_ellipsoid_stay_in_the_box_and_come_to_rest() {
+    let linear = linear();
+    let verdict = prove_nonlinear(&linear, &navion(), &Effort::default()).expect("provable");
+    let NonlinearVerdict::Proved(claim, checked) = verdict else { panic!("{verdict:?}") };
+    assert!(checked.pitch_within_rad > 2.0_f64.to_radians(), "{checked:?}");
+    let whole = |claim: Nonlinear| Certificate { nonlinear: Some(claim), ..linear.clone() };
+    let again = whole((*claim).clone()).check().expect("it holds").nonlinear;
+    assert_eq!(again, Some(checked));
+
+    // Directions that fill the sphere, scaled to the edge.
+    let size = claim.form.rows();
+    let value = |z: &[f64]| -> f64 {
+        let terms = (0..size).flat_map(|i| (0..size).map(move |j| (i, j)));
+        terms.map(|(i, j)| z[i] * claim.form.get(i, j).expect("fits") * z[j]).sum()
+    };
+    let spread: Vec<f64> = (0..size)
+        .map(|i| {
+            let mut unit = vec![[0.0]; size];
+            unit[i] = [1.0];
+            let column = Matrix::from_rows(&unit).expect("finite");
+            claim.form.solve(&column).expect("regular").get(i, 0).expect("fits").sqrt()
+        })
+        .collect();
+    for number in 0..16_u32 {
+        let mut z: Vec<f64> = (0..size)
+            .map(|i| spread[i] * draw(17 * number + 3 * u32::try_from(i).expect("few")))
+            .collect();
+        if number == 0 {
+            z = description().enclosed().expect("a model").midpoint().pitch_off(1.0);
+        }
+        let scale = (0.999 * claim.level / value(&z)).sqrt();
+        z.iter_mut().for_each(|it| *it *= scale);
+        let end = fly(&claim, &z, 1500, |at| {
+            for (at, reach) in at.iter().zip(claim.reach.motion) {
+                assert!(at.abs() <= reach, "flight {number}: {at} beyond {reach}");
+            }
+        });
+        // 15 s: a factor of 100 in the form is less than what the slowest mode loses.
+        assert!(value(&end) < 0.3 * claim.level, "flight {number}: {}", value(&end));
+    }
+
+    let refused = |change: &dyn Fn(&mut Nonlinear)| {
+        let mut other = (*claim).clone();
+        change(&mut other);
+        whole(other).check().expect_err("changed").to_string()
+    };
+    assert!(refused(&|it| it.level *= 1.3).contains("limit"));
+    assert!(refused(&|it| it.reach = it.reach.scaled(3.0)).contains("nonlinear aircraft"));
+    assert!(refused(&|it| it.aircraft.elevator_rad.max = -0.1).contains("its travel"));
+    assert!(refused(&|it| it.aircraft.longitudinal.pitch.elevator *= 3.0).contains("nonlinear"));
+    assert!(refused(&|it| it.reach.command_rad = 1e-4).contains("limit"));
+    assert!(refused(&|it| it.rate = 0.9).contains("fall"));
+}

@@ -1,0 +1,194 @@
+//! The nonlinear aircraft near its trim: of which scenarios something is asked, and what the answer says.
+
+use fspid_aircraft::enclosure::MotionNumbers;
+use fspid_proof::{
+    Certificate, CheckedNonlinear, Effort, Nonlinear, NonlinearVerdict, NotProvable, Outcome,
+    Reach, Rechecked, Verdict, prove_nonlinear,
+};
+use fspid_scenario::file::{FlownDerivatives, Study};
+use fspid_scenario::units::{FOOT_M, degrees};
+use fspid_sim::Plant;
+use fspid_sim::aircraft::Forces;
+use serde_json::{Value, json};
+
+use crate::metrics::short;
+
+/// What came of the nonlinear aircraft.
+#[derive(Clone, Debug)]
+pub enum NonlinearAnswer {
+    /// Proved or open.
+    Verdict(Box<NonlinearVerdict>, Box<Certificate>),
+    /// No question can be asked.
+    None(NoNonlinear),
+    /// The loop around the linear model is not proved, so that nothing is asked of the nonlinear one.
+    LinearNotProved,
+}
+
+/// Why no question can be asked of the nonlinear aircraft.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NoNonlinear {
+    /// What flies is a linear plant.
+    #[error("what flies is a linear plant; an [aircraft] with model = \"nonlinear\" is asked for")]
+    Linear,
+    /// What flies is another simulator.
+    #[error("what flies is another simulator, whose equations are not known")]
+    OtherSimulator,
+    /// Something is added to the derivatives.
+    #[error(
+        "configurations, fuel, Mach rows or the ground add to the aircraft's derivatives, and are not enclosed"
+    )]
+    Varied,
+    /// The forces are no derivatives.
+    #[error("the aircraft's forces are tables or formulas, and only derivatives are enclosed")]
+    NoDerivatives,
+    /// Outer loops move set-point and throttle.
+    #[error(
+        "outer loops move the set-point and may move the throttle, which stand still in the claim"
+    )]
+    OuterLoops,
+    /// Numbers that are none, of a trim beyond the atmosphere.
+    #[error("the trim has no finite numbers")]
+    NoNumbers,
+}
+
+impl NonlinearAnswer {
+    /// True if something is proved of the nonlinear aircraft.
+    #[must_use]
+    pub fn is_proved(&self) -> bool {
+        matches!(self, Self::Verdict(verdict, _) if matches!(**verdict, NonlinearVerdict::Proved(..)))
+    }
+
+    /// The answer in capitals, and why.
+    pub(super) fn text(&self) -> String {
+        match self {
+            Self::LinearNotProved => {
+                "OPEN: the loop around the linear model is not proved".to_owned()
+            }
+            Self::None(reason) => format!("OPEN: {reason}"),
+            Self::Verdict(verdict, certificate) => match &**verdict {
+                NonlinearVerdict::Proved(claim, checked) => {
+                    format!("PROVED: {}", sentence(certificate, claim, checked))
+                }
+                NonlinearVerdict::Open(reason) => format!("OPEN: {reason}"),
+            },
+        }
+    }
+}
+
+/// The numbers of the aircraft that a study flies, where the claim can speak of it.
+pub(super) fn numbers(study: &Study) -> Result<MotionNumbers, NoNonlinear> {
+    let scenario = &study.scenario;
+    let aircraft = match &scenario.plant {
+        Plant::Aircraft(plant) => plant.aircraft(),
+        Plant::External(_) => return Err(NoNonlinear::OtherSimulator),
+        _ => return Err(NoNonlinear::Linear),
+    };
+    if scenario.autopilot.is_some() {
+        return Err(NoNonlinear::OuterLoops);
+    }
+    match aircraft.model() {
+        Forces::Derivatives(_) => {}
+        Forces::Varied(_) => return Err(NoNonlinear::Varied),
+        _ => return Err(NoNonlinear::NoDerivatives),
+    }
+    let FlownDerivatives { data, laws, environment, target } =
+        study.derivatives.as_ref().ok_or(NoNonlinear::NoDerivatives)?;
+    let numbers = MotionNumbers::of(data, *laws, *environment, *target);
+    let finite = numbers.density_kg_m3.is_finite() && numbers.mass_kg.is_finite();
+    finite.then_some(numbers).ok_or(NoNonlinear::NoNumbers)
+}
+
+/// Certifies the nonlinear aircraft beside the verdict of its linear loop, whose certificate then speaks of both.
+///
+/// # Errors
+/// [`NotProvable`] where the effort was stopped.
+pub(super) fn certified(
+    study: &Study,
+    outcome: &mut Outcome,
+    effort: &Effort,
+) -> Result<NonlinearAnswer, NotProvable> {
+    let aircraft = match numbers(study) {
+        Ok(aircraft) => aircraft,
+        Err(none) => return Ok(NonlinearAnswer::None(none)),
+    };
+    let Verdict::Proved(certificate, rechecked) = &outcome.verdict else {
+        return Ok(NonlinearAnswer::LinearNotProved);
+    };
+    let verdict = prove_nonlinear(certificate, &aircraft, effort)?;
+    let answer = NonlinearAnswer::Verdict(Box::new(verdict.clone()), Box::new(certificate.clone()));
+    if let NonlinearVerdict::Proved(claim, checked) = verdict {
+        let whole = Certificate { nonlinear: Some(*claim), ..certificate.clone() };
+        let rechecked = Rechecked { nonlinear: Some(checked), ..rechecked.clone() };
+        outcome.verdict = Verdict::Proved(whole, rechecked);
+    }
+    Ok(answer)
+}
+
+/// What a proved claim says, with everything that it does not speak of.
+pub(super) fn sentence(
+    certificate: &Certificate,
+    claim: &Nonlinear,
+    checked: &CheckedNonlinear,
+) -> String {
+    let Reach { motion, command_rad } = claim.reach;
+    let [pitch, rate, speed_m_s, alpha, elevator] = motion;
+    let [pitch, rate, alpha, elevator, command] =
+        [pitch, rate, alpha, elevator, command_rad].map(|it| above(degrees(it)));
+    let begins = below(degrees(checked.pitch_within_rad), 3);
+    let speed = format!("{} m/s ({} ft/s)", above(speed_m_s), above(speed_m_s / FOOT_M));
+    let dt_s = certificate.description.controller.config().dt_s;
+    let decay = match claim.rate {
+        rate if rate < 1.0 => {
+            format!(" at least as fast as with a time constant of {:.1} s", -dt_s / libm::log(rate))
+        }
+        _ => String::new(),
+    };
+    format!(
+        "the equations of motion themselves: a flight that begins in the certified ellipsoid, so with the pitch angle up to {begins} deg off and nothing else, stays within {pitch} deg of pitch, {rate} deg/s of pitch rate, {speed} of airspeed, {alpha} deg of angle of attack and {elevator} deg of elevator from the trim (commands within {command} deg), at samples and between them, meets no limit, and comes to rest at the trim{decay}; so with the set-point at the trim, no load, sensors without bias, wings level, the throttle of the trim, still air that has everywhere the density of the trim ({density} kg/m³), above the ground; the steps in which a simulation integrates are not covered, and all else here is about the linear model",
+        density = short(claim.aircraft.density_kg_m3),
+    )
+}
+
+/// Rounded up to two decimals, so that what is said to be kept is.
+fn above(value: f64) -> String {
+    format!("{:.2}", libm::ceil(100.0 * value) / 100.0)
+}
+
+/// Rounded down to so many decimals, so that what is said is not more than what is proved.
+fn below(value: f64, decimals: i32) -> String {
+    let tens = libm::pow(10.0, f64::from(decimals));
+    short(libm::floor(value * tens) / tens)
+}
+
+/// A proved claim for programs.
+pub(super) fn proved_in_json(claim: &Nonlinear, checked: &CheckedNonlinear) -> Value {
+    let Reach { motion, command_rad } = claim.reach;
+    let [pitch, rate, speed_m_s, alpha, elevator] = motion;
+    json!({
+        "verdict": "proved",
+        "begins_within_deg": degrees(checked.pitch_within_rad),
+        "box": {
+            "pitch_deg": degrees(pitch),
+            "pitch_rate_deg_s": degrees(rate),
+            "airspeed_m_s": speed_m_s,
+            "alpha_deg": degrees(alpha),
+            "elevator_deg": degrees(elevator),
+            "command_deg": degrees(command_rad),
+        },
+    })
+}
+
+/// The answer for programs.
+pub(super) fn in_json(answer: &NonlinearAnswer) -> Value {
+    let found = match answer {
+        NonlinearAnswer::Verdict(verdict, _) => match &**verdict {
+            NonlinearVerdict::Proved(claim, checked) => Some(proved_in_json(claim, checked)),
+            NonlinearVerdict::Open(_) => None,
+        },
+        NonlinearAnswer::None(_) | NonlinearAnswer::LinearNotProved => None,
+    };
+    let open = || json!({ "verdict": "open", "begins_within_deg": null, "box": null });
+    let mut found = found.unwrap_or_else(open);
+    found["in_words"] = answer.text().into();
+    found
+}
