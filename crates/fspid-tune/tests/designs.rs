@@ -63,3 +63,12 @@ fn the_self_tuner_of_six_light_aircraft_has_a_tenth_less_error_at_less_travel_an
     assert_eq!(answer["ranking"][0], "FSPID", "{:#}", answer["ranking"]);
     assert_eq!([failed(&answer, "FSPID"), failed(&answer, "PID")], [3, 5]);
 }
+
+#[test]
+fn the_self_tuner_of_six_small_unmanned_aircraft_has_a_fifth_less_error_at_less_travel() {
+    let answer = held("uav-six");
+    let [error, travel] = ratios(&answer);
+    assert!(error <= 0.80 && travel <= 0.95, "{error} {travel}");
+    // It overshoots in more of the steps of 1 deg and of the doublets, which nobody was tuned on, so that it does not win.
+    assert_eq!([failed(&answer, "FSPID"), failed(&answer, "PID")], [8, 2]);
+}

@@ -504,22 +504,45 @@ fn the_requirement_of_a_proof_is_not_met_where_outer_loops_grow() {
     assert!(!judgement.met && judgement.found.as_ref().is_ok_and(|case| case.value == 0.0));
 }
 
+/// Whether `FSPID` of a learned design is proved around the trim at a flight condition, and its certificate holds.
+fn is_proved_at(design: &str, condition: [String; 3]) {
+    let [name, speed, altitude] = &condition;
+    let path = format!("data/designs/learned/{design}.toml");
+    let study = load(&path, &[name, speed, altitude, "setpoint.amplitude_deg=0"]);
+    let found = certified(&study);
+    assert!(found.all_proved(), "{condition:?}: {}", found.text());
+    assert!(checked(&written(&found)).holds(), "{condition:?}");
+}
+
 #[test]
 fn the_learned_self_tuner_of_six_light_aircraft_is_proved_around_the_trim_where_it_was_tuned() {
     // Three of the twelve: the slowest, the fastest and the one that is proved with the least room.
-    for at in [("navion", "120", "0"), ("beech-99", "450", "20000"), ("twin-otter", "165", "0")] {
-        let (name, speed, altitude) = at;
-        let study = load(
-            "data/designs/learned/light-six.toml",
-            &[
-                &format!("aircraft.name={name}"),
-                &format!("aircraft.airspeed_ft_s={speed}"),
-                &format!("aircraft.altitude_ft={altitude}"),
-                "setpoint.amplitude_deg=0",
+    for (name, speed, altitude) in
+        [("navion", 120, 0), ("beech-99", 450, 20000), ("twin-otter", 165, 0)]
+    {
+        is_proved_at(
+            "light-six",
+            [
+                format!("aircraft.name={name}"),
+                format!("aircraft.airspeed_ft_s={speed}"),
+                format!("aircraft.altitude_ft={altitude}"),
             ],
         );
-        let found = certified(&study);
-        assert!(found.all_proved(), "{at:?}: {}", found.text());
-        assert!(checked(&written(&found)).holds(), "{at:?}");
+    }
+}
+
+#[test]
+fn the_learned_self_tuner_of_six_small_unmanned_aircraft_is_proved_around_the_trim_where_it_was_tuned()
+ {
+    // Two of the twelve: the slowest and the fastest.
+    for (name, speed, altitude) in [("zagi", 14, 100), ("aerosonde", 33, 1500)] {
+        is_proved_at(
+            "uav-six",
+            [
+                format!("aircraft.name={name}"),
+                format!("aircraft.airspeed_m_s={speed}"),
+                format!("aircraft.altitude_m={altitude}"),
+            ],
+        );
     }
 }

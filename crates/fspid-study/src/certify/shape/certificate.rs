@@ -30,6 +30,7 @@ pub(in super::super) const CERTIFICATE: Shape = Object(&[
     optional("steps", STEPS),
     optional("family", FAMILY),
     optional("disturbances", List(&DISTURBANCE, [1, MOST_BOUNDS])),
+    optional("nonlinear", NONLINEAR),
 ]);
 
 /// A bound of what a disturbance does.
@@ -41,7 +42,6 @@ const DISTURBANCE: Shape = Object(&[
     key("decay", RATE),
     key("gain", Positive(LARGE)),
     key("form", FORM),
-    optional("nonlinear", NONLINEAR),
 ]);
 
 /// Boxes of set-points, and parts of the loads.
