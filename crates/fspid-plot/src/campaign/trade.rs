@@ -83,28 +83,7 @@ impl TradeFigure {
         }
         canvas.begin_marked(&cursor::panel(area, &x, &y));
         for series in &self.series {
-            let finite = series.points.iter().filter(|(x, y)| x.is_finite() && y.is_finite());
-            let places: Vec<(f64, f64)> = finite.map(place).collect();
-            let told: Vec<String> =
-                places.iter().map(|at| format!("{} {}", num(at.0), num(at.1))).collect();
-            let name = escape(&unmarked(&series.name));
-            canvas.begin_marked(&format!("data-at=\"{}\" data-name=\"{name}\"", told.join(" ")));
-            if series.is_joined {
-                let style = series.style;
-                let paint = Paint::line(style.role(), style.width()).dashed(style.dash());
-                canvas.polyline(&places, false, &paint);
-                canvas.end();
-                continue;
-            }
-            for at in places {
-                let role = series.style.role();
-                match sign(series.style) {
-                    // A dot is for lines; alone it would be the smallest of all signs.
-                    Sign::Dot => canvas.circle(at, 4.2, &Paint::face(role)),
-                    other => other.draw(&mut canvas, at, role),
-                }
-            }
-            canvas.end();
+            series.draw(&mut canvas, place);
         }
         canvas.end();
         name_abscissa(&mut canvas, area, &self.x_label);
@@ -133,6 +112,30 @@ impl TradeFigure {
 }
 
 impl TradeSeries {
+    /// Draws its line or its signs, of what is finite.
+    fn draw(&self, canvas: &mut Canvas, place: impl Fn(&(f64, f64)) -> (f64, f64)) {
+        let finite = self.points.iter().filter(|(x, y)| x.is_finite() && y.is_finite());
+        let places: Vec<(f64, f64)> = finite.map(place).collect();
+        let told: Vec<String> =
+            places.iter().map(|at| format!("{} {}", num(at.0), num(at.1))).collect();
+        let name = escape(&unmarked(&self.name));
+        canvas.begin_marked(&format!("data-at=\"{}\" data-name=\"{name}\"", told.join(" ")));
+        let (style, role) = (self.style, self.style.role());
+        if self.is_joined {
+            let paint = Paint::line(role, style.width()).dashed(style.dash());
+            canvas.polyline(&places, false, &paint);
+        } else {
+            for at in places {
+                match sign(style) {
+                    // A dot is for lines; alone it would be the smallest of all signs.
+                    Sign::Dot => canvas.circle(at, 4.2, &Paint::face(role)),
+                    other => other.draw(canvas, at, role),
+                }
+            }
+        }
+        canvas.end();
+    }
+
     /// Along the lower ends of the band and back along the upper ones, of what is finite.
     fn outline(&self) -> Vec<(f64, f64)> {
         let finite =

@@ -95,15 +95,7 @@ impl IncrementSlopes {
         }
         if let Some(network) = supervisor.network() {
             let net = Net { network, range };
-            let mut slopes = net.slopes(within);
-            for slopes in &mut slopes {
-                for (slope, side) in slopes.iter_mut().zip(&within) {
-                    // Beyond the range the increments are level.
-                    if !inside(side) {
-                        *slope = slope.hull(Interval::ZERO);
-                    }
-                }
-            }
+            let slopes = level_beyond(net.slopes(within), within.each_ref().map(inside));
             return Ok(Self { slopes, off: 2.0 * net.slack() });
         }
         if !is_dense(supervisor.defuzzifier()) {
@@ -125,19 +117,26 @@ impl IncrementSlopes {
         let found = slopes(&system, &options).map_err(|_| NoSlopes::Unbounded)?;
         let mut bounds = [[Interval::ENTIRE; 2]; 3];
         for (bounds, found) in bounds.iter_mut().zip(&found) {
-            for ((bound, found), side) in bounds.iter_mut().zip(found).zip(&within) {
+            for (bound, found) in bounds.iter_mut().zip(found) {
                 let [least, most] = [found[0].bounds[0], found[1].bounds[1]];
                 *bound = Interval::new(least, most).unwrap_or(Interval::ENTIRE);
-                // Beyond the range the increments are level.
-                if !inside(side) {
-                    *bound = bound.hull(Interval::ZERO);
-                }
             }
         }
+        let bounds = level_beyond(bounds, within.each_ref().map(inside));
         let known = bounds.iter().flatten().all(|bound| bound.is_bounded());
         let slopes = Self { slopes: moved(bounds, sets), off: OFF * range };
         known.then_some(slopes).ok_or(NoSlopes::Unbounded)
     }
+}
+
+/// Slopes with those beyond the range, where increments are level; `inside` tells of which inputs nothing is beyond it.
+fn level_beyond(mut slopes: [[Interval; 2]; 3], inside: [bool; 2]) -> [[Interval; 2]; 3] {
+    for slopes in &mut slopes {
+        for (slope, _) in slopes.iter_mut().zip(inside).filter(|(_, inside)| !inside) {
+            *slope = slope.hull(Interval::ZERO);
+        }
+    }
+    slopes
 }
 
 /// Slopes over inputs that the tuner moves to even sets first: those over the even ones times those of the moving, of

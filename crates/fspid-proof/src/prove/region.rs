@@ -32,6 +32,23 @@ pub(super) struct Region<'a> {
     allowed: Vec<(usize, f64, f64)>,
 }
 
+/// A certificate of the claim alone.
+fn certificate(prover: &Prover<'_>, factor: f64, claim: &BoundedRate) -> Certificate {
+    Certificate {
+        description: prover.description.clone(),
+        output_factor: factor,
+        divisions: prover.effort.divisions,
+        range: prover.range,
+        left_out: prover.asked.left_out.clone(),
+        claim: Claim::BoundedRate(claim.clone()),
+        steps: None,
+        family: None,
+        disturbances: Vec::new(),
+        nonlinear: None,
+        level: None,
+    }
+}
+
 impl<'a> Region<'a> {
     pub(super) fn of(
         prover: &'a Prover<'_>,
@@ -40,19 +57,7 @@ impl<'a> Region<'a> {
         claim: &BoundedRate,
     ) -> Option<Self> {
         let fspid = prover.tuned()?;
-        let certificate = Certificate {
-            description: prover.description.clone(),
-            output_factor: factor,
-            divisions: prover.effort.divisions,
-            range: prover.range,
-            left_out: prover.asked.left_out.clone(),
-            claim: Claim::BoundedRate(claim.clone()),
-            steps: None,
-            family: None,
-            disturbances: Vec::new(),
-            nonlinear: None,
-            level: None,
-        };
+        let certificate = certificate(prover, factor, claim);
         let recheck =
             Recheck::with(&certificate, prover.enclosed.clone(), set.clone(), &prover.slopes)
                 .ok()?;
