@@ -1,6 +1,6 @@
 //! Certified cases in words and for programs.
 
-use fspid_proof::Verdict;
+use fspid_proof::{LeftOut, Verdict};
 use serde_json::{Value, json};
 
 use super::{CertifiedCase, CertifiedCases};
@@ -26,7 +26,23 @@ impl CertifiedCases {
             }
         }
         out.push_str(&format!("\n{}\n", self.verdict()));
+        for one in self.left_out() {
+            out.push_str(&format!("  not in this claim  {one}\n"));
+        }
         out
+    }
+
+    /// What some claim of stability does not speak of, each once.
+    fn left_out(&self) -> Vec<LeftOut> {
+        let results = self.cases.iter().flat_map(|case| &case.certification.results);
+        let claims = results.filter_map(|it| found(it.outcome.as_ref().ok()?));
+        let stable = claims.filter(|(certificate, _)| certificate.claim.is_of_stability());
+        let mut all: Vec<LeftOut> = stable
+            .flat_map(|(certificate, rechecked)| certificate.scope(rechecked).left_out)
+            .collect();
+        all.sort_unstable();
+        all.dedup();
+        all
     }
 
     /// What all of them amount to, in a sentence for each controller.
