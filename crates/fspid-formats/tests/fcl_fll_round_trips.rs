@@ -118,8 +118,9 @@ fn shape(choices: &mut Choices) -> Membership {
     if kind == ShapeKind::Trapezoid && choices.target == Target::Fll && choices.coin() {
         params[0] = f64::NEG_INFINITY;
     }
-    // Half of the smallest width is none, and a trapezoid with one top is a triangle.
-    let tiny = kind == ShapeKind::Cosine && params[1] < f64::MIN_POSITIVE;
+    // Half of a width among the smallest numbers is another's half too, and a trapezoid with one top
+    // is a triangle.
+    let tiny = kind == ShapeKind::Cosine && 2.0 * (0.5 * params[1]) != params[1];
     let pointed = kind == ShapeKind::Trapezoid && !(params[1] < params[2]);
     if kind.check(&params).is_err() || tiny || pointed {
         params = kind.example().to_vec();

@@ -5,7 +5,7 @@ use fspid_scenario::count::{BUDGET, SEEDS};
 use fspid_scenario::file::{Study, Template};
 use fspid_scenario::tuning::{Contest as Rules, Tuning};
 
-use super::{Contest, Entrant, Options, flight};
+use super::{Contest, Entrant, Options, flight, mirror};
 use crate::crew::Part;
 use crate::error::TuneError;
 use crate::flights::{Asked, Dispersed, Flights, FlownCase, flown_case};
@@ -32,6 +32,9 @@ pub(super) fn checked(source: &Source, options: &Options) -> Result<Contest, Tun
     problems.extend(tuned_on(tuning.as_ref(), &rules));
     let efforts = efforts(tuning.as_ref(), &rules, options, &mut problems);
     let cases = templates(source, &rules, &mut problems);
+    if cases.len() == rules.cases.len() {
+        problems.extend(mirror::problems(&rules, &cases));
+    }
     let mut entrants = Vec::new();
     for name in &names {
         match entrant(source, study, name, &cases, &rules) {

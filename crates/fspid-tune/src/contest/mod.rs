@@ -24,6 +24,7 @@ mod compare;
 mod flight;
 mod json;
 mod judged;
+mod mirror;
 mod near_limit;
 #[cfg(test)]
 mod oracle;

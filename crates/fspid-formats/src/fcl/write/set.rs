@@ -49,8 +49,10 @@ fn by_word(kind: ShapeKind, params: &[f64], height: f64, dialect: Dialect) -> Op
         return None;
     }
     let row = shapes::of_kind(rows(dialect), kind)?;
-    // Half of the smallest width is none.
-    row.kind.check(&row.ours(row.theirs(params))).ok()?;
+    // Half of a width among the smallest numbers loses its last bit: those words name another set.
+    if row.ours(row.theirs(params)) != params {
+        return None;
+    }
     let height = (height < 1.0).then_some(height);
     let numbers = row.theirs(params).into_iter().chain(height).map(number);
     Some(format!("{} {}", row.word, numbers.collect::<Vec<_>>().join(" ")))
