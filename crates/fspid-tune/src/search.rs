@@ -14,7 +14,7 @@ use crate::crew::Crew;
 use crate::error::TuneError;
 use crate::problem::TuningProblem;
 use crate::score::Score;
-use crate::slopes::{Counted, Descents, Differentiable};
+use crate::slopes::{Counted, Descents, Differentiable, Sequential};
 use crate::source::Source;
 
 /// How wide the first candidates lie about the start, as a share of the cube. On the scenario of the gallery a
@@ -22,8 +22,10 @@ use crate::source::Source;
 const SPREAD: f64 = 0.1;
 /// Candidates of a generation of the front's optimiser, unless asked otherwise.
 const FRONT_POPULATION: usize = 40;
-/// Name of the optimiser that goes downhill by slopes.
-const BY_SLOPES: &str = "bfgs";
+/// Names of the optimisers that go downhill by slopes: of the merit, and of the cost and each limit by itself.
+const OF_MERIT: &str = "bfgs";
+const OF_LIMITS: &str = "sqp";
+const BY_SLOPES: [&str; 2] = [OF_MERIT, OF_LIMITS];
 
 /// How a search is made.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -73,7 +75,7 @@ impl Effort {
     /// Names of the optimisers.
     #[must_use]
     pub fn optimisers() -> Vec<&'static str> {
-        Kind::NAMES.iter().map(|(_, name)| *name).chain([BY_SLOPES, NsgaII::NAME]).collect()
+        Kind::NAMES.iter().map(|(_, name)| *name).chain(BY_SLOPES).chain([NsgaII::NAME]).collect()
     }
 
     /// The command that searches so, beside the scenario.
@@ -138,6 +140,7 @@ pub struct Trial {
 enum Engine {
     One(Box<Snapshot>),
     Slopes(Box<Descents>),
+    Programmes(Box<Sequential>),
     Front(NsgaII),
 }
 
@@ -161,6 +164,7 @@ const STATE_SCHEMA: u32 = 1;
 enum Running<'a> {
     One(Box<dyn Optimiser>),
     Slopes(Box<Descents>, Box<Differentiable<'a>>),
+    Programmes(Box<Sequential>, Box<Differentiable<'a>>),
     Front(NsgaII),
 }
 
@@ -193,6 +197,10 @@ impl<'a> Search<'a> {
             return Err(TuneError::Start { reasons: problem.reasons_of_loss(&start, crew)? });
         };
         let running = match slopes {
+            Some(slopes) if effort.optimiser == OF_LIMITS => {
+                let programmes = Sequential::new(&start, effort.seed, effort.anywhere);
+                Running::Programmes(Box::new(programmes), Box::new(slopes))
+            }
             Some(slopes) => {
                 let descents = Descents::new(&start, effort.seed, effort.anywhere);
                 Running::Slopes(Box::new(descents), Box::new(slopes))
@@ -234,12 +242,12 @@ impl<'a> Search<'a> {
                 Running::One(snapshot.resume().map_err(|error| wrong(error.to_string()))?)
             }
             Engine::Slopes(descents) => {
-                let slopes = differentiable(problem, effort)?;
-                let slopes = slopes.filter(|_| descents.is_sound(dimension));
-                let slopes = slopes.ok_or_else(|| {
-                    wrong("the numbers of its descent do not fit together".to_owned())
-                })?;
-                Running::Slopes(descents, Box::new(slopes))
+                let is_sound = descents.is_sound(dimension);
+                Running::Slopes(descents, sound_slopes(problem, effort, is_sound, wrong)?)
+            }
+            Engine::Programmes(programmes) => {
+                let is_sound = programmes.is_sound(dimension);
+                Running::Programmes(programmes, sound_slopes(problem, effort, is_sound, wrong)?)
             }
             Engine::Front(front) => {
                 Running::Front(front.resumed().map_err(|error| wrong(error.to_string()))?)
@@ -270,6 +278,7 @@ impl<'a> Search<'a> {
             engine: match &self.running {
                 Running::One(optimiser) => Engine::One(Box::new(optimiser.snapshot())),
                 Running::Slopes(descents, _) => Engine::Slopes(descents.clone()),
+                Running::Programmes(programmes, _) => Engine::Programmes(programmes.clone()),
                 Running::Front(front) => Engine::Front(front.clone()),
             },
             trials: self.trials.clone(),
@@ -289,6 +298,7 @@ impl<'a> Search<'a> {
         let mut points = match &mut self.running {
             Running::One(optimiser) => optimiser.ask(),
             Running::Slopes(..) => return self.descend(),
+            Running::Programmes(..) => return self.step(),
             Running::Front(front) => front.ask(),
         };
         if points.is_empty() {
@@ -300,7 +310,7 @@ impl<'a> Search<'a> {
             Running::One(optimiser) => {
                 optimiser.tell(&scores.iter().map(|score| score.cost).collect::<Vec<_>>());
             }
-            Running::Slopes(..) => {}
+            Running::Slopes(..) | Running::Programmes(..) => {}
             Running::Front(front) => {
                 front
                     .tell(&scores.iter().map(|score| score.objectives.clone()).collect::<Vec<_>>());
@@ -347,11 +357,38 @@ impl<'a> Search<'a> {
         Ok((self.spent() >= self.effort.budget).then_some(Stop::Budget))
     }
 
+    /// Flies the next candidate of sequential programmes, for which the slopes of all limits are found where it stands.
+    fn step(&mut self) -> Result<Option<Stop>, TuneError> {
+        let best = self.trials[self.best].point.clone();
+        let Running::Programmes(programmes, slopes) = &mut self.running else { return Ok(None) };
+        // What is asked for is kept once its flights are in: a search that is stopped asks again.
+        let mut next = programmes.clone();
+        let point = next.ask(slopes, &best);
+        if let Crew::Here(stops) = self.crew
+            && stops()
+        {
+            return Err(TuneError::Stopped);
+        }
+        let mut flights = self.problem.flights_of(std::slice::from_ref(&point), self.crew)?;
+        let flights = flights.pop().unwrap_or_default();
+        let score = self.problem.score(&flights);
+        let penalty = next.penalty(slopes.merit(&flights, 0.0).value);
+        let merit = slopes.merit(&flights, penalty);
+        next.tell(&merit, penalty, &flights, &best);
+        *programmes = next;
+        self.generation += 1;
+        let (generation, from) = (self.generation, self.trials.len());
+        self.trials.push(Trial { generation, point, score });
+        self.find_best(from);
+        Ok((self.spent() >= self.effort.budget).then_some(Stop::Budget))
+    }
+
     /// What a search by slopes has done beside flying candidates; none for another one.
     #[must_use]
     pub fn counted(&self) -> Option<Counted> {
         match &self.running {
             Running::Slopes(descents, _) => Some(descents.counted()),
+            Running::Programmes(programmes, _) => Some(programmes.counted()),
             Running::One(_) | Running::Front(_) => None,
         }
     }
@@ -364,7 +401,7 @@ impl<'a> Search<'a> {
     fn stop(&self) -> Option<Stop> {
         match &self.running {
             Running::One(optimiser) => optimiser.stop(),
-            Running::Slopes(..) => None,
+            Running::Slopes(..) | Running::Programmes(..) => None,
             Running::Front(front) => front.stop(),
         }
     }
@@ -454,8 +491,21 @@ fn differentiable<'a>(
     problem: &'a TuningProblem,
     effort: &Effort,
 ) -> Result<Option<Differentiable<'a>>, TuneError> {
-    let is_by_slopes = effort.optimiser == BY_SLOPES;
-    is_by_slopes.then(|| Differentiable::new(problem, BY_SLOPES)).transpose()
+    let name = BY_SLOPES.into_iter().find(|name| effort.optimiser == *name);
+    name.map(|name| Differentiable::new(problem, name)).transpose()
+}
+
+/// The slopes of a search that goes on, if what it saved fits together.
+fn sound_slopes<'a>(
+    problem: &'a TuningProblem,
+    effort: &Effort,
+    is_sound: bool,
+    wrong: impl Fn(String) -> TuneError,
+) -> Result<Box<Differentiable<'a>>, TuneError> {
+    let slopes = differentiable(problem, effort)?.filter(|_| is_sound);
+    let slopes = slopes
+        .ok_or_else(|| wrong("the numbers of its descent do not fit together".to_owned()))?;
+    Ok(Box::new(slopes))
 }
 
 fn started<'a>(problem: &TuningProblem, effort: &Effort, start: &[f64]) -> Running<'a> {

@@ -45,8 +45,8 @@ pub(crate) struct Arguments {
     /// design of its own, as in `design-PID.toml`.
     #[arg(long, conflicts_with_all = ["controller", "rule", "history"])]
     all: bool,
-    /// How to search: cma-es, de, l-shade, pso, ga, nelder-mead, bfgs by slopes of the flights, or nsga-ii for
-    /// trade-offs; by default as the scenario says.
+    /// How to search: cma-es, de, l-shade, pso, ga, nelder-mead, bfgs or sqp by slopes of the flights (sqp
+    /// with those of each limit by itself), or nsga-ii for trade-offs; by default as the scenario says.
     #[arg(long, value_name = "NAME")]
     optimiser: Option<String>,
     /// How many candidates to fly; by default as the scenario says.

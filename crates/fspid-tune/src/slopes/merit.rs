@@ -97,6 +97,23 @@ impl Weights {
         objectives.chain(limits)
     }
 
+    /// Those of one mean that is limited, and of nothing else.
+    pub(super) fn of_limit(&self, limit: usize, by: f64) -> Self {
+        let mut by_limit = vec![0.0; self.by_limit.len()];
+        by_limit.iter_mut().skip(limit).take(1).for_each(|it| *it = by);
+        Self {
+            by_cost: vec![0.0; self.by_cost.len()],
+            by_limit,
+            by_mean: self.by_mean.clone(),
+            by_violation: vec![0.0; self.by_violation.len()],
+        }
+    }
+
+    /// Share of a flight in a mean.
+    pub(super) fn share(&self, job: usize) -> f64 {
+        self.by_mean[job]
+    }
+
     /// True for a candidate that is lost, which has none.
     pub(super) fn is_none(&self) -> bool {
         self.by_cost.is_empty()
@@ -114,11 +131,22 @@ pub(super) fn beyond(requirement: &Requirement, value: f64) -> f64 {
     if requirement.is_met_by(value) || beyond_limit(requirement, value) >= UNKNOWN {
         return 0.0;
     }
-    // As the violation counts it.
+    let is_below =
+        requirement.least.is_some_and(|least| requirement.measure.compared(value) < least);
+    if is_below { -1.0 / scale(requirement) } else { 1.0 / scale(requirement) }
+}
+
+/// How far a value is beyond the nearer limit, as a share of the limit, negative within; and what a unit of the measure
+/// adds to that.
+pub(super) fn excess(requirement: &Requirement, value: f64) -> (f64, f64) {
+    let (compared, scale) = (requirement.measure.compared(value), scale(requirement));
+    let below = requirement.least.map_or(f64::NEG_INFINITY, |least| least - compared);
+    let above = requirement.most.map_or(f64::NEG_INFINITY, |most| compared - most);
+    if below > above { (below / scale, -1.0 / scale) } else { (above / scale, 1.0 / scale) }
+}
+
+/// What a violation counts as a whole.
+fn scale(requirement: &Requirement) -> f64 {
     let limit = requirement.most.or(requirement.least).unwrap_or(1.0).abs();
-    let scale = if limit > 0.0 { limit } else { 1.0 };
-    match requirement.least.is_some_and(|least| requirement.measure.compared(value) < least) {
-        true => -1.0 / scale,
-        false => 1.0 / scale,
-    }
+    if limit > 0.0 { limit } else { 1.0 }
 }

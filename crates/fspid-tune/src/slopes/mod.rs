@@ -13,6 +13,9 @@
 mod descents;
 mod merit;
 mod numbers;
+mod programme;
+mod rows;
+mod sequential;
 #[cfg(test)]
 mod tests;
 
@@ -27,7 +30,7 @@ use fspid_scenario::requirement::Requirement;
 use fspid_scenario::tuning::Free;
 use fspid_sim::batch::{Entrant, Refusal};
 use fspid_sim::gradient::{Flown, Kind, NUMBERS, Slopes, differentiate_prices};
-use fspid_sim::{Controller, Prepared};
+use fspid_sim::Prepared;
 use fspid_study::analysis::AtRest;
 use fspid_study::judgement::{SlopeOf, Sloped, add_slopes, is_of_this_air, of_loop};
 use rayon::prelude::*;
@@ -40,8 +43,9 @@ use crate::score::{FlightScore, load_left};
 pub use descents::Counted;
 pub(crate) use descents::Descents;
 pub(crate) use merit::{Merit, Weights};
+pub(crate) use sequential::Sequential;
 use merit::{Weight, beyond};
-use numbers::Construction;
+use numbers::{Built, Construction};
 
 /// Flights side by side.
 const LANES: usize = 8;
@@ -70,8 +74,13 @@ struct Job<'a> {
     prepared: Option<Arc<Prepared>>,
 }
 
-/// Numbers of flights, each with what a little more of each number of its controller adds.
-type Gradients = Vec<(usize, Vec<f64>)>;
+/// A flight with what a little more of each number of its controller adds to what was made of it, and that itself where
+/// it was asked for.
+struct Priced {
+    job: usize,
+    gradient: Vec<f64>,
+    value: Option<f64>,
+}
 
 /// The slope of a candidate's merit, and how many linear loops were analysed for it.
 pub(crate) struct Found {
@@ -113,29 +122,39 @@ impl<'a> Differentiable<'a> {
     /// The slope of that merit; none where a flight has none.
     pub(crate) fn slope(&self, point: &[f64], weights: &Weights) -> Option<Found> {
         let built = self.construction.built(self.problem.its_flights(), point)?;
-        let controllers: Vec<&Controller> =
-            (0..self.jobs.len()).map(|job| &built.controllers[built.class[job]]).collect();
-        let groups: Vec<Vec<usize>> = self.groups();
-        let flown: Vec<Option<Gradients>> =
-            groups.par_iter().map(|group| self.fly(group, &controllers, point, weights)).collect();
-        let mut of_job = vec![Vec::new(); self.jobs.len()];
-        for (job, gradient) in flown.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten()
-        {
-            of_job[job] = gradient;
-        }
+        let price = |job: usize, flown: &Flown, prepared: &Prepared| {
+            (self.price(job, flown, prepared, weights), None)
+        };
+        let all: Vec<usize> = (0..self.jobs.len()).collect();
         let mut of_class = vec![vec![0.0; NUMBERS]; built.controllers.len()];
-        for (gradient, class) in of_job.iter().zip(&built.class) {
-            let sum = of_class[*class].iter_mut().zip(gradient);
+        for Priced { job, gradient, .. } in self.priced(&built, &all, point, &price)? {
+            let sum = of_class[built.class[job]].iter_mut().zip(&gradient);
             sum.for_each(|(sum, more)| *sum += more);
         }
         let mut slope = vec![0.0; point.len()];
-        for (gradient, columns) in of_class.iter().zip(&built.columns) {
-            for (slope, column) in slope.iter_mut().zip(columns) {
-                *slope += column.iter().zip(gradient).map(|(by, worth)| by * worth).sum::<f64>();
-            }
+        for (class, gradient) in of_class.iter().enumerate() {
+            add_columns(&built, class, gradient, &mut slope);
         }
         let analyses = self.add_loops(point, weights, &mut slope)?;
         Some(Found { slope, analyses })
+    }
+
+    /// What the numbers of the controllers of some flights add to what `price` makes of each, in the order of the
+    /// flights; none where one is lost.
+    fn priced(
+        &self,
+        built: &Built,
+        jobs: &[usize],
+        point: &[f64],
+        price: &(dyn Fn(usize, &Flown, &Prepared) -> (Slopes, Option<f64>) + Sync),
+    ) -> Option<Vec<Priced>> {
+        let groups = self.groups(jobs);
+        let flown: Vec<Option<Vec<Priced>>> =
+            groups.par_iter().map(|group| self.fly(group, built, point, price)).collect();
+        let mut priced: Vec<Priced> =
+            flown.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten().collect();
+        priced.sort_by_key(|it| it.job);
+        Some(priced)
     }
 
     /// The most linear loops that such a slope asks for.
@@ -151,12 +170,13 @@ impl<'a> Differentiable<'a> {
     }
 
     /// Flights of one kind together, at most as many as there are lanes.
-    fn groups(&self) -> Vec<Vec<usize>> {
+    fn groups(&self, jobs: &[usize]) -> Vec<Vec<usize>> {
         let mut groups: Vec<Vec<usize>> = Vec::new();
-        for (job, it) in self.jobs.iter().enumerate() {
+        for &job in jobs {
+            let kind = &self.jobs[job].kind;
             let fits = |group: &&mut Vec<usize>| {
                 group.len() < LANES
-                    && group.first().is_some_and(|first| self.jobs[*first].kind == it.kind)
+                    && group.first().is_some_and(|first| self.jobs[*first].kind == *kind)
             };
             match groups.iter_mut().rev().find(fits) {
                 Some(group) => group.push(job),
@@ -170,23 +190,29 @@ impl<'a> Differentiable<'a> {
     fn fly(
         &self,
         group: &[usize],
-        controllers: &[&Controller],
+        built: &Built,
         point: &[f64],
-        weights: &Weights,
-    ) -> Option<Gradients> {
+        price: &(dyn Fn(usize, &Flown, &Prepared) -> (Slopes, Option<f64>) + Sync),
+    ) -> Option<Vec<Priced>> {
         let prepared = group.iter().map(|job| self.prepared(*job, point));
         let prepared: Vec<Arc<Prepared>> = prepared.collect::<Option<_>>()?;
         let entrants: Vec<Entrant<'_>> = group
             .iter()
             .zip(&prepared)
-            .map(|(job, prepared)| Entrant { prepared, controller: controllers[*job] })
+            .map(|(job, prepared)| Entrant {
+                prepared,
+                controller: &built.controllers[built.class[*job]],
+            })
             .collect();
-        let price =
-            |lane: usize, flown: &Flown| self.price(group[lane], flown, &prepared[lane], weights);
-        let best = InstructionSet::best();
-        let found = differentiate_prices::<LANES>(best, &entrants, price).ok()?;
-        let pairs = group.iter().zip(found);
-        pairs.map(|(job, gradient)| gradient.map(|gradient| (*job, gradient))).collect()
+        let mut values = vec![None; group.len()];
+        let told = |lane: usize, flown: &Flown| {
+            let (slopes, value) = price(group[lane], flown, &prepared[lane]);
+            values[lane] = value;
+            slopes
+        };
+        let found = differentiate_prices::<LANES>(InstructionSet::best(), &entrants, told).ok()?;
+        let lanes = group.iter().zip(found).zip(values);
+        lanes.map(|((&job, found), value)| Some(Priced { job, gradient: found?, value })).collect()
     }
 
     fn prepared(&self, job: usize, point: &[f64]) -> Option<Arc<Prepared>> {
@@ -288,6 +314,13 @@ impl<'a> Differentiable<'a> {
         let change = weighted_sum(&it.measures, &study)? - it.here;
         let difference = change / (moved[coordinate] - here);
         difference.is_finite().then_some(difference)
+    }
+}
+
+/// Adds what the coordinates of a point do by way of a controller's numbers.
+fn add_columns(built: &Built, class: usize, gradient: &[f64], slope: &mut [f64]) {
+    for (slope, column) in slope.iter_mut().zip(&built.columns[class]) {
+        *slope += column.iter().zip(gradient).map(|(by, worth)| by * worth).sum::<f64>();
     }
 }
 

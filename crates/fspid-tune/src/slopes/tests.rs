@@ -254,3 +254,61 @@ fn what_has_no_slope_is_refused_by_name_before_anything_is_searched() {
     let nonlinear = [high, ("model = \"linear\"", "model = \"nonlinear\"")];
     assert!(told("", &nonlinear).contains("a nonlinear aircraft"), "{}", told("", &nonlinear));
 }
+
+/// Compares every row at the start with differences of the rows at its sides.
+fn compare_rows(problem: &TuningProblem, step: f64, tolerance: f64) -> Vec<rows::Which> {
+    let slopes = Differentiable::new(problem, "sqp").expect("it has slopes");
+    let rows_at = |point: &[f64]| {
+        let flights = problem.flights_of(&[point.to_vec()], Crew::UNSTOPPED).expect("flown");
+        let weights = slopes.merit(&flights[0], 0.0).weights;
+        let cost = slopes.merit(&flights[0], 0.0).value;
+        (cost, slopes.rows(point, &flights[0], &weights).expect("rows"))
+    };
+    let start = problem.space().start();
+    let (_, here) = rows_at(&start);
+    let sides = |coordinate: usize, by: f64| {
+        let mut moved = start.clone();
+        moved[coordinate] += by;
+        rows_at(&moved)
+    };
+    for coordinate in (0..start.len()).step_by(5) {
+        let is_cell = problem.space().names()[coordinate].contains("numbers");
+        let by = if is_cell { 100.0 * step } else { step };
+        let (above, below) = (sides(coordinate, by), sides(coordinate, -by));
+        let check = |slope: &[f64], above: f64, below: f64| {
+            let size = slope.iter().fold(0.0_f64, |most, it| most.max(it.abs()));
+            let difference = (above - below) / (2.0 * by);
+            let (found, name) = (slope[coordinate], &problem.space().names()[coordinate]);
+            assert!(
+                (found - difference).abs() < tolerance * size,
+                "{name}: {found} by the way back, {difference} by differences; the largest {size}"
+            );
+        };
+        check(&here.cost, above.0, below.0);
+        for row in &here.limits {
+            let of = |rows: &rows::Rows| {
+                let same = rows.limits.iter().find(|it| it.of == row.of);
+                same.expect("the same limit").excess
+            };
+            check(&row.slope, of(&above.1), of(&below.1));
+        }
+    }
+    here.limits.iter().map(|it| it.of).collect()
+}
+
+#[test]
+fn slopes_of_each_limit_of_flights_and_means_are_those_of_differences() {
+    let problem = problem(OF_FLIGHTS, &[]).expect("a tuning");
+    let found = compare_rows(&problem, 1e-5, 2e-3);
+    assert_eq!(found[0], rows::Which::Mean(0), "{found:?}");
+    let of_flights = |it: &&rows::Which| matches!(it, rows::Which::Flight(..));
+    assert!(found.iter().filter(of_flights).count() >= 6, "{found:?}");
+}
+
+#[test]
+fn slopes_of_each_limit_of_linear_loops_are_those_of_differences() {
+    let problem = problem(OF_THE_LOOP, &[]).expect("a tuning");
+    let found = compare_rows(&problem, 1e-4, 2e-2);
+    let of_loops = |it: &&rows::Which| matches!(it, rows::Which::Loop(..));
+    assert_eq!(found.iter().filter(of_loops).count(), 3, "{found:?}");
+}

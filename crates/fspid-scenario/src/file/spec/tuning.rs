@@ -12,8 +12,8 @@ use crate::measure::Measure;
 use crate::requirement::keys::{CONDITIONS, LIMITS};
 
 /// Names of the optimisers.
-const OPTIMISERS: [&str; 8] =
-    ["cma-es", "de", "l-shade", "pso", "ga", "nelder-mead", "bfgs", "nsga-ii"];
+const OPTIMISERS: [&str; 9] =
+    ["cma-es", "de", "l-shade", "pso", "ga", "nelder-mead", "bfgs", "sqp", "nsga-ii"];
 /// The name of the one that looks for a front.
 pub(crate) const FRONT: &str = "nsga-ii";
 
