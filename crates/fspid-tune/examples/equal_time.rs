@@ -20,7 +20,7 @@ use std::time::Instant;
 
 use fspid_tune::{Crew, Effort, Search, Source, TuningProblem};
 
-const OPTIMISERS: [&str; 2] = ["cma-es", "bfgs"];
+const OPTIMISERS: [&str; 3] = ["cma-es", "bfgs", "sqp"];
 /// Shares of the time at which costs are told.
 const SHARES: [f64; 3] = [0.25, 0.5, 1.0];
 
@@ -59,9 +59,12 @@ fn main() {
             report(optimiser, &runs, time_s);
             last.push(runs);
         }
-        let pairs = last[0].iter().zip(&last[1]);
-        let won = pairs.filter(|(one, other)| other.costs[2] < one.costs[2]).count();
-        println!("{} beats {} with {won} of {seeds} seeds", OPTIMISERS[1], OPTIMISERS[0]);
+        for (one, other) in [(0, 1), (0, 2), (1, 2)] {
+            let pairs = last[one].iter().zip(&last[other]);
+            let won = pairs.filter(|(one, other)| other.costs[2] < one.costs[2]).count();
+            let (one, other) = (OPTIMISERS[one], OPTIMISERS[other]);
+            println!("{other} beats {one} with {won} of {seeds} seeds");
+        }
     }
 }
 

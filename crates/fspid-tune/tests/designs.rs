@@ -69,6 +69,6 @@ fn the_self_tuner_of_six_small_unmanned_aircraft_has_a_fifth_less_error_at_less_
     let answer = held("uav-six");
     let [error, travel] = ratios(&answer);
     assert!(error <= 0.80 && travel <= 0.95, "{error} {travel}");
-    // It overshoots in more of the steps of 1 deg and of the doublets, which nobody was tuned on, so that it does not win.
-    assert_eq!([failed(&answer, "FSPID"), failed(&answer, "PID")], [8, 2]);
+    // It overshoots in all steps of 1 deg and doublets, which nobody was tuned on, so that it does not win.
+    assert_eq!([failed(&answer, "FSPID"), failed(&answer, "PID")], [11, 2]);
 }
