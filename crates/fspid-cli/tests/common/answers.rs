@@ -172,3 +172,15 @@ fn an_answer_that_departs_from_its_schema_is_told_with_its_place() {
         assert!(refused.contains(what), "{refused}");
     }
 }
+
+/// The schema was learned from requirements without a beginning and without an altitude in metres.
+#[test]
+fn every_condition_of_a_requirement_is_known_to_the_schema_of_verify() {
+    let text = std::fs::read_to_string(published().join("verify.schema.json")).expect("readable");
+    let schema: Value = serde_json::from_str(&text).expect("a schema");
+    let requirement = &schema["properties"]["requirements"]["items"]["properties"];
+    let known = &requirement["conditions"]["properties"];
+    for (name, _) in fspid_scenario::requirement::Conditions::default().numbers() {
+        assert_eq!(known[name]["type"], "number", "{name}");
+    }
+}
