@@ -37,6 +37,10 @@ also certify certify "$scenarios/gallery/navion-linear.toml" --disturbances --ou
 also certify certify "$scenarios/gallery/rate-limited-servo.toml" --disturbances --out "$work/proofs"
 also certify certify "$scenarios/../data/designs/learned/light-six.toml" --controller FSPID --set setpoint.amplitude_deg=0 --disturbances
 for proof in "$work"/proofs/*.json; do also certify-check certify --check "$proof"; done
+for changed in "" "--set controller.FSPID.nominal.ki=0.3"; do
+    # Without a change the text is the one that was certified.
+    also certify-check certify --check "$PWD/data/designs/navion-paper.certificate.json" --against "$PWD/data/designs/navion-paper.toml" $changed
+done
 also campaign-run campaign run campaign.toml --runs 200 --quiet --out run
 also campaign-report campaign report run/campaign.parquet
 also campaign-rare campaign rare campaign.toml --fails overshoot_pct --flights 4000 --set loop.duration_s=2

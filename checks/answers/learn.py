@@ -13,10 +13,12 @@ KEY = re.compile(r"^[a-z][a-z0-9_]*$")
 # Objects whose keys are names of measures, of inputs and outputs or of keys, by the key that they stand under.
 MAPS = {"null", "absent", "reasons", "domain", "findings", "inputs", "outputs", "rest", "shares"}
 # What an answer can have and no answer that is asked for has: a margin that is worst at a later plant, at gains without inputs that are
-# known, in a loop that grows there. By the key that it stands under.
+# known, in a loop that grows there; conditions
+# of requirements. By the key that it stands under.
 ALSO = {
     "worst_case": [{"plant": {"index": 1, "from_s": 2.5}, "spectral_radius": 1.5}],
     "frozen_gains": [{"kp": 0.5, "ki": 0.5, "kd": 0.5}],
+    "conditions": [{"from_s": 0.5, "target_m": 600.0}],
 }
 # Why numbers are null stands where one is null; it is so in every answer of some commands that are asked for.
 SOMETIMES = {"null"}

@@ -25,7 +25,7 @@ fmu|FMUs in FMPy, under sanitizers|checks/export/fmu.sh
 evidence|evidence of exports, its verdicts held|checks/export/evidence.sh
 properties|property tests with numbers of this night|PROPTEST_RNG_SEED="$(date +%Y%m%d)" PROPTEST_CASES=2000 cargo test --workspace --locked
 accepted|1500 drawn scenarios, every command|FSPID_ACCEPTED_DRAWS=1500 cargo test --workspace --locked --test all accepted
-whole-program|laws of every command over 1000 scenarios drawn from the schema|FSPID_WHOLE_DRAWS=1000 FSPID_WHOLE_FIRST="$(date +%Y%m%d)000" cargo test -p fspid-cli --locked --test all whole_program
+whole-program|laws of every command over 1000 scenarios drawn from the schema, their exports flown, their answers held against schemas|FSPID_WHOLE_DRAWS=1000 FSPID_WHOLE_FIRST="$(date +%Y%m%d)000" cargo test -p fspid-cli --locked --test all whole_program
 false-safe|100 000 loops that are bad by construction, none called good|cargo run --release --locked -p fspid-cli --example false_safe -- 100000 "$(date +%Y%m%d)"
 hostile|a hundred million bad samples through every structure of controller|cargo run --release --locked -p fspid-options --example hostile_samples -- 100000000 "$(date +%Y%m%d)"
 peers|one bad sample, shown to other PID controllers too|checks/peers/check.sh

@@ -81,6 +81,13 @@ fn a_certificate_is_checked_alone_and_against_a_scenario() {
     let against = ["certify", "--check", text(&certificate), "--against", text(&scenario)];
     let same = fspid(&against);
     assert_eq!(code(&same), 0, "{}", told(&same));
+    // The schema knew two digests alone, and nothing said why there are none.
+    let words = [&against[..], &["--format", "json"]].concat();
+    let same = crate::common::fspid(&words, Path::new("."));
+    let answer = crate::common::json(&same);
+    assert!(answer["against"]["digests"].is_null(), "{answer}");
+    let why = answer["null"]["digests"].as_str().expect("a reason");
+    assert!(why.contains("is the one that was certified"), "{why}");
     let changes = ["--set", "controller.FSPID.nominal.ki=0.3", "--format", "json"];
     let other = fspid(&[&against[..], &changes].concat());
     assert_eq!(code(&other), 1);

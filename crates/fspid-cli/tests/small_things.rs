@@ -217,6 +217,19 @@ fn a_number_that_overflows_is_told_by_its_key() {
 }
 
 /// Least squares that were judged by rows beyond all numbers ended with code 0.
+/// A Navion of 100 g was refused for being "a nonlinear aircraft", of which the outer loops are analysed as well.
+#[test]
+fn an_aircraft_that_leaves_its_trim_at_once_is_refused_with_that_and_its_time() {
+    let words = ["altitude-capture.toml", "--set", "aircraft.mass_kg=0.1"];
+    let gallery = std::path::Path::new(crate::accepted::SCENARIOS).join("gallery");
+    let analysed = fspid(&[&["analyse"], &words[..]].concat(), &gallery);
+    let told = text(&analysed.stderr);
+    assert_eq!(code(&analysed), 2, "{told}");
+    assert!(told.contains("begun at its trim in mode 1 of the autopilot"), "{told}");
+    assert!(told.contains("diverges at t = 0.0"), "{told}");
+    assert!(!told.contains("no linear loop"), "{told}");
+}
+
 #[test]
 fn an_error_of_validation_that_is_infinite_is_a_failure_with_words() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -75,6 +75,15 @@ pub enum SimError {
     Autopilot(Box<AutopilotError>),
     /// A question about a linear loop, of an aircraft that is none.
     NotLinear,
+    /// An aircraft that does not stay about its trim for the few samples from which small motions are taken.
+    LeavesTrim {
+        /// Number of the autopilot's mode that was engaged, from 0.
+        mode: usize,
+        /// When, s.
+        at_s: f64,
+        /// How: diverged, or hit the ground.
+        how: &'static str,
+    },
     /// A self-tuner of another structure than small signals along a flight are written for.
     Structure,
     /// A gain with which the sampled loop leaves the range of numbers.
@@ -191,6 +200,11 @@ impl fmt::Display for SimError {
             Self::NotLinear => {
                 f.write_str("a nonlinear aircraft has no linear loop; allowed is a linear plant")
             }
+            Self::LeavesTrim { mode, at_s, how } => write!(
+                f,
+                "begun at its trim in mode {} of the autopilot, in still air, the aircraft {how} at t = {at_s} s: too soon for small motions about the trim, of which the poles would be; allowed is an aircraft that its loops or a shorter sample period hold there",
+                mode + 1
+            ),
             Self::Structure => f.write_str(
                 "gains along a flight are derived for supervisors whose rules conclude labels and that see the error and its change through even sets, and for controllers of which only the gains move",
             ),

@@ -1,6 +1,6 @@
 //! A design: the scenario's own text with what was found in place of the marks.
 
-use fspid_scenario::file::{Extra, NewValue, Template, read_text};
+use fspid_scenario::file::{Extra, LoadError, NewValue, Template, read_text};
 use fspid_scenario::tuning::{Free, TunableParameter};
 
 use crate::error::TuneError;
@@ -56,24 +56,43 @@ fn has_list(text: &str) -> bool {
     lines.filter_map(|line| line.split_once('=')).any(|(key, _)| key.trim() == "set")
 }
 
+/// A scenario as it was read when its search began: its file may be another one by the time that something is found.
+#[derive(Clone, Debug)]
+pub(crate) struct Original {
+    text: String,
+    overrides: Vec<String>,
+}
+
+impl Original {
+    /// What a source says now, and the scenario that it is.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it.
+    pub(crate) fn read(source: &Source) -> Result<(Self, Template), TuneError> {
+        let text = text_of(source)?;
+        let extra = Extra { overrides: &source.overrides, ..Extra::default() };
+        let name = source.path.display().to_string();
+        let template = Template::parse(&text, &name, Some(folder_of(&source.path)), &extra);
+        let template = template.map_err(LoadError::Problems)?;
+        Ok((Self { text, overrides: source.overrides.clone() }, template))
+    }
+}
+
 /// The scenario with the values of a point in place of its marks; `heading` comes first, as comments.
-///
-/// # Errors
-/// A scenario that cannot be read any more.
-pub fn text(
-    source: &Source,
+pub(crate) fn text(
+    original: &Original,
     space: &Space,
     point: &[f64],
     heading: &[String],
-) -> Result<String, TuneError> {
-    let original = text_of(source)?;
+) -> String {
+    let Original { text: original, overrides } = original;
     let values = space.values(point);
     let mut places: Vec<(&TunableParameter, &NewValue)> =
         space.parameters().iter().zip(values.iter().map(|(_, value)| value)).collect();
     places.sort_by_key(|(mark, _)| mark.bytes().start);
     let mut body = String::new();
     let mut from = 0;
-    let mut changes: Vec<String> = source.overrides.clone();
+    let mut changes: Vec<String> = overrides.clone();
     for (mark, value) in places {
         let bytes = mark.bytes();
         if bytes.is_empty() {
@@ -86,7 +105,7 @@ pub fn text(
         from = bytes.end;
     }
     body.push_str(original.get(from..).unwrap_or_default());
-    Ok(with_changes(&body, heading, &changes))
+    with_changes(&body, heading, &changes)
 }
 
 /// A text with comments and a list of changes before it.

@@ -11,6 +11,7 @@ use fspid_study::analysis::AtRest;
 use fspid_study::output::{Names, Place};
 
 use crate::crew::{Crew, Part};
+use crate::design::{self, Original};
 use crate::error::TuneError;
 use crate::flights::{Asked, Dispersed, Flights, FlownCase, each_once, flown_cases, hex_digest};
 use crate::score::{FlightScore, Score};
@@ -25,6 +26,7 @@ pub struct TuningProblem {
     flights: Flights,
     digest: String,
     file_name: String,
+    original: Original,
 }
 
 impl TuningProblem {
@@ -33,7 +35,7 @@ impl TuningProblem {
     /// # Errors
     /// No objective, nothing free, or cases, draws or bounds that make the scenario wrong.
     pub fn new(source: &Source, controller: Option<&str>) -> Result<Self, TuneError> {
-        let template = source.template()?;
+        let (original, template) = Original::read(source)?;
         let path = || source.path.display().to_string();
         let study = template.study();
         let Some(tuning) = study.tuning.clone() else {
@@ -56,7 +58,7 @@ impl TuningProblem {
         let judging = Judging { stability: Stability::Analysed, loads };
         let asked = Asked { controller: controller.clone(), part: Part::Tuning, judging };
         let flights = Flights::new(asked, Space::new(parameters), cases, measured);
-        Ok(Self { controller, tuning, flights, digest, file_name })
+        Ok(Self { controller, tuning, flights, digest, file_name, original })
     }
 
     /// Name of the controller.
@@ -69,6 +71,13 @@ impl TuningProblem {
     #[must_use]
     pub fn file_name(&self) -> &str {
         &self.file_name
+    }
+
+    /// The scenario, as it was when the search began, with the values of a point in place of its marks; `heading` comes
+    /// first, as comments.
+    #[must_use]
+    pub fn design(&self, point: &[f64], heading: &[String]) -> String {
+        design::text(&self.original, self.space(), point, heading)
     }
 
     /// What is searched.

@@ -67,6 +67,26 @@ fn problem(changes: &[(&str, &str)]) -> TuningProblem {
     TuningProblem::new(&source, None).unwrap_or_else(|error| panic!("{error}"))
 }
 
+/// The scenario was read once more at the end: edited during a search, its new text got numbers that were found for the old
+/// one, at places where the marks had been, and without the file the whole search was in vain.
+#[test]
+fn a_design_is_made_of_the_scenario_as_it_was_when_the_search_began() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("pitch.toml");
+    std::fs::write(&path, SCENARIO).expect("written");
+    let source = Source { path: path.clone(), overrides: vec!["loop.duration_s=3".to_owned()] };
+    let problem = TuningProblem::new(&source, None).unwrap_or_else(|error| panic!("{error}"));
+    let design = || problem.design(&problem.space().start(), &["a design".to_owned()]);
+    let expected = design();
+    let begin = "# a design\nset = [\"loop.duration_s=3\"]\nschema = 1\n";
+    assert!(expected.starts_with(begin), "{expected}");
+    assert!(expected.contains("kd = 0.1\n") && !expected.contains("start = 1.0"), "{expected}");
+    std::fs::write(&path, SCENARIO.replace("kd = 0.1", "# edited\nkd = 0.2")).expect("written");
+    assert_eq!(design(), expected);
+    std::fs::remove_file(&path).expect("removed");
+    assert_eq!(design(), expected);
+}
+
 fn reasons(problem: &TuningProblem, point: &[f64]) -> Vec<String> {
     problem.reasons(point, Crew::UNSTOPPED).expect("flown")
 }

@@ -225,7 +225,9 @@ fn certifying<T>(telling: Telling, work: impl FnOnce(&mut dyn FnMut(&str)) -> T)
     let whom = Mutex::new(String::new());
     let what = || {
         let whom = whom.lock().map_or(String::new(), |name| name.clone());
-        format!("certifying {whom}; a self-tuning controller can take half a minute")
+        format!(
+            "certifying {whom}; a self-tuning controller can take a minute, and one that stays open two"
+        )
     };
     alive(telling, &what, || {
         work(&mut |name: &str| {

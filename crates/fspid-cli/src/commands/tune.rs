@@ -197,8 +197,7 @@ impl Tuning<'_> {
         let (tuned, best) = tuned?.map_err(failure)?;
         if let Some(out) = &out {
             let heading = tuned.heading(&effort.command(source, name));
-            let text = design::text(source, problem.space(), &best, &heading).map_err(failure)?;
-            output::write(out, text)?;
+            output::write(out, problem.design(&best, &heading))?;
             wrote(out);
         }
         // The state is kept until all is told.

@@ -19,32 +19,40 @@ const VARIANTS: [&str; 8] =
 
 /// Holds an answer against its schema, if it is one.
 pub(crate) fn hold(words: &[&str], output: &Output) {
+    if let Err(what) = held(words, output) {
+        panic!("{what}");
+    }
+}
+
+/// The same, for those who go on: what an answer has that its schema does not say.
+pub(crate) fn held(words: &[&str], output: &Output) -> Result<(), String> {
     let is_json = words.windows(2).any(|pair| pair == ["--format", "json"]);
-    let (Some(_), true) = (output.status.code(), is_json) else { return };
+    let (Some(_), true) = (output.status.code(), is_json) else { return Ok(()) };
     // A closed pipe, a full disk: there is no answer, and the tests of these say so themselves.
-    let Ok(answer) = serde_json::from_slice::<Value>(&output.stdout) else { return };
+    let Ok(answer) = serde_json::from_slice::<Value>(&output.stdout) else { return Ok(()) };
     let name = match answer.get("error") {
         Some(_) => "error".to_owned(),
         None => name(words),
     };
     // A schema is no answer, and its shape is that of JSON Schema.
     if name == "schema" {
-        return;
+        return Ok(());
     }
     if let Some(folder) = std::env::var_os("FSPID_ANSWERS") {
-        return kept(&PathBuf::from(folder).join(name), &output.stdout);
+        kept(&PathBuf::from(folder).join(name), &output.stdout);
+        return Ok(());
     }
     let file = published().join(format!("{name}.schema.json"));
-    let Ok(text) = std::fs::read_to_string(&file) else {
-        panic!("there is no docs/answers/{name}.schema.json: see checks/answers/learn.sh");
-    };
+    let text = std::fs::read_to_string(&file).map_err(|_| {
+        format!("there is no docs/answers/{name}.schema.json: see checks/answers/learn.sh")
+    })?;
     let schema: Value = serde_json::from_str(&text).expect("a schema");
-    if let Err(what) = fits(&schema, &answer, "") {
-        panic!(
+    fits(&schema, &answer, "").map_err(|what| {
+        format!(
             "`fspid {}` answers what docs/answers/{name}.schema.json does not say: {what}; checks/answers/learn.sh learns it",
             words.join(" ")
-        );
-    }
+        )
+    })
 }
 
 pub(crate) fn published() -> PathBuf {
@@ -162,5 +170,17 @@ fn an_answer_that_departs_from_its_schema_is_told_with_its_place() {
     ] {
         let refused = told(answer).expect_err(what);
         assert!(refused.contains(what), "{refused}");
+    }
+}
+
+/// The schema was learned from requirements without a beginning and without an altitude in metres.
+#[test]
+fn every_condition_of_a_requirement_is_known_to_the_schema_of_verify() {
+    let text = std::fs::read_to_string(published().join("verify.schema.json")).expect("readable");
+    let schema: Value = serde_json::from_str(&text).expect("a schema");
+    let requirement = &schema["properties"]["requirements"]["items"]["properties"];
+    let known = &requirement["conditions"]["properties"];
+    for (name, _) in fspid_scenario::requirement::Conditions::default().numbers() {
+        assert_eq!(known[name]["type"], "number", "{name}");
     }
 }

@@ -5,7 +5,6 @@ use std::time::Duration;
 use fspid_scenario::count::{BUDGET, POPULATION};
 use fspid_tune::{
     AskedEffort, Beginning, Crew, Effort, Kept, Search, Then, Trial, Tuned, TuningProblem, Unfit,
-    design,
 };
 use serde_json::{Value, json};
 
@@ -181,10 +180,8 @@ impl Teller<'_> {
         })
     }
 
-    /// The text of a design; none where the scenario's file has changed since, for it would be put into that.
+    /// The text of a design; none where the scenario's file has changed since, for it would be put in the place of that.
     fn design(&self, point: &[f64], heading: &[String]) -> Option<String> {
-        let space = self.problem.space();
-        let text = design::text(&self.task.source, space, point, heading).ok();
-        text.filter(|_| self.task.is_as_seen())
+        self.task.is_as_seen().then(|| self.problem.design(point, heading))
     }
 }

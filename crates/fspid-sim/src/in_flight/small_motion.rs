@@ -15,6 +15,7 @@ use crate::flown::Perturbation;
 use crate::scenario::{Prepared, Scenario};
 use crate::surroundings::{Surroundings, Weather};
 use crate::timing::Timing;
+use crate::trace::Outcome;
 
 /// Smaller poles are gone within a sample: those of delays, and of what is remembered of the sample before.
 const GONE: f64 = 1e-6;
@@ -60,7 +61,8 @@ fn poles_of(
     controller: &Controller,
 ) -> Result<ModePoles, SimError> {
     let still = still(scenario, autopilot, mode)?;
-    let matrix = one_sample(&still, autopilot.modes().get(mode), controller)?;
+    let matrix = one_sample(&still, autopilot.modes().get(mode), controller);
+    let matrix = matrix.map_err(|ended| ended.of(mode))?;
     let dt_s = scenario.timing.dt_s();
     let found = eigenvalues(&matrix)?;
     let spectral_radius = found.iter().map(|z| modulus(*z)).fold(0.0, f64::max);
@@ -143,12 +145,41 @@ struct Flying<'a> {
     memory: State<f64>,
 }
 
+/// Why a flight about the trim has no next sample.
+enum Ended {
+    Flight(Outcome),
+    Failed(SimError),
+}
+
+impl From<SimError> for Ended {
+    fn from(error: SimError) -> Self {
+        Self::Failed(error)
+    }
+}
+
+impl Ended {
+    /// In words, of a mode.
+    fn of(self, mode: usize) -> SimError {
+        match self {
+            Self::Flight(Outcome::Diverged { at_s }) => {
+                SimError::LeavesTrim { mode, at_s, how: "diverges" }
+            }
+            Self::Flight(Outcome::HitGround { at_s }) => {
+                SimError::LeavesTrim { mode, at_s, how: "hits the ground" }
+            }
+            // Nobody else flies what has equations, and it is long enough.
+            Self::Flight(_) => SimError::NotLinear,
+            Self::Failed(error) => error,
+        }
+    }
+}
+
 impl Flying<'_> {
-    fn fly(&mut self, controller: &Controller) -> Result<(), SimError> {
-        let Ok(seen) = self.course.look() else { return Err(SimError::NotLinear) };
+    fn fly(&mut self, controller: &Controller) -> Result<(), Ended> {
+        let seen = self.course.look().map_err(Ended::Flight)?;
         let step = controller.step(&mut self.memory, seen.sample());
         let (_, command_rad) = self.course.take(seen, step);
-        self.course.advance(command_rad)
+        Ok(self.course.advance(command_rad)?)
     }
 }
 
@@ -277,7 +308,7 @@ fn one_sample(
     prepared: &Prepared,
     mode: Option<&Mode>,
     controller: &Controller,
-) -> Result<Matrix, SimError> {
+) -> Result<Matrix, Ended> {
     let course = Course::start(prepared, &Perturbation::NONE)?;
     let mut at = Flying { course, memory: State::new() };
     for _ in 0..SETTLING_SAMPLES {
@@ -292,11 +323,11 @@ fn one_sample(
             let mut moved = at.clone();
             moved.nudge(*place, by);
             moved.fly(controller)?;
-            Ok::<_, SimError>(moved.read(&places))
+            Ok::<_, Ended>(moved.read(&places))
         };
         let (more, less) = (arrive(half)?, arrive(-half)?);
         for (row, (more, less)) in more.iter().zip(&less).enumerate() {
-            matrix.set(row, column, (more - less) / (2.0 * half))?;
+            matrix.set(row, column, (more - less) / (2.0 * half)).map_err(SimError::from)?;
         }
     }
     Ok(matrix)

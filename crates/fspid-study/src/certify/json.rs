@@ -16,7 +16,7 @@ use crate::json::{merged, present, with_null_reasons};
 const SCHEMA: u32 = 2;
 
 /// Why keys of these answers are null.
-const NULLS: [(&str, &str); 16] = [
+const NULLS: [(&str, &str); 17] = [
     ("decay_per_sample", "the claim is one of growth, or no rate is proved"),
     (
         "law_keeps_to_the_rate",
@@ -36,6 +36,7 @@ const NULLS: [(&str, &str); 16] = [
     ("not_proved", "no factor was tried and not proved"),
     ("bearing", "the certificate does not hold"),
     ("bearing_in_words", "the certificate does not hold"),
+    ("digests", "the text of the scenario is the one that was certified"),
 ];
 
 impl Certification {

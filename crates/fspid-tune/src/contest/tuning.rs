@@ -7,7 +7,6 @@ use fspid_study::output;
 use serde::{Deserialize, Serialize};
 
 use crate::crew::Crew;
-use crate::design;
 use crate::error::TuneError;
 use crate::kept::{Kept, Then, Unfit};
 use crate::problem::TuningProblem;
@@ -103,8 +102,7 @@ impl Task<'_> {
         let found = self.found(&tuned);
         let heading =
             tuned.heading(&self.effort.command(self.source, Some(self.problem.controller())));
-        let space = self.problem.space();
-        let text = design::text(self.source, space, &tuned.best.point, &heading)?;
+        let text = self.problem.design(&tuned.best.point, &heading);
         output::write(&self.path("toml"), text)?;
         output::write(&self.path("json"), sealed::text(&found))?;
         // A state that stays is not used again: what was found comes before it.
