@@ -178,3 +178,31 @@ fn a_table_that_is_not_there_is_told() {
         assert!(told.contains(of) && told.contains("leave --cases out"), "{told}");
     }
 }
+
+#[test]
+fn what_disturbances_do_is_bounded_in_every_case_and_told_of_all_together() {
+    let folder = folder(TUNING);
+    let words =
+        ["certify", "chosen.toml", "--cases", "tuning", "--disturbances", "--out", "proofs"];
+    let output = fspid(&[&words[..], &["--format", "json"]].concat(), folder.path());
+    assert_eq!(code(&output), 0, "{}", text(&output.stderr));
+    let answer = json(&output);
+    let of_all = answer["in_every_case"][0]["disturbances"].as_array().expect("bounds").clone();
+    assert_eq!(answer["in_every_case"][0]["name"], "PID");
+    let cases = answer["cases"].as_array().expect("cases").iter();
+    let each = cases.map(|case| case["controllers"][0]["scope"]["disturbances"].clone());
+    let each: Vec<_> = each.collect();
+    assert_eq!(each.len(), 3);
+    for bound in &of_all {
+        let same = |it: &&serde_json::Value| {
+            ["enters", "bounds", "measured_by"].iter().all(|key| it[key] == bound[key])
+        };
+        let own = each.iter().map(|own| own.as_array().and_then(|own| own.iter().find(same)));
+        let own = own.map(|it| it.expect("in every case")["deg_per_unit"].as_f64());
+        let largest = own.map(|it| it.expect("a number")).fold(0.0, f64::max);
+        assert_eq!(bound["deg_per_unit"].as_f64(), Some(largest), "{bound}");
+    }
+    let check = ["certify", "--check", "proofs/up/pid.certificate.json"];
+    let told = text(&fspid(&check, folder.path()).stdout);
+    assert!(told.contains("from rest, the L2 gain of a vertical gust"), "{told}");
+}

@@ -6,7 +6,9 @@
 //!
 //! $$ V_{k+1} \le \alpha V_k + \beta |u_k|^2 - T y_k^2 $$
 //!
-//! for all gains that the claim is made for, however they move. From rest, $V_0 = 0$:
+//! for all gains that the claim is made for, however they move. Where the claim is about gains of a bounded rate, the form
+//! moves with them, $V_k = z_k^T P(\kappa_k) z_k$, and the inequality is that of every motion that is as slow as the law
+//! keeps to in every flight, whatever disturbs it ([`crate::check::grows_no_faster_while_moving`]). From rest, $V_0 = 0$:
 //!
 //! - with $\alpha = 1$, $\sum_k T y_k^2 \le \beta \int w^2 dt$: the gain from energy to energy ("L2 gain") is at most
 //!   $\sqrt \beta$;
@@ -133,8 +135,22 @@ pub struct DisturbanceBound {
     pub decay: f64,
     /// β, above 0.
     pub gain: f64,
-    /// P.
+    /// P; of a loop whose gains move at a bounded rate $P_0$, at the centre of the claim's box.
     pub form: Matrix,
+    /// What each gain adds to P per half width of the claim's box, where the claim is about a bounded rate, and only there.
+    pub by_gain: Option<[Matrix; 3]>,
+}
+
+impl DisturbanceBound {
+    /// Whether it asks something of every sample: of an energy, but not where its largest values count.
+    pub(crate) fn is_seen(&self) -> bool {
+        self.extent == Extent::Energy && self.quantity != Quantity::Limits
+    }
+
+    /// All matrices of the form.
+    pub(crate) fn forms(&self) -> impl Iterator<Item = &Matrix> {
+        core::iter::once(&self.form).chain(self.by_gain.iter().flatten())
+    }
 }
 
 /// A bound that was proved.

@@ -137,7 +137,9 @@ pub(crate) fn check(certificate: &Certificate) -> Result<(), WrongSizes> {
     let bounds = certificate.disturbances.len();
     wrong.within(("disturbances", "bounds"), bounds, [0, MOST_BOUNDS]);
     for bound in &certificate.disturbances {
-        wrong.of_form("disturbances.form", &bound.form, states);
+        for form in bound.forms() {
+            wrong.of_form("disturbances.form", form, states);
+        }
     }
     if let Some(claim) = &certificate.nonlinear {
         wrong.of_form("nonlinear.form", &claim.form, description.states());

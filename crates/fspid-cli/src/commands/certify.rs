@@ -51,8 +51,9 @@ pub(crate) struct Arguments {
     /// every case.
     #[arg(long, value_enum, value_name = "TABLE", conflicts_with = "check")]
     cases: Option<Table>,
-    /// Bound as well, from rest, what gusts and disturbances at the elevator do to pitch angle and command.
-    #[arg(long, conflicts_with_all = ["check", "cases"])]
+    /// Bound as well, from rest, what gusts and disturbances at the elevator do to pitch angle and command; with `--cases` in
+    /// each case, and in all of them together.
+    #[arg(long, conflicts_with = "check")]
     disturbances: bool,
     /// Certify as well the nonlinear aircraft in a box around its trim, which the search makes as large as it can.
     #[arg(long, conflicts_with_all = ["check", "cases"])]
@@ -167,7 +168,8 @@ fn prove_cases(
         let changed = changed(path, &change, arguments)?;
         let only = arguments.controller.as_deref();
         let effort = Effort::default();
-        let question = Question { only, family: arguments.family, effort: &effort };
+        let Arguments { disturbances, family, .. } = *arguments;
+        let question = Question { only, disturbances, family, effort: &effort };
         let added = certifying(telling, |tell| {
             let mut tell = |name: &str| tell(&format!("{name} at {}", change.name));
             cases.add(&change, &changed, question, &mut tell)

@@ -83,9 +83,18 @@ impl Ellipsoid {
     /// # Errors
     /// [`NotProved`] where it is not finite, symmetric and positive definite.
     pub fn of(p: &Matrix) -> Result<Self, NotProved> {
-        let own = symmetric("Lyapunov matrix", p)?;
+        Self::of_all(&symmetric("Lyapunov matrix", p)?)
+    }
+
+    /// One that holds those of all symmetric forms inside a matrix.
+    ///
+    /// # Errors
+    /// As [`of`](Self::of).
+    pub fn of_all(own: &IntervalMatrix) -> Result<Self, NotProved> {
+        own.require_shape("Lyapunov matrix", own.rows(), own.rows())?;
+        require_bounded("Lyapunov matrix", own)?;
         let basis = basis("Lyapunov matrix", &own.middle, own.rows())?;
-        let turned = form(&own, &basis)?;
+        let turned = form(own, &basis)?;
         dominant("Lyapunov matrix", &turned)?;
         Ok(Self { basis, least: Interval::point(least_eigenvalue(&turned)) })
     }
@@ -119,7 +128,16 @@ fn row_of(row: &[Interval], size: usize) -> Result<IntervalMatrix, NotProved> {
 
 /// A square matrix with a matrix in its first corner, ones on the diagonal behind it.
 fn corner(matrix: &IntervalMatrix, size: usize) -> IntervalMatrix {
-    of_places(size, |i, j| matrix.get(i, j), Interval::ONE)
+    corner_and(matrix, size, Interval::ONE)
+}
+
+/// The same with another number on the diagonal.
+pub(super) fn corner_and(
+    matrix: &IntervalMatrix,
+    size: usize,
+    diagonal: Interval,
+) -> IntervalMatrix {
+    of_places(size, |i, j| matrix.get(i, j), diagonal)
 }
 
 fn of_places(
@@ -137,7 +155,7 @@ fn of_places(
     IntervalMatrix::from_entries(size, size, entries)
 }
 
-fn beside(left: &IntervalMatrix, right: &IntervalMatrix) -> IntervalMatrix {
+pub(super) fn beside(left: &IntervalMatrix, right: &IntervalMatrix) -> IntervalMatrix {
     let columns = left.columns() + right.columns();
     let places = (0..left.rows()).flat_map(|i| (0..columns).map(move |j| (i, j)));
     let entry = |(i, j): (usize, usize)| {

@@ -99,35 +99,12 @@ pub fn falls_while_moving(
     moving: &Moving<'_>,
     part: impl Fn(&Ends) -> Option<Ends>,
 ) -> Result<MovingProof, NotProvedAt> {
-    let parts = Parts::of(moving)?;
-    let gains = moving.changes.len();
-    let mut open: Vec<Ends> = vec![vec![[-1.0, 1.0]; gains]];
-    let mut proof = MovingProof { cells: Vec::new(), inequalities: 0 };
-    let most = most_cells(gains, moving.forms.first().map_or(0, Matrix::rows));
-    let mut looked = 0_u64;
-    while let Some(whole) = open.pop() {
-        let Some(needed) = part(&whole) else { continue };
-        let cell = on_grid(&whole, &needed);
-        looked += 1;
-        match parts.proved_in(&cell) {
-            Ok(inequalities) => {
-                proof.inequalities += inequalities;
-                proof.cells.push(cell);
-            }
-            Err(reason) => {
-                let gains = middle(&cell);
-                let asked = part(&gains.iter().map(|&gain| [gain, gain]).collect()).is_some();
-                let lost = asked && parts.prove_at(&gains).is_err();
-                let halves = halves(&cell).filter(|_| looked < most && !lost);
-                open.extend(halves.ok_or(NotProvedAt { gains, reason })?);
-            }
-        }
-    }
-    Ok(proof)
+    let most = most_cells(moving.changes.len(), moving.forms.first().map_or(0, Matrix::rows));
+    Parts::of(moving)?.prove(most, part)
 }
 
 /// Cells that may be looked at: each takes a factor of as many matrices as its decrease has coefficients.
-fn most_cells(gains: usize, size: usize) -> u64 {
+pub(super) fn most_cells(gains: usize, size: usize) -> u64 {
     let coefficients = (ALONG as u64).saturating_pow(u32::try_from(gains).unwrap_or(u32::MAX));
     let work = coefficients.saturating_mul((size as u64).saturating_pow(3)).max(1);
     (MOST_WORK / work).clamp(1, MOST_CELLS)
@@ -173,7 +150,7 @@ struct Term {
 /// \kappa_j^+ = f_j \kappa_j + o_j $$
 ///
 /// with $f_j = 1$, $o_j = \pm d_j$ for a gain that moves and $f_j = 0$, $o_j = \pm 1$ for one that jumps.
-struct Parts {
+pub(super) struct Parts {
     gains: usize,
     /// $X^T P_a X$.
     forms: Vec<Packed>,
@@ -184,31 +161,32 @@ struct Parts {
 
 impl Parts {
     fn of(moving: &Moving<'_>) -> Result<Self, NotProvedAt> {
-        let gains = moving.changes.len();
         let forms = symmetric_forms(moving)?;
-        let size = forms[0].rows();
-        let x = basis("form at the centre", &forms[0].middle, size)?;
-        let turned: Vec<IntervalMatrix> = moving
-            .loops
-            .iter()
-            .map(|part| part.product(&x))
-            .collect::<Result<_, _>>()
-            .map_err(NotProved::from)?;
+        let Turned { own, loops } = Turned::of(moving.loops, &forms)?;
         let rate = Interval::point(moving.rate);
-        let own: Vec<IntervalMatrix> =
-            forms.iter().map(|own| form(own, &x)).collect::<Result<_, _>>()?;
+        let kept: Vec<IntervalMatrix> = own.iter().map(|own| own.scaled(rate * rate)).collect();
+        Self::assembled(&own, &kept, &loops, (&forms, moving.changes))
+    }
+
+    /// From the forms, what is kept of them and the loops, all in the basis, and the forms as they are, which what the
+    /// loops make of a state is measured by; a loop may have more columns than the form, and what is kept as many.
+    pub(super) fn assembled(
+        own: &[IntervalMatrix],
+        kept: &[IntervalMatrix],
+        loops: &[IntervalMatrix],
+        (forms, changes): (&[IntervalMatrix], &[f64]),
+    ) -> Result<Self, NotProvedAt> {
         let mut resting = Vec::new();
-        for (part, own) in own.iter().enumerate() {
-            add(&mut resting, &[part], &Packed::of(&own.scaled(rate * rate)));
+        for (part, kept) in kept.iter().enumerate() {
+            add(&mut resting, &[part], &Packed::of(kept));
         }
-        let mut moved: Vec<(f64, Vec<Term>)> = moving
-            .changes
+        let mut moved: Vec<(f64, Vec<Term>)> = changes
             .iter()
             .map(|&change| (if change < 1.0 { change } else { 1.0 }, Vec::new()))
             .collect();
         for (part, next) in forms.iter().enumerate() {
-            for (left, right, triple) in triples(&turned, next)? {
-                let follows = part.checked_sub(1).is_none_or(|gain| moving.changes[gain] < 1.0);
+            for (left, right, triple) in triples(loops, next)? {
+                let follows = part.checked_sub(1).is_none_or(|gain| changes[gain] < 1.0);
                 if follows {
                     add(&mut resting, &[left, right, part], &triple.negated());
                 }
@@ -217,7 +195,47 @@ impl Parts {
                 }
             }
         }
+        let gains = changes.len();
         Ok(Self { gains, forms: own.iter().map(Packed::of).collect(), resting, moved })
+    }
+
+    /// Takes off $r(\kappa)^T r(\kappa)$ of a row that is affine in the gains.
+    pub(super) fn less_square(&mut self, rows: &[IntervalMatrix]) -> Result<(), NotProvedAt> {
+        let whole = IntervalMatrix::identity(1);
+        for (left, right, square) in triples(rows, &whole)? {
+            add(&mut self.resting, &[left, right], &square.negated());
+        }
+        Ok(())
+    }
+
+    /// Proves cell after cell, of no more than `most`, that all that `part` asks for is positive definite.
+    pub(super) fn prove(
+        &self,
+        most: u64,
+        part: impl Fn(&Ends) -> Option<Ends>,
+    ) -> Result<MovingProof, NotProvedAt> {
+        let mut open: Vec<Ends> = vec![vec![[-1.0, 1.0]; self.gains]];
+        let mut proof = MovingProof { cells: Vec::new(), inequalities: 0 };
+        let mut looked = 0_u64;
+        while let Some(whole) = open.pop() {
+            let Some(needed) = part(&whole) else { continue };
+            let cell = on_grid(&whole, &needed);
+            looked += 1;
+            match self.proved_in(&cell) {
+                Ok(inequalities) => {
+                    proof.inequalities += inequalities;
+                    proof.cells.push(cell);
+                }
+                Err(reason) => {
+                    let gains = middle(&cell);
+                    let asked = part(&gains.iter().map(|&gain| [gain, gain]).collect()).is_some();
+                    let lost = asked && self.prove_at(&gains).is_err();
+                    let halves = halves(&cell).filter(|_| looked < most && !lost);
+                    open.extend(halves.ok_or(NotProvedAt { gains, reason })?);
+                }
+            }
+        }
+        Ok(proof)
     }
 
     /// Proves a cell; answers how many matrices that took.
@@ -275,8 +293,42 @@ impl Parts {
     }
 }
 
+/// Forms and loops in the basis in which the form at the centre is about the identity.
+pub(super) struct Turned {
+    /// $X^T P_a X$.
+    pub(super) own: Vec<IntervalMatrix>,
+    /// $M_a X$.
+    pub(super) loops: Vec<IntervalMatrix>,
+}
+
+impl Turned {
+    pub(super) fn of(
+        loops: &[IntervalMatrix],
+        forms: &[IntervalMatrix],
+    ) -> Result<Self, NotProvedAt> {
+        let x = basis_at_centre(forms)?;
+        let own = forms.iter().map(|own| form(own, &x)).collect::<Result<_, _>>()?;
+        Ok(Self { own, loops: turned_by(&x, loops)? })
+    }
+}
+
+/// X.
+pub(super) fn basis_at_centre(forms: &[IntervalMatrix]) -> Result<IntervalMatrix, NotProvedAt> {
+    let size = forms[0].rows();
+    Ok(basis("form at the centre", &forms[0].middle, size)?)
+}
+
+/// Each matrix times X.
+pub(super) fn turned_by(
+    x: &IntervalMatrix,
+    matrices: &[IntervalMatrix],
+) -> Result<Vec<IntervalMatrix>, NotProvedAt> {
+    let turned = matrices.iter().map(|part| part.product(x));
+    Ok(turned.collect::<Result<_, _>>()?)
+}
+
 /// The forms, if everything is of one shape and all numbers are allowed.
-fn symmetric_forms(moving: &Moving<'_>) -> Result<Vec<IntervalMatrix>, NotProved> {
+pub(super) fn symmetric_forms(moving: &Moving<'_>) -> Result<Vec<IntervalMatrix>, NotProved> {
     let Moving { loops, forms, changes, rate } = *moving;
     let gains = changes.len();
     if gains > GAINS || loops.len() != gains + 1 || forms.len() != gains + 1 {

@@ -19,14 +19,14 @@ const STILL: f64 = 1e-9;
 const GRANTED: f64 = 1.0 + 1e-9;
 
 /// The box around a set, as the solver sees it.
-struct Sides {
+pub(super) struct Sides {
     ends: [[f64; 2]; 3],
     /// Numbers of the gains that move.
-    moving: Vec<usize>,
+    pub(super) moving: Vec<usize>,
 }
 
 impl Sides {
-    fn of(set: &GainSet) -> Self {
+    pub(super) fn of(set: &GainSet) -> Self {
         let ends = set.bounds().map(|bounds| [bounds.lower(), bounds.upper()]);
         let moves = |gain: &usize| {
             let [lower, upper] = ends[*gain];
@@ -49,6 +49,11 @@ impl Sides {
         self.moving.iter().map(along).collect()
     }
 
+    /// The same of gains by name.
+    pub(super) fn of_gains(&self, Gains { kp, ki, kd }: Gains<f64>) -> Vec<f64> {
+        self.counted([kp, ki, kd])
+    }
+
     /// A cell of gains in half widths.
     fn cell(&self, gains: [Interval; 3]) -> Ends {
         let [lower, upper] = [gains.map(Interval::lower), gains.map(Interval::upper)];
@@ -57,7 +62,7 @@ impl Sides {
     }
 
     /// Of a cell what an accumulating law reaches.
-    fn part(&self, set: &GainSet, cell: Ends) -> Option<Ends> {
+    pub(super) fn part(&self, set: &GainSet, cell: Ends) -> Option<Ends> {
         let Some(reached) = &set.reached else { return Some(cell) };
         let mut gains = self.ends.map(|[lower, upper]| Interval::between(lower, upper));
         for (&gain, &[lower, upper]) in self.moving.iter().zip(&cell) {
@@ -74,7 +79,7 @@ impl Sides {
     }
 
     /// Gains that are counted in half widths.
-    fn gains(&self, counted: &[f64]) -> Gains<f64> {
+    pub(super) fn gains(&self, counted: &[f64]) -> Gains<f64> {
         let mut gains = [0, 1, 2].map(|gain| self.centre_and_half(gain).0);
         for (&gain, count) in self.moving.iter().zip(counted) {
             let (centre, half) = self.centre_and_half(gain);
@@ -145,6 +150,27 @@ impl Prover<'_> {
 
     /// A form that moves with the gains, not proved.
     fn moving_form(&self, set: &GainSet, changes: [f64; 3]) -> Option<BoundedRate> {
+        let verdict = self.moving_problem(set, changes, |problem| {
+            solve::moving_form_over(problem, &self.search())
+        })?;
+        let MovingVerdict::Found(found) = verdict else { return None };
+        let sides = Sides::of(set);
+        let size = self.model.size();
+        let mut forms = [0; 4].map(|_| Matrix::zeros(size, size));
+        let places = core::iter::once(0).chain(sides.moving.iter().map(|gain| gain + 1));
+        for (place, form) in places.zip(found.forms) {
+            forms[place] = form;
+        }
+        Some(BoundedRate { ends: sides.ends, changes, forms, rate: 1.0, inputs: None })
+    }
+
+    /// What is asked of a form that moves with the gains, for somebody who answers it.
+    pub(super) fn moving_problem<T>(
+        &self,
+        set: &GainSet,
+        changes: [f64; 3],
+        answer: impl FnOnce(&MovingProblem<'_>) -> T,
+    ) -> Option<T> {
         let sides = Sides::of(set);
         let gains = sides.moving.len();
         let corners = (0..1_usize << gains).map(|corner| {
@@ -153,25 +179,15 @@ impl Prover<'_> {
         });
         let family = GainFamily::from_corners(&corners.collect::<Option<Vec<Matrix>>>()?)?;
         let points = set.hull_within(THINNED).into_iter();
-        let points: Vec<Vec<f64>> =
-            points.map(|Gains { kp, ki, kd }| sides.counted([kp, ki, kd])).collect();
+        let points: Vec<Vec<f64>> = points.map(|it| sides.of_gains(it)).collect();
         let cells: Vec<Ends> = set.cells.iter().map(|cell| sides.cell(cell.gains)).collect();
         let moved: Vec<f64> = sides.moving.iter().map(|&gain| changes[gain]).collect();
-        let problem = MovingProblem {
+        Some(answer(&MovingProblem {
             family: &family,
             changes: &moved,
             rate: 1.0,
             points: &points,
             part: &|cell| sides.part(set, part_in(&cells, cell)?),
-        };
-        let verdict = solve::moving_form_over(&problem, &self.search());
-        let MovingVerdict::Found(found) = verdict else { return None };
-        let size = self.model.size();
-        let mut forms = [0; 4].map(|_| Matrix::zeros(size, size));
-        let places = core::iter::once(0).chain(sides.moving.iter().map(|gain| gain + 1));
-        for (place, form) in places.zip(found.forms) {
-            forms[place] = form;
-        }
-        Some(BoundedRate { ends: sides.ends, changes, forms, rate: 1.0, inputs: None })
+        }))
     }
 }

@@ -2,6 +2,7 @@
 
 mod bounded;
 mod disturbed;
+mod disturbed_moving;
 mod largest;
 mod region;
 mod stable;

@@ -1,19 +1,24 @@
 //! What disturbances do at most, proved anew from their forms.
 
+use fspid_core::Gains;
 use fspid_lti::Matrix;
 use fspid_numeric::Scalar;
 use fspid_numeric::scalar::Interval;
+use fspid_sim::loop_model::LoopModel;
 
-use super::{Recheck, RecheckError, malformed, points};
-use crate::certificate::Claim;
-use crate::check::{Driven, Ellipsoid, IntervalMatrix, NotProved, grows_no_faster, printed};
+use super::moving::RowAt;
+use super::{Corner, Recheck, RecheckError, malformed, points};
+use crate::certificate::{BoundedRate, Claim};
+use crate::check::{
+    Driven, Ellipsoid, IntervalMatrix, MovingDrive, NotProved, grows_no_faster, printed,
+};
 use crate::disturbances::{DisturbanceBound, Disturbed, Extent, Quantity, exact, first_of};
 use crate::gain_set::HeldGains;
 use crate::limits;
 
 /// The loop at some gains, with everything that a bound asks of it.
 pub(crate) struct DrivenLoop {
-    held: HeldGains,
+    gains: Gains<f64>,
     matrix: IntervalMatrix,
     command: Vec<Interval>,
     /// Rows to everything that is limited, each with its limit; none where limits are not covered.
@@ -62,14 +67,18 @@ impl Recheck<'_> {
         Ok(told.map(|it| Disturbed { unlimited_up_to: best(it), ..it.clone() }).collect())
     }
 
-    /// The loop at all corners of its gains.
+    /// The loop at all corners of its gains; none where the form moves with the gains, and the corners of each bound are
+    /// those of its own proof.
     pub(crate) fn driven_corners(&self) -> Result<Vec<DrivenLoop>, RecheckError> {
-        if !matches!(self.certificate.claim, Claim::CommonQuadratic { .. }) {
-            return Err(malformed(
-                "disturbances: bounded are those of a loop that is stable however fast its gains move",
-            ));
+        match &self.certificate.claim {
+            Claim::CommonQuadratic { .. } => {
+                self.held.held_corners().map(|(_, held)| self.driven_corner(held)).collect()
+            }
+            Claim::BoundedRate(_) => Ok(Vec::new()),
+            _ => Err(malformed(
+                "disturbances: bounded are those of a loop that is stable however fast its gains move, or at a rate that its law keeps to",
+            )),
         }
-        self.held.held_corners().map(|(_, held)| self.driven_corner(held)).collect()
     }
 
     /// The loop at corners that span the others but for a share of half the set's extent.
@@ -78,18 +87,32 @@ impl Recheck<'_> {
         hull.into_iter().map(|held| self.driven_corner(held)).collect()
     }
 
-    /// The loop at some gains.
+    /// The loop at some gains, with what is held there.
     fn driven_corner(&self, held: HeldGains) -> Result<DrivenLoop, RecheckError> {
         let matrix = self.held_loop(held)?;
-        let at = points(held.gains);
         let model = self.model.with_change_gain(Interval::point(held.change_gain));
+        Ok(self.driven_loop(matrix, &model, points(held.gains)))
+    }
+
+    /// The loop at some gains at which nothing is held.
+    pub(crate) fn driven_at(&self, gains: Gains<Interval>) -> Result<DrivenLoop, RecheckError> {
+        Ok(self.driven_loop(self.closed(gains)?, &self.model, gains))
+    }
+
+    fn driven_loop(
+        &self,
+        matrix: IntervalMatrix,
+        model: &LoopModel<Interval>,
+        at: Gains<Interval>,
+    ) -> DrivenLoop {
         let mut command = model.command_row(at);
         // Gains that remember what is held add to the command; it is not bounded then.
         command.resize(matrix.rows(), Interval::ZERO);
         let description = &self.certificate.description;
-        let limits =
-            self.covers_limits().then(|| limits::rows(description, &model, at, &self.rest));
-        Ok(DrivenLoop { held, matrix, command, limits })
+        let limits = self.covers_limits().then(|| limits::rows(description, model, at, &self.rest));
+        let Gains { kp, ki, kd } = at;
+        let gains = Gains { kp: kp.midpoint(), ki: ki.midpoint(), kd: kd.midpoint() };
+        DrivenLoop { gains, matrix, command, limits }
     }
 
     /// What a disturbance of measure 1 takes of a limit beside what it reaches of the state: one that enters at the servo is
@@ -132,14 +155,14 @@ impl Recheck<'_> {
         )
     }
 
-    /// Proves one bound.
+    /// Proves one bound; the corners are those of a claim whose form does not move.
     pub(crate) fn bounded(
         &self,
         bound: &DisturbanceBound,
         corners: &[DrivenLoop],
         remains_rad: f64,
     ) -> Result<Disturbed, RecheckError> {
-        let DisturbanceBound { way, quantity, extent, decay, gain, form } = bound;
+        let DisturbanceBound { way, quantity, extent, decay, .. } = bound;
         let description = &self.certificate.description;
         let not = self.not_bounded(*quantity, *extent, remains_rad);
         if let Some(what) = not.or_else(|| way.not_covered(description)) {
@@ -154,98 +177,167 @@ impl Recheck<'_> {
                 "disturbances: the decay is 1 of an energy and below it of a peak",
             ));
         }
-        let size = self.model.size() + self.more_states();
-        let entry = exact(&way.entry(description, size)?);
-        let root_of_period = printed(description.controller.config().dt_s).sqrt();
-        for corner in corners {
-            if (self.stops)() {
-                return Err(malformed("nobody wants the answer any more"));
+        match (&self.certificate.claim, &bound.by_gain) {
+            (Claim::CommonQuadratic { .. }, None) => {
+                self.driven_at_corners(bound, corners)?;
+                let ellipsoid = Ellipsoid::of(&bound.form)?;
+                let places = corners.iter().map(|corner| (corner, &ellipsoid));
+                self.reached(bound, places.collect())
             }
+            (Claim::BoundedRate(claim), Some(by_gain)) => {
+                let places = self.driven_while_moving(bound, by_gain, claim)?;
+                self.reached(bound, places.iter().map(|(at, own)| (at, own)).collect())
+            }
+            _ => Err(malformed(
+                "disturbances: a form moves with the gains where the claim is about their rate, and only there",
+            )),
+        }
+    }
+
+    /// What is reached, by a proved bound, over ellipsoids at gains between which all lie.
+    fn reached(
+        &self,
+        bound: &DisturbanceBound,
+        places: Vec<(&DrivenLoop, &Ellipsoid)>,
+    ) -> Result<Disturbed, RecheckError> {
+        let DisturbanceBound { way, quantity, extent, gain, .. } = bound;
+        let reached = Reached { places, size: reached_size(bound, self.root_of_period()) };
+        Ok(Disturbed {
+            way: way.clone(),
+            quantity: *quantity,
+            extent: *extent,
+            at_servo: way.is_at_servo_too(&self.certificate.description),
+            per_unit: match (extent, quantity) {
+                (Extent::Energy, Quantity::Pitch | Quantity::Command) => {
+                    Interval::point(*gain).sqrt().upper()
+                }
+                (Extent::Peak, _) | (_, Quantity::Limits) => reached.largest(*quantity)?,
+            },
+            unlimited_up_to: reached.unlimited(self.beside_limits(bound))?,
+        })
+    }
+
+    fn root_of_period(&self) -> Interval {
+        printed(self.certificate.description.controller.config().dt_s).sqrt()
+    }
+
+    /// Proves the inequality of a bound whose form does not move, at each corner.
+    fn driven_at_corners(
+        &self,
+        bound: &DisturbanceBound,
+        corners: &[DrivenLoop],
+    ) -> Result<(), RecheckError> {
+        let DisturbanceBound { way, quantity, decay, gain, form, .. } = bound;
+        let size = self.model.size() + self.more_states();
+        let entry = exact(&way.entry(&self.certificate.description, size)?);
+        let root_of_period = self.root_of_period();
+        for corner in corners {
+            self.unless_stopped()?;
             let scaled = |row: Vec<Interval>| -> Vec<Interval> {
                 row.into_iter().map(|it| it * root_of_period).collect()
             };
-            let is_seen = *extent == Extent::Energy && *quantity != Quantity::Limits;
+            let is_seen = bound.is_seen();
             let seen = corner.rows(*quantity).into_iter().next().filter(|_| is_seen).map(scaled);
             if is_seen && seen.is_none() {
                 return Err(malformed("disturbances: nothing is seen of the quantity"));
             }
             let driven = Driven { matrix: &corner.matrix, entry: &entry, seen: seen.as_deref() };
-            grows_no_faster(form, [*decay, *gain], driven).map_err(|reason| {
-                RecheckError::Inequality { gains: Some(corner.held.gains), reason }
-            })?;
+            grows_no_faster(form, [*decay, *gain], driven)
+                .map_err(|reason| RecheckError::Inequality { gains: Some(corner.gains), reason })?;
         }
-        let reached = Reached::of(bound, root_of_period)?;
-        Ok(Disturbed {
-            way: way.clone(),
-            quantity: *quantity,
-            extent: *extent,
-            at_servo: way.is_at_servo_too(description),
-            per_unit: match (extent, quantity) {
-                (Extent::Energy, Quantity::Pitch | Quantity::Command) => {
-                    Interval::point(*gain).sqrt().upper()
-                }
-                (Extent::Peak, _) | (_, Quantity::Limits) => reached.largest(corners, *quantity)?,
-            },
-            unlimited_up_to: reached.unlimited(corners, self.beside_limits(bound))?,
-        })
+        Ok(())
+    }
+
+    fn unless_stopped(&self) -> Result<(), RecheckError> {
+        if (self.stops)() { Err(malformed("nobody wants the answer any more")) } else { Ok(()) }
+    }
+
+    /// Proves the inequality of a bound whose form moves with the gains: everywhere in cells that hold all of them. The
+    /// loop and the ellipsoid at the corners of the cells: how far a row reaches is convex in row and form together,
+    /// which are affine in the gains, so that it reaches no further between the corners.
+    fn driven_while_moving(
+        &self,
+        bound: &DisturbanceBound,
+        by_gain: &[Matrix; 3],
+        claim: &BoundedRate,
+    ) -> Result<Vec<(DrivenLoop, Ellipsoid)>, RecheckError> {
+        self.unless_stopped()?;
+        let DisturbanceBound { way, quantity, decay, gain, form, .. } = bound;
+        let [kp, ki, kd] = by_gain.clone();
+        let forms = [form.clone(), kp, ki, kd];
+        let own = BoundedRate { forms, rate: 1.0, inputs: None, ..claim.clone() };
+        let size = self.model.size();
+        let entry = exact(&way.entry(&self.certificate.description, size)?);
+        let drive = MovingDrive { decay: *decay, gain: *gain, entry: &entry, seen: None };
+        let root_of_period = self.root_of_period();
+        let row = |[kp, ki, kd]: [Interval; 3]| {
+            let row = match quantity {
+                Quantity::Pitch => first_of(size),
+                _ => self.model.command_row(Gains { kp, ki, kd }),
+            };
+            let row: Vec<Interval> = row.into_iter().map(|it| it * root_of_period).collect();
+            IntervalMatrix::from_rows(&[row]).map_err(|error| NotProved::from(error).into())
+        };
+        let seen: Option<&RowAt<'_>> = if bound.is_seen() { Some(&row) } else { None };
+        let decrease = self.moving_driven(&own, &drive, seen)?;
+        // A disturbance may take the state anywhere: it is not enough that gains keep to the rate near rest. And the form
+        // of this bound may move with other gains than that of the claim.
+        if !self.keeps_everywhere(&own, &decrease) {
+            return Err(malformed(
+                "disturbances: the law is not shown to keep to the rate in every flight",
+            ));
+        }
+        let corners = decrease.corners(&own)?;
+        let place = |corner: &Corner| -> Result<(DrivenLoop, Ellipsoid), RecheckError> {
+            Ok((self.driven_at(corner.gains)?, Ellipsoid::of_all(&corner.form)?))
+        };
+        corners.iter().map(place).collect()
     }
 }
 
-/// What a disturbance of measure 1 reaches of the state: an ellipsoid.
-struct Reached {
-    ellipsoid: Ellipsoid,
+/// The root of the level that a disturbance of measure 1 reaches: $V \le \beta$ of an energy,
+/// $V \le \beta T / (1 - \alpha)$ of a peak.
+fn reached_size(bound: &DisturbanceBound, root_of_period: Interval) -> Interval {
+    let root = Interval::point(bound.gain).sqrt();
+    match bound.extent {
+        Extent::Energy => root,
+        Extent::Peak => {
+            let left = Interval::ONE - Interval::point(bound.decay);
+            root * root_of_period / left.sqrt()
+        }
+    }
+}
+
+/// What a disturbance of measure 1 reaches of the state: an ellipsoid at each of some gains.
+struct Reached<'a> {
+    places: Vec<(&'a DrivenLoop, &'a Ellipsoid)>,
     /// The root of the level.
     size: Interval,
 }
 
-impl Reached {
-    /// $V \le \beta$ of an energy, $V \le \beta T / (1 - \alpha)$ of a peak.
-    fn of(bound: &DisturbanceBound, root_of_period: Interval) -> Result<Self, NotProved> {
-        let root = Interval::point(bound.gain).sqrt();
-        let size = match bound.extent {
-            Extent::Energy => root,
-            Extent::Peak => {
-                let left = Interval::ONE - Interval::point(bound.decay);
-                root * root_of_period / left.sqrt()
-            }
-        };
-        Ok(Self { ellipsoid: Ellipsoid::of(&bound.form)?, size })
-    }
-
-    fn row(&self, row: &[Interval]) -> Result<Interval, NotProved> {
-        Ok(self.ellipsoid.reach(row)? * self.size)
-    }
-
-    /// The most that a quantity is off, at any of the corners.
-    fn largest(&self, corners: &[DrivenLoop], quantity: Quantity) -> Result<f64, NotProved> {
+impl Reached<'_> {
+    /// The most that a quantity is off, at any of the gains.
+    fn largest(&self, quantity: Quantity) -> Result<f64, NotProved> {
         let mut most = 0.0_f64;
-        for corner in corners {
+        for (corner, ellipsoid) in &self.places {
             for row in corner.rows(quantity) {
-                most = most.max(self.row(&row)?.upper());
-            }
-            // The pitch angle is the same row at all of them.
-            if quantity == Quantity::Pitch {
-                break;
+                most = most.max((ellipsoid.reach(&row)? * self.size).upper());
             }
         }
         Ok(most)
     }
 
     /// The largest measure at which no limit acts, from below.
-    fn unlimited(
-        &self,
-        corners: &[DrivenLoop],
-        beside: Interval,
-    ) -> Result<Option<f64>, NotProved> {
+    fn unlimited(&self, beside: Interval) -> Result<Option<f64>, NotProved> {
         let mut most = f64::INFINITY;
-        for corner in corners {
+        for (corner, ellipsoid) in &self.places {
             let Some(rows) = &corner.limits else { return Ok(None) };
             for (row, limit) in rows {
                 // Written so that NaN is refused.
                 if !(*limit > 0.0) {
                     return Ok(None);
                 }
-                let reached = self.row(row)? + beside;
+                let reached = ellipsoid.reach(row)? * self.size + beside;
                 if reached.upper() > 0.0 {
                     most = most.min((Interval::point(*limit) / reached).lower());
                 }

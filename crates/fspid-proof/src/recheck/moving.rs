@@ -11,8 +11,8 @@ use fspid_sim::Controller;
 use super::{Kept, Proved, Recheck, RecheckError, allowed_rate, input_rows, malformed};
 use crate::certificate::BoundedRate;
 use crate::check::{
-    Ends, IntervalMatrix, Moving, MovingProof, NotProved, NotProvedAt, falls_while_moving,
-    inside_limits,
+    Ends, IntervalMatrix, Moving, MovingDrive, MovingProof, NotProved, NotProvedAt,
+    falls_while_moving, grows_no_faster_while_moving, inside_limits,
 };
 use crate::gain_set::{GainSet, IncrementSlopes};
 use crate::limits;
@@ -118,6 +118,29 @@ impl GainBox {
     }
 }
 
+/// What a claim asks of a loop, in half widths of its box.
+struct Motion {
+    gain_box: GainBox,
+    loops: Vec<IntervalMatrix>,
+    forms: Vec<Matrix>,
+    changes: Vec<f64>,
+    cells: Vec<Ends>,
+}
+
+impl Motion {
+    fn moving(&self, rate: f64) -> Moving<'_> {
+        Moving { loops: &self.loops, forms: &self.forms, changes: &self.changes, rate }
+    }
+
+    /// What of a cell is asked for.
+    fn part(&self, set: &GainSet, cell: &Ends) -> Option<Ends> {
+        self.gain_box.part(set, part_in(&self.cells, cell)?)
+    }
+}
+
+/// A row of one matrix that is affine in the gains.
+pub(crate) type RowAt<'a> = Closed<'a>;
+
 type Closed<'a> = dyn Fn([Interval; 3]) -> Result<IntervalMatrix, RecheckError> + 'a;
 
 /// A moving form that was proved to decrease.
@@ -215,6 +238,33 @@ impl Recheck<'_> {
     /// Proves the decrease for every gain of the set and every motion that is as slow as claimed.
     pub(crate) fn moving_decrease(&self, claim: &BoundedRate) -> Result<Decrease, RecheckError> {
         allowed_rate(claim.rate)?;
+        let motion = self.motion(claim)?;
+        let moving = motion.moving(claim.rate);
+        let part = |cell: &Ends| motion.part(&self.set, cell);
+        let proof = falls_while_moving(&moving, part);
+        let proof = proof.map_err(|failed| doubt(&motion.gain_box, failed))?;
+        Ok(Decrease { gain_box: motion.gain_box, proof })
+    }
+
+    /// Proves that a form lets a disturbance do no more than is said, for every gain of the set and every motion that is
+    /// as slow as claimed.
+    pub(crate) fn moving_driven(
+        &self,
+        claim: &BoundedRate,
+        drive: &MovingDrive<'_>,
+        seen: Option<&RowAt<'_>>,
+    ) -> Result<Decrease, RecheckError> {
+        let motion = self.motion(claim)?;
+        let rows = seen.map(|row| motion.gain_box.loops(row)).transpose()?;
+        let drive = MovingDrive { seen: rows.as_deref(), ..*drive };
+        let part = |cell: &Ends| motion.part(&self.set, cell);
+        let proof = grows_no_faster_while_moving(&motion.moving(claim.rate), &drive, part);
+        let proof = proof.map_err(|failed| doubt(&motion.gain_box, failed))?;
+        Ok(Decrease { gain_box: motion.gain_box, proof })
+    }
+
+    /// The loop and the forms of a claim in half widths of its box.
+    fn motion(&self, claim: &BoundedRate) -> Result<Motion, RecheckError> {
         let size = self.model.size();
         if claim.forms.iter().any(|form| (form.rows(), form.columns()) != (size, size)) {
             return Err(malformed("a form has another size than the loop's state"));
@@ -225,15 +275,12 @@ impl Recheck<'_> {
         let parts = core::iter::once(0).chain(gain_box.moving.iter().map(|gain| gain + 1));
         let forms: Vec<Matrix> = parts.map(|part| claim.forms[part].clone()).collect();
         let changes: Vec<f64> = gain_box.moving.iter().map(|&gain| claim.changes[gain]).collect();
-        let moving = Moving { loops: &loops, forms: &forms, changes: &changes, rate: claim.rate };
         let cells = gain_box.counted(&self.set);
-        let part = |cell: &Ends| gain_box.part(&self.set, part_in(&cells, cell)?);
-        let proof = falls_while_moving(&moving, part).map_err(|failed| doubt(&gain_box, failed))?;
-        Ok(Decrease { gain_box, proof })
+        Ok(Motion { gain_box, loops, forms, changes, cells })
     }
 
     /// Whether the law itself keeps the gains to the rate, whatever the flight.
-    fn keeps_everywhere(&self, claim: &BoundedRate, decrease: &Decrease) -> bool {
+    pub(crate) fn keeps_everywhere(&self, claim: &BoundedRate, decrease: &Decrease) -> bool {
         let allowed = decrease.allowed(claim);
         let dt_s = Interval::point(self.model.settings().config.dt_s);
         let Some(rates) = self.set.rate_per_s else { return allowed.is_empty() };

@@ -23,7 +23,9 @@ mod widest;
 mod words;
 
 pub use cells::Part;
-pub use disturbed::{DrivenCorner, DrivenProblem, driven_form, kept_of, least_gain};
+pub use disturbed::{
+    CountedRow, DrivenCorner, DrivenProblem, driven_form, form_at, kept_of, least_gain,
+};
 pub use gain_family::GainFamily;
 pub use growth::{Growth, growing_sequence};
 pub use instability::{InstabilityForm, instability_form};
@@ -31,7 +33,8 @@ pub use lyapunov::{
     BestRate, Condition, LyapunovProblem, Solution, Verdict, best_rate, common_lyapunov,
 };
 pub use parameter_dependent::{
-    MovingForm, MovingProblem, MovingVerdict, moving_form, moving_form_over,
+    MovingForm, MovingProblem, MovingVerdict, fastest_moving_form, motions_from, moving_form,
+    moving_form_over,
 };
 pub use stein::summed;
 pub use widest::{WidestProblem, widest};

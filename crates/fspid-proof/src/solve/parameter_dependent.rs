@@ -41,6 +41,9 @@ use super::symmetric::{Spectrum, pack, packed_len, unpack};
 const MARGIN_MIN: f64 = 1e-12;
 /// Times that conditions are added where the form was seen not to decrease.
 const ROUNDS_MAX: usize = 10;
+/// The same for the form that falls fastest, and the part of its decay that gains which were not looked at may lack.
+const FASTEST_ROUNDS: usize = 4;
+const FASTEST_LEFT: f64 = 0.3;
 
 /// A moving form that was found. Nothing here is proved: the numbers are rounded.
 #[derive(Debug, Clone, PartialEq)]
@@ -128,6 +131,35 @@ pub fn moving_form_over(problem: &MovingProblem<'_>, effort: &Effort) -> MovingV
     MovingVerdict::NotFound { best_margin }
 }
 
+/// A form that moves with the gains and falls about as fast as any, at all gains that were looked at: $P_0$, then $P_j$
+/// for each gain. It is no answer about all of them, but a start for searches that ask for more.
+#[must_use]
+pub fn fastest_moving_form(problem: &MovingProblem<'_>, effort: &Effort) -> Option<Vec<Matrix>> {
+    let mut search = Search::start(problem, effort)?;
+    for round in 1..=FASTEST_ROUNDS {
+        let descent = descend(&mut search, Goal::Lowest, effort)?;
+        if !(descent.bound < 1.0) {
+            return None;
+        }
+        let level = descent.bound + FASTEST_LEFT * (1.0 - descent.bound);
+        let turned = search.turned();
+        let failures =
+            survey(&turned, &search.forms, &search.motions, level, problem.part).failures;
+        if failures.is_empty() || round == FASTEST_ROUNDS {
+            break;
+        }
+        search.places.extend(failures);
+    }
+    let back = |form: &Dense| form.congruence(&search.inverse).to_matrix();
+    search.forms.iter().map(back).collect()
+}
+
+/// Where gains may be a sample later, at most: in half widths, for changes in a sample as of a [`MovingProblem`].
+#[must_use]
+pub fn motions_from(gains: &[f64], changes: &[f64]) -> Vec<Vec<f64>> {
+    Motion::extremes(changes).iter().map(|motion| motion.next(gains)).collect()
+}
+
 /// The problem in coordinates z with x = T z, in which $P_0$ is the identity.
 struct Search {
     family: GainFamily,
@@ -212,7 +244,7 @@ fn margin_at(
 }
 
 /// 1 for the form at rest and the gain for each of those that move.
-fn weights(gains: &[f64]) -> Weights {
+pub(super) fn weights(gains: &[f64]) -> Weights {
     let moving = gains.iter().enumerate().map(|(gain, value)| (gain + 1, *value));
     core::iter::once((0, 1.0)).chain(moving).collect()
 }

@@ -35,7 +35,7 @@ fn differs(one: f64, other: f64) -> bool {
 }
 
 /// A scenario whose plant feels the air, with nothing that keeps it from rest at the trim.
-fn at_rest(dice: &mut Dice, drawn: Draw) -> Scenario {
+pub(crate) fn at_rest(dice: &mut Dice, drawn: Draw) -> Scenario {
     let mut scenario = drawn(dice);
     scenario.disturbances.clear();
     scenario.setpoint = Profile::new(0.0, Shape::Step { at_s: 0.0 }).expect("allowed");
@@ -70,7 +70,7 @@ fn self_tuning() -> &'static (Certificate, Rechecked) {
 }
 
 /// The certificate of a scenario with its bounds; none where nothing is proved or bounded.
-fn bounded(scenario: &Scenario) -> Option<(Certificate, Rechecked)> {
+pub(crate) fn bounded(scenario: &Scenario) -> Option<(Certificate, Rechecked)> {
     let plant = scenario.plant.linear().expect("linear");
     let controller = &scenario.controllers[0].controller;
     let description = LoopDescription::of(scenario, plant, controller).ok()?;
@@ -201,11 +201,20 @@ fn share(bound: &Disturbed, flown: &Flown, values: &[f64], (dt_s, remains_rad): 
 fn attack(seed: u64, drawn: Draw) -> Option<[f64; 2]> {
     let mut dice = Dice::new(seed);
     let scenario = at_rest(&mut dice, drawn);
-    let (certificate, rechecked) = match seed {
+    let found = match seed {
         SELF_TUNING => self_tuning().clone(),
         _ => bounded(&scenario)?,
     };
-    let free = without_limits(&scenario);
+    Some(attack_of(dice, &scenario, &found))
+}
+
+/// The same of a scenario whose certificate is known.
+pub(crate) fn attack_of(
+    mut dice: Dice,
+    scenario: &Scenario,
+    (certificate, rechecked): &(Certificate, Rechecked),
+) -> [f64; 2] {
+    let free = without_limits(scenario);
     let own = (scenario.timing.dt_s(), rechecked.remains_rad);
     let mut largest = [0.0_f64; 2];
     let mut ways: Vec<Way> = certificate.disturbances.iter().map(|it| it.way.clone()).collect();
@@ -222,14 +231,14 @@ fn attack(seed: u64, drawn: Draw) -> Option<[f64; 2]> {
                 let flight = flown(&disturbed(&free, way, &values));
                 for bound in rechecked.disturbed.iter().filter(|it| it.way == *way) {
                     let share = share(bound, &flight, &values, own);
-                    assert!(share <= 1.0, "scenario {seed}, {bound:?}: {share} of it");
+                    assert!(share <= 1.0, "{bound:?}: {share} of it");
                     let place = usize::from(bound.extent == Extent::Peak);
                     largest[place] = largest[place].max(share);
                 }
             }
         }
     }
-    Some(largest)
+    largest
 }
 
 #[test]
@@ -249,7 +258,7 @@ fn no_flight_goes_beyond_what_is_bounded_of_disturbances() {
 
 /// The largest gain from energy to pitch angle that any frequency finds in a loop whose gains stand still, at the elevator:
 /// $\sqrt T |c (e^{j \omega} - M)^{-1} E|$.
-fn frozen_norm(certificate: &Certificate, gains: Gains<f64>) -> f64 {
+pub(crate) fn frozen_norm(certificate: &Certificate, gains: Gains<f64>) -> f64 {
     let description = &certificate.description;
     let model = description.enclosed().expect("enclosed").midpoint();
     let matrix = model.closed_matrix(gains).expect("a matrix");

@@ -4,6 +4,8 @@
 mod disturbed;
 mod drawn;
 mod flown;
+mod moving_bounds;
+mod worst;
 
 use drawn::Dice;
 use flown::Answer;

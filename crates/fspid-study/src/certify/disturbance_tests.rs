@@ -134,4 +134,8 @@ fn what_does_not_fit_together_is_refused_by_name() {
     assert!(with(&|it| it["decay"] = json!(0.5)).contains("decay is 1 of an energy"));
     assert!(with(&|it| it["gain"] = json!(-1.0)).contains("numbers above 0"));
     assert!(with(&|it| it["form"] = json!([[1.0]])).contains("disturbances.form"));
+    // This loop is proved however fast its gains move; forms of its bounds do not.
+    let moved = with(&|it| it["by_gain"] = json!([it["form"], it["form"], it["form"]]));
+    assert!(moved.contains("a form moves with the gains where the claim is about their rate"));
+    assert!(with(&|it| it["by_gain"] = json!([it["form"]])).contains("by_gain"));
 }

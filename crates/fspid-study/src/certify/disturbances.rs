@@ -75,9 +75,8 @@ fn degrees_per_unit(one: &Disturbed) -> f64 {
     degrees(one.per_unit) / unit(&one.way).1
 }
 
-/// One sentence for each way and measure.
-pub(super) fn sentences(scope: &Scope, is_fixed: bool) -> Vec<String> {
-    let moving = if is_fixed { "" } else { ", with gains moving as they like" };
+/// One sentence for each way and measure; `moving` says how gains move.
+pub(super) fn sentences(scope: &Scope, moving: &str) -> Vec<String> {
     let mut told = Vec::new();
     let mut rest = &scope.disturbed[..];
     while let [first, ..] = rest {

@@ -18,6 +18,9 @@ pub(super) struct DisturbanceFile {
     decay: f64,
     gain: f64,
     form: Rows,
+    /// What kp, ki and kd add to it, per half width of the claim's box; with a claim about the rate of gains alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    by_gain: Option<[Rows; 3]>,
 }
 
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -46,7 +49,7 @@ enum MeasuredBy {
 
 impl DisturbanceFile {
     pub(super) fn of(bound: &DisturbanceBound) -> Self {
-        let DisturbanceBound { way, quantity, extent, decay, gain, form } = bound;
+        let DisturbanceBound { way, quantity, extent, decay, gain, form, by_gain } = bound;
         let (enters, numerator) = match way {
             Way::Elevator => (Enters::Elevator, None),
             Way::Air { part, numerator } => {
@@ -73,6 +76,7 @@ impl DisturbanceFile {
             decay: *decay,
             gain: *gain,
             form: rows(form),
+            by_gain: by_gain.as_ref().map(|by_gain| by_gain.each_ref().map(rows)),
         }
     }
 
@@ -103,6 +107,10 @@ impl DisturbanceFile {
             decay: self.decay,
             gain: self.gain,
             form: matrix(&self.form)?,
+            by_gain: match &self.by_gain {
+                None => None,
+                Some([kp, ki, kd]) => Some([matrix(kp)?, matrix(ki)?, matrix(kd)?]),
+            },
         })
     }
 }

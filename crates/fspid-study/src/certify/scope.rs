@@ -1,7 +1,7 @@
 //! What is said beside a verdict: where the claim holds and what it does not speak of, the same in every
 //! answer, in text and JSON, from a proof and from a certificate that is checked.
 
-use fspid_proof::{Certificate, LeftOut, Range, Rechecked, Scope, Stepped};
+use fspid_proof::{Certificate, Claim, LeftOut, Range, Rechecked, Scope, Stepped};
 use serde_json::{Value, json};
 
 use super::text::is_fixed;
@@ -16,8 +16,8 @@ pub(super) struct Told {
     stable: Option<Scope>,
     left_out: Vec<LeftOut>,
     family: Vec<String>,
-    /// The gains do not move.
-    is_fixed: bool,
+    /// How gains move, after a bound of disturbances.
+    moving: &'static str,
     nonlinear: Option<String>,
 }
 
@@ -30,7 +30,12 @@ impl Told {
         let family = family.map_or_else(Vec::new, |(family, it)| family::sentences(family, it));
         let nonlinear = certificate.nonlinear.as_ref().zip(rechecked.nonlinear);
         let nonlinear = nonlinear.map(|(claim, it)| nonlinear::sentence(certificate, claim, &it));
-        Self { stable, left_out, family, is_fixed: is_fixed(certificate), nonlinear }
+        let moving = match &certificate.claim {
+            _ if is_fixed(certificate) => "",
+            Claim::BoundedRate(_) => ", with gains moving no faster than the law lets them",
+            _ => ", with gains moving as they like",
+        };
+        Self { stable, left_out, family, moving, nonlinear }
     }
 
     /// As [`of`](Self::of) of a certificate that was read and held against no scenario: what its words make of its plants
@@ -60,7 +65,7 @@ impl Told {
             sentences.push(("remains", remains(scope)));
             sentences.push(("limits", limits(scope)));
             sentences.extend(scope.stepped.map(|stepped| ("steps", steps(&stepped))));
-            let disturbed = disturbances::sentences(scope, self.is_fixed);
+            let disturbed = disturbances::sentences(scope, self.moving);
             sentences.extend(disturbed.into_iter().map(|it| ("disturbances", it)));
         }
         sentences.extend(self.family.iter().map(|sentence| ("family", sentence.clone())));

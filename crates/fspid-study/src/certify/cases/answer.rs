@@ -6,7 +6,8 @@ use serde_json::{Value, json};
 use super::{CertifiedCase, CertifiedCases};
 use crate::certify::scope::range_in_words;
 use crate::certify::text::{found, sentence};
-use crate::certify::{Certified, family};
+use crate::certify::{Certified, DisturbanceAnswer, family};
+use crate::json::merged;
 use crate::metrics::short;
 
 impl CertifiedCases {
@@ -47,26 +48,34 @@ impl CertifiedCases {
 
     /// What all of them amount to, in a sentence for each controller.
     fn verdict(&self) -> String {
-        let mut names: Vec<&str> = Vec::new();
-        let results = || self.cases.iter().flat_map(|case| &case.certification.results);
-        for certified in results() {
-            if !names.contains(&certified.controller.as_str()) {
-                names.push(&certified.controller);
-            }
-        }
+        let names = self.controllers();
         let sentences = names.iter().map(|name| {
             let not_proved: Vec<&str> = self.not_proved(name).collect();
             let count = self.cases.len();
-            match not_proved.len() {
+            let verdict = match not_proved.len() {
                 0 => format!("{name}: PROVED at all {count} {}", self.which.words()),
                 missing => format!(
                     "{name}: NOT PROVED at {missing} of {count} {}: {}",
                     self.which.words(),
                     not_proved.join("; ")
                 ),
-            }
+            };
+            let disturbed = self.disturbed_in_words(name).into_iter();
+            let disturbed = disturbed.map(|it| format!("\n  disturbances       {it}"));
+            verdict + &disturbed.collect::<String>()
         });
         sentences.collect::<Vec<_>>().join("\n")
+    }
+
+    /// Names of the controllers, each once.
+    fn controllers(&self) -> Vec<&str> {
+        let mut names: Vec<&str> = Vec::new();
+        for certified in self.cases.iter().flat_map(|case| &case.certification.results) {
+            if !names.contains(&certified.controller.as_str()) {
+                names.push(&certified.controller);
+            }
+        }
+        names
     }
 
     /// Names of the cases at which a loop of a controller is not proved.
@@ -107,7 +116,7 @@ impl CertifiedCases {
         if !null.is_empty() {
             answer["null"] = Value::Object(null);
         }
-        answer
+        merged([answer, self.disturbed_in_json(&self.controllers())])
     }
 }
 
@@ -137,6 +146,9 @@ fn line(certified: &Certified) -> String {
         }
     };
     let mut out = format!("  {name}: {told}\n");
+    if let Some(reason) = certified.disturbances.as_ref().and_then(DisturbanceAnswer::trouble) {
+        out.push_str(&format!("    disturbances NOT BOUNDED: {reason}\n"));
+    }
     if let Some(family) = &certified.family {
         out.push_str(&format!("    all that is drawn: {}\n", family::in_words(family)));
     }

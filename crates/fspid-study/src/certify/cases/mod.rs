@@ -3,6 +3,7 @@
 
 mod answer;
 mod choices;
+mod disturbed;
 
 use fspid_proof::{Asked, LoopDescription, NotProvable, Outcome, certify};
 use fspid_scenario::file::{Study, Template};
@@ -76,6 +77,8 @@ pub enum NoCases {
 pub struct Question<'a> {
     /// The controller, or all of them.
     pub only: Option<&'a str>,
+    /// What disturbances do at most as well.
+    pub disturbances: bool,
     /// All that the dispersions can draw as well.
     pub family: bool,
     /// How hard to try.
@@ -169,7 +172,7 @@ impl CertifiedCases {
         question: Question<'_>,
         tell: &mut dyn FnMut(&str),
     ) -> Result<(), SimError> {
-        let Question { only, family, effort } = question;
+        let Question { only, disturbances, family, effort } = question;
         let known = &mut self.known;
         let mut ask = |description: &LoopDescription, asked: &Asked| {
             let same = |it: &&Known| it.description == *description && it.asked == *asked;
@@ -182,6 +185,9 @@ impl CertifiedCases {
             outcome
         };
         let mut certification = Certification::asking(template.study(), only, &mut ask, tell)?;
+        if disturbances {
+            certification = certification.with_disturbances(template.study(), effort, tell)?;
+        }
         if family {
             let chosen = match self.which {
                 Cases::Choices => Chosen::Apart,

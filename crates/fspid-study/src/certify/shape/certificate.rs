@@ -42,6 +42,7 @@ const DISTURBANCE: Shape = Object(&[
     key("decay", RATE),
     key("gain", Positive(LARGE)),
     key("form", FORM),
+    optional("by_gain", List(&FORM, [3, 3])),
 ]);
 
 /// Boxes of set-points, and parts of the loads.
