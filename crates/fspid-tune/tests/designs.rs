@@ -72,3 +72,22 @@ fn the_self_tuner_of_six_small_unmanned_aircraft_has_a_fifth_less_error_at_less_
     // It overshoots in all steps of 1 deg and doublets, which nobody was tuned on, so that it does not win.
     assert_eq!([failed(&answer, "FSPID"), failed(&answer, "PID")], [11, 2]);
 }
+
+#[test]
+fn the_self_tuner_of_small_unmanned_aircraft_for_every_command_has_a_third_less_error_at_less_travel()
+ {
+    let answer = held("uav-commands");
+    let [error, travel] = ratios(&answer);
+    assert!(error <= 0.64 && travel <= 1.0, "{error} {travel}");
+    assert_eq!(answer["ranking"][0], "FSPID", "{:#}", answer["ranking"]);
+    assert_eq!([failed(&answer, "FSPID"), failed(&answer, "PID")], [5, 2]);
+}
+
+#[test]
+fn the_self_tuner_of_transports_for_every_command_has_less_than_0_85_of_the_error() {
+    let answer = held("transport-commands");
+    let [error, travel] = ratios(&answer);
+    assert!(error <= 0.82 && travel <= 1.03, "{error} {travel}");
+    assert_eq!(answer["ranking"][0], "FSPID", "{:#}", answer["ranking"]);
+    assert_eq!([failed(&answer, "FSPID"), failed(&answer, "PID")], [7, 2]);
+}
