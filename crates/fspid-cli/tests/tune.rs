@@ -106,7 +106,9 @@ fn a_design_is_the_scenario_with_numbers_in_place_of_marks_and_flies() {
 fn every_optimiser_ends_below_the_start_and_on_any_number_of_threads_the_same() {
     let folder = folder();
     let folder = folder.path();
-    for optimiser in ["cma-es", "de", "l-shade", "pso", "ga", "nelder-mead", "bfgs", "sqp", "nsga-ii"] {
+    for optimiser in
+        ["cma-es", "de", "l-shade", "pso", "ga", "nelder-mead", "bfgs", "sqp", "nsga-ii"]
+    {
         let run = |threads: &str, out: &str| {
             let arguments = [
                 "tune",

@@ -363,7 +363,13 @@ impl<'a> Search<'a> {
         let Running::Programmes(programmes, slopes) = &mut self.running else { return Ok(None) };
         // What is asked for is kept once its flights are in: a search that is stopped asks again.
         let mut next = programmes.clone();
-        let point = next.ask(slopes, &best);
+        let counted = next.counted().candidates(self.problem.flights());
+        let left = self.effort.budget.saturating_sub(self.trials.len() - 1 + counted);
+        let ends = next.wants_slopes() && left <= slopes.most_of_rows();
+        let point = match ends {
+            true => next.without_slopes(&best, self.generation),
+            false => next.ask(slopes, &best),
+        };
         if let Crew::Here(stops) = self.crew
             && stops()
         {
@@ -374,7 +380,9 @@ impl<'a> Search<'a> {
         let score = self.problem.score(&flights);
         let penalty = next.penalty(slopes.merit(&flights, 0.0).value);
         let merit = slopes.merit(&flights, penalty);
-        next.tell(&merit, penalty, &flights, &best);
+        if !ends {
+            next.tell(&merit, penalty, &flights, &best);
+        }
         *programmes = next;
         self.generation += 1;
         let (generation, from) = (self.generation, self.trials.len());
@@ -503,8 +511,8 @@ fn sound_slopes<'a>(
     wrong: impl Fn(String) -> TuneError,
 ) -> Result<Box<Differentiable<'a>>, TuneError> {
     let slopes = differentiable(problem, effort)?.filter(|_| is_sound);
-    let slopes = slopes
-        .ok_or_else(|| wrong("the numbers of its descent do not fit together".to_owned()))?;
+    let slopes =
+        slopes.ok_or_else(|| wrong("the numbers of its descent do not fit together".to_owned()))?;
     Ok(Box::new(slopes))
 }
 

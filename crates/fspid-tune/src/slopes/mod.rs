@@ -28,9 +28,9 @@ use fspid_scenario::file::Study;
 use fspid_scenario::measure::Measure;
 use fspid_scenario::requirement::Requirement;
 use fspid_scenario::tuning::Free;
+use fspid_sim::Prepared;
 use fspid_sim::batch::{Entrant, Refusal};
 use fspid_sim::gradient::{Flown, Kind, NUMBERS, Slopes, differentiate_prices};
-use fspid_sim::Prepared;
 use fspid_study::analysis::AtRest;
 use fspid_study::judgement::{SlopeOf, Sloped, add_slopes, is_of_this_air, of_loop};
 use rayon::prelude::*;
@@ -43,9 +43,9 @@ use crate::score::{FlightScore, load_left};
 pub use descents::Counted;
 pub(crate) use descents::Descents;
 pub(crate) use merit::{Merit, Weights};
-pub(crate) use sequential::Sequential;
 use merit::{Weight, beyond};
 use numbers::{Built, Construction};
+pub(crate) use sequential::Sequential;
 
 /// Flights side by side.
 const LANES: usize = 8;

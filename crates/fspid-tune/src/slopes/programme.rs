@@ -114,7 +114,8 @@ impl Question<'_> {
 
     fn predicted(&self, by: &[f64]) -> f64 {
         let n = by.len();
-        let curved: f64 = (0..n).map(|i| by[i] * dot(&self.curvature[i * n..(i + 1) * n], by)).sum();
+        let curved: f64 =
+            (0..n).map(|i| by[i] * dot(&self.curvature[i * n..(i + 1) * n], by)).sum();
         let limits = self.rows.limits.iter().map(|it| {
             let after = it.excess + dot(&it.slope, by);
             self.penalty * it.share * (it.excess.max(0.0) - after.max(0.0))
@@ -168,11 +169,8 @@ mod tests {
     /// x ≤ -1 cannot be met within 0.1, and is come nearer to because a violation costs ten times the cost's slope.
     #[test]
     fn a_limit_that_is_out_of_reach_is_come_nearer_to() {
-        let rows = Rows {
-            cost: vec![-1.0, 0.0],
-            limits: vec![limit(1.0, [1.0, 0.0])],
-            ..Rows::default()
-        };
+        let rows =
+            Rows { cost: vec![-1.0, 0.0], limits: vec![limit(1.0, [1.0, 0.0])], ..Rows::default() };
         let point = [0.5, 0.5];
         let curvature = [0.0; 4];
         let question = Question {

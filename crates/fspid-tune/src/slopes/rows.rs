@@ -7,7 +7,7 @@ use fspid_study::judgement::{SlopeOf, Sloped, add_slopes};
 use rayon::prelude::*;
 
 use super::merit::excess;
-use super::{Differentiable, Job, LOOP_STEP, LoopMeasure, Weights, add_columns, is_of};
+use super::{Counted, Differentiable, Job, LOOP_STEP, LoopMeasure, Weights, add_columns, is_of};
 use crate::score::FlightScore;
 
 /// A limit of a flight counts from so far within it, as a share of the limit; its slope costs no more for it.
@@ -57,16 +57,30 @@ impl Differentiable<'_> {
         weights: &Weights,
     ) -> Option<Rows> {
         let found = self.slope(point, weights)?;
-        let mut rows = Rows {
-            cost: found.slope,
-            limits: Vec::new(),
-            ways_back: 1,
-            analyses: found.analyses,
-        };
+        let mut rows =
+            Rows { cost: found.slope, limits: Vec::new(), ways_back: 1, analyses: found.analyses };
         self.add_means(point, flights, weights, &mut rows)?;
         self.add_flights(point, weights, &mut rows)?;
         self.add_near_loops(point, weights, &mut rows)?;
         Some(rows)
+    }
+
+    /// The most candidates that such rows count as.
+    pub(crate) fn most_of_rows(&self) -> usize {
+        let flights =
+            |job: &Job<'_>| job.asked.iter().filter(|it| is_of(it, SlopeOf::Flight)).count();
+        let asked = self.jobs.iter().map(flights).max().unwrap_or(0);
+        let tuning = self.problem.tuning();
+        let of_loop = |it: &Requirement| is_of(it, SlopeOf::Loop);
+        let cost = tuning.objectives.iter().any(|it| of_loop(&it.requirement));
+        let means = tuning.limits.iter().filter(|it| of_loop(it)).count();
+        let near = self.problem.removes_constant_load()
+            || self.jobs.iter().any(|job| job.asked.iter().any(of_loop));
+        let times = usize::from(cost) + means + usize::from(near);
+        let analyses = self.jobs.len() * (self.problem.space().dimension() + 1) * times;
+        let slopes = 1 + tuning.limits.len() + asked;
+        let counted = Counted { slopes, analyses, descents: 0 };
+        counted.candidates(self.problem.flights())
     }
 
     fn add_means(

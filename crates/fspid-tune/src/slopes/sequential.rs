@@ -32,6 +32,8 @@ const PATIENCE: u32 = 5;
 const SAVES: f64 = 1e-5;
 /// How far from the best candidate a later descent begins, as a share of the cube: each of them in turn.
 const SPREADS: [f64; 3] = [0.02, 0.05, 0.1];
+/// How far from the best candidate the last ones lie, for which slopes would cost more than is left.
+const LAST_SPREAD: f64 = 1e-3;
 /// More than any search counts.
 const MOST_COUNTED: usize = 1 << 28;
 
@@ -136,6 +138,16 @@ impl Sequential {
         self.penalty.unwrap_or(PENALTY * size)
     }
 
+    /// True where the slopes of all limits have to be found before the next candidate is known.
+    pub(crate) fn wants_slopes(&self) -> bool {
+        self.asked.is_none() && self.here.as_ref().is_some_and(|it| it.rows.is_none())
+    }
+
+    /// A candidate near the best one, for what is left of a budget that holds no more slopes.
+    pub(crate) fn without_slopes(&self, best: &[f64], number: u64) -> Vec<f64> {
+        Bfgs::near(best, LAST_SPREAD, self.seed, number)
+    }
+
     /// The next candidate, the same until it is told; `best` is the best one so far.
     pub(crate) fn ask(&mut self, slopes: &Differentiable<'_>, best: &[f64]) -> Vec<f64> {
         loop {
@@ -152,7 +164,13 @@ impl Sequential {
     }
 
     /// Takes what the candidate that was asked for is worth.
-    pub(crate) fn tell(&mut self, merit: &Merit, penalty: f64, flights: &[FlightScore], best: &[f64]) {
+    pub(crate) fn tell(
+        &mut self,
+        merit: &Merit,
+        penalty: f64,
+        flights: &[FlightScore],
+        best: &[f64],
+    ) {
         if merit.value.is_finite() {
             self.penalty.get_or_insert(penalty);
         }
