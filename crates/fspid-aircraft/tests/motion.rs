@@ -65,7 +65,7 @@ fn the_rates_are_those_of_every_aircraft_that_flies_also_far_from_its_trim() {
     each(|name, data, laws, target| {
         let aircraft = data.aircraft(laws, Environment::STANDARD).expect("an aircraft");
         let Ok(trim) = aircraft.trim(target) else { return };
-        let numbers = MotionNumbers::of(data, laws, Environment::STANDARD, target);
+        let numbers = MotionNumbers::of(data, laws, (Environment::STANDARD, 0.0), target);
         let thrust = numbers.trim().expect("a trim").thrust_n.midpoint();
         let theta = trim.state.euler().theta_rad;
         let centre =
@@ -95,7 +95,7 @@ fn the_rates_are_those_of_every_aircraft_that_flies_also_far_from_its_trim() {
 #[test]
 fn slopes_and_rates_anywhere_in_a_box_are_enclosed_by_those_at_the_trim_and_the_bends() {
     each(|name, data, laws, target| {
-        let numbers = MotionNumbers::of(data, laws, Environment::STANDARD, target);
+        let numbers = MotionNumbers::of(data, laws, (Environment::STANDARD, 0.0), target);
         let mut reach = REACH;
         reach[2] *= target.airspeed_m_s;
         let Some(over) = numbers.over(reach) else { return };

@@ -192,7 +192,7 @@ fn most_inequalities(certificate: &Certificate, claim: &Claim, range: Range) -> 
 }
 
 /// Corners of the nonlinear motion at most.
-const NONLINEAR_CORNERS: u64 = 1 << fspid_aircraft::enclosure::MOTION;
+const NONLINEAR_CORNERS: u64 = 1 << (fspid_aircraft::enclosure::MOTION + 1);
 
 #[derive(Default)]
 struct Sizes {

@@ -9,7 +9,7 @@ use super::{EnclosedFlight, EnclosedTrim, Sought};
 use crate::aerodynamics::derivatives::{
     DragLaw, Geometry, Longitudinal, LongitudinalCoefficient, ThrustLaw,
 };
-use crate::atmosphere::Environment;
+use crate::atmosphere::{Air, Environment};
 use crate::data::{DerivativeData, Laws, Loading, Moment};
 use crate::trim::TrimTarget;
 use crate::validity::{Range, Validity};
@@ -36,8 +36,12 @@ pub struct MotionNumbers {
     pub airspeed_m_s: f64,
     /// Climb angle of the trim.
     pub flight_path_rad: f64,
-    /// Density of the air, that of the trim everywhere.
+    /// Density of the air at the trim.
     pub density_kg_m3: f64,
+    /// How far above and below the trim the air is enclosed, m.
+    pub height_m: f64,
+    /// Densities of the air at those heights; that of the trim alone where `height_m` is 0.
+    pub densities_kg_m3: Range,
     /// Gravity.
     pub gravity_m_s2: f64,
     /// Wing area.
@@ -65,23 +69,32 @@ pub struct MotionOver {
     pub trim: EnclosedTrim<Interval>,
     /// Rates of θ, q, V, α by [`MOTION`] numbers at the trim.
     pub slopes: [[Interval; MOTION]; 4],
-    /// How each slope changes with each number, over the whole box: second derivatives.
+    /// How each slope changes with each number, over the whole box and all densities: second derivatives.
     pub bends: [[[Interval; MOTION]; MOTION]; 4],
+    /// What the largest change of the density does to each slope at the trim, over all densities.
+    pub slopes_by_density: [[Interval; MOTION]; 4],
+    /// What it does to the rates at the trim, likewise: air of another density has another trim.
+    pub rates_by_density: [Interval; 4],
 }
 
 impl MotionNumbers {
-    /// Those of an aircraft at a target; the air has everywhere the density that it has there.
+    /// Those of an aircraft at a target, in the air up to `height_m` above and below it; without a height the air has
+    /// everywhere the density that it has there.
     #[must_use]
     pub fn of(
         data: &DerivativeData,
         laws: Laws,
-        environment: Environment,
+        (environment, height_m): (Environment, f64),
         target: TrimTarget,
     ) -> Self {
         let own = DerivativeData { loading: Loading::default(), ..*data };
         let Geometry { area_m2, chord_m, span_m: _ } = data.geometry;
         let Validity { airspeed_m_s, mach, alpha_rad, .. } = data.validity;
         let air = environment.air_at(target.altitude_m);
+        let ends = [-height_m, 0.0, height_m].map(|by| environment.air_at(target.altitude_m + by));
+        let most = |of: fn(&Air) -> f64| ends.iter().map(of).fold(f64::NAN, f64::max);
+        let least = |of: fn(&Air) -> f64| ends.iter().map(of).fold(f64::NAN, f64::min);
+        let (sound, density) = (|it: &Air| it.speed_of_sound_m_s, |it: &Air| it.density_kg_m3);
         Self {
             mass_kg: data.mass_kg(),
             iy_kg_m2: data.mass_properties().iy_kg_m2,
@@ -89,6 +102,8 @@ impl MotionNumbers {
             airspeed_m_s: target.airspeed_m_s,
             flight_path_rad: target.flight_path_rad,
             density_kg_m3: air.density_kg_m3,
+            height_m,
+            densities_kg_m3: Range { min: least(density), max: most(density) },
             gravity_m_s2: environment.gravity_m_s2,
             area_m2,
             chord_m,
@@ -97,8 +112,8 @@ impl MotionNumbers {
             laws,
             alpha_rad,
             airspeeds_m_s: Range {
-                min: airspeed_m_s.min.max(mach.min * air.speed_of_sound_m_s),
-                max: airspeed_m_s.max.min(mach.max * air.speed_of_sound_m_s),
+                min: airspeed_m_s.min.max(mach.min * most(sound)),
+                max: airspeed_m_s.max.min(mach.max * least(sound)),
             },
             elevator_rad: data.travel.elevator_rad,
         }
@@ -159,11 +174,16 @@ impl MotionNumbers {
     /// # Source
     /// As [`DerivativeModel`](crate::aerodynamics::derivatives::DerivativeModel), whose rates they are; tests compare them.
     pub fn rates<T: Scalar>(&self, trim_thrust_n: T, at: [T; MOTION]) -> [T; 4] {
+        self.rates_in(T::constant(self.density_kg_m3), trim_thrust_n, at)
+    }
+
+    /// The [`rates`](Self::rates) in air of another density than that of the trim; thrust that goes with the dynamic
+    /// pressure goes with it.
+    pub fn rates_in<T: Scalar>(&self, density: T, trim_thrust_n: T, at: [T; MOTION]) -> [T; 4] {
         let number = T::constant;
         let [theta, q, speed, alpha, elevator] = at;
         let Longitudinal { lift, drag, pitch, .. } = self.coefficients::<T>();
-        let pressure_n =
-            number(0.5) * number(self.density_kg_m3) * number(self.area_m2) * speed.square();
+        let pressure_n = number(0.5) * density * number(self.area_m2) * speed.square();
         let half_chord_s = number(0.5) * number(self.chord_m) / speed;
         let change = self.relative(speed);
         let steady = |row: &LongitudinalCoefficient<T>| {
@@ -174,7 +194,7 @@ impl MotionNumbers {
                 + row.elevator * elevator
         };
         let (mass, gravity) = (number(self.mass_kg), number(self.gravity_m_s2));
-        let thrust_n = trim_thrust_n * self.thrust_share(speed);
+        let thrust_n = trim_thrust_n * self.thrust_share(density, speed);
         let (sine, cosine) = ((theta - alpha).sin(), (theta - alpha).cos());
         let across_n =
             mass * gravity * cosine - pressure_n * steady(&lift) - thrust_n * alpha.sin();
@@ -207,7 +227,7 @@ impl MotionNumbers {
     }
 
     /// Thrust over that of the trim, at the same throttle.
-    fn thrust_share<T: Scalar>(&self, speed: T) -> T {
+    fn thrust_share<T: Scalar>(&self, density: T, speed: T) -> T {
         match self.laws.thrust {
             ThrustLaw::Constant => T::one(),
             ThrustLaw::WithSpeed => {
@@ -216,7 +236,8 @@ impl MotionNumbers {
                         + T::constant(self.longitudinal.thrust_speed) * self.relative(speed)
                 };
                 let trim = T::constant(self.airspeed_m_s);
-                (speed / trim).square() * (coefficient(speed) / coefficient(trim))
+                let pressure = density / T::constant(self.density_kg_m3) * (speed / trim).square();
+                pressure * (coefficient(speed) / coefficient(trim))
             }
         }
     }
@@ -260,7 +281,8 @@ impl MotionNumbers {
                 })
             })
         });
-        let motion = MotionOver { trim, slopes, bends };
+        let (slopes_by_density, rates_by_density) = self.by_density(&trim, centre)?;
+        let motion = MotionOver { trim, slopes, bends, slopes_by_density, rates_by_density };
         motion.is_bounded().then_some(motion)
     }
 
@@ -268,8 +290,40 @@ impl MotionNumbers {
     fn third(&self, trim: &EnclosedTrim<Interval>, at: [Interval; MOTION]) -> [Twice; 4] {
         let first = Bent::variables(at);
         let second = Dual::<Bent, MOTION>::variables(first);
-        let thrust = Dual::fixed(Dual::fixed(Dual::fixed(trim.thrust_n)));
-        self.rates(thrust, Twice::variables(second))
+        let fixed = |it: Interval| Dual::fixed(Dual::fixed(Dual::fixed(it)));
+        let density = fixed(self.densities());
+        self.rates_in(density, fixed(trim.thrust_n), Twice::variables(second))
+    }
+
+    /// All densities, that of the trim among them.
+    fn densities(&self) -> Interval {
+        let Range { min, max } = self.densities_kg_m3;
+        let trim = self.density_kg_m3;
+        Interval::between(min.min(trim), max.max(trim))
+    }
+
+    /// What the largest change of the density does to slopes and rates at the trim, with the slopes over all densities:
+    ///
+    /// $$ J(\rho) - J(\rho_0) \in [-1, 1] \ \Delta \rho \ \partial_\rho J, \qquad
+    ///    f(\rho) - f(\rho_0) \in [-1, 1] \ \Delta \rho \ \partial_\rho f $$
+    fn by_density(
+        &self,
+        trim: &EnclosedTrim<Interval>,
+        centre: [Interval; MOTION],
+    ) -> Option<([[Interval; MOTION]; 4], [Interval; 4])> {
+        let densities = self.densities();
+        // Written so that NaN has no bounds.
+        if !(densities.is_bounded() && densities.lower() > 0.0) {
+            return None;
+        }
+        let most = (densities - Interval::point(self.density_kg_m3)).magnitude();
+        let by = |it: Interval| Interval::point(most) * it;
+        let [density] = Dual::<Interval, 1>::variables([densities]);
+        let at = Dual::<Dual<Interval, 1>, MOTION>::variables(centre.map(Dual::fixed));
+        let thrust = Dual::fixed(Dual::fixed(trim.thrust_n));
+        let rates = self.rates_in(Dual::fixed(density), thrust, at);
+        let slopes = rates.map(|row| row.derivative.map(|slope| by(slope.derivative[0])));
+        Some((slopes, rates.map(|row| by(row.value.derivative[0]))))
     }
 
     /// Slopes of the rates, enclosed wherever `at` is.
@@ -288,6 +342,7 @@ impl MotionOver {
     fn is_bounded(&self) -> bool {
         let slopes = self.slopes.iter().flatten();
         let bends = self.bends.iter().flatten().flatten();
-        slopes.chain(bends).all(|it| it.is_bounded())
+        let more = self.slopes_by_density.iter().flatten().chain(&self.rates_by_density);
+        slopes.chain(bends).chain(more).all(|it| it.is_bounded())
     }
 }

@@ -5,8 +5,10 @@
 //! the motion in that box at samples and between them, and no limit acts in it, every motion that begins in the
 //! ellipsoid stays in the box and comes to rest at the trim: of the equations of motion, not of their linear model.
 //!
-//! Said of: straight flight with the wings level, in still air that has everywhere the density of the trim, with the
-//! throttle of the trim; the set-point at the trim, no load. The equations are meant as they are, not the steps in which
+//! Said of: straight flight with the wings level, in still air, with the throttle of the trim, as long as the aircraft is no
+//! further above or below the trim than the numbers say: the air there has any of the densities between two, of which one
+//! is that of the trim. Where they are not the same the flight does not come to rest at the trim, but near it, as far as
+//! another density has another trim. Further: the set-point at the trim, no load. The equations are meant as they are, not the steps in which
 //! a simulation integrates them.
 
 mod search;
@@ -14,9 +16,11 @@ mod search;
 mod tests;
 mod transition;
 
+use fspid_aircraft::Range;
 use fspid_aircraft::enclosure::{EnclosedTrim, MOTION, MotionNumbers};
 use fspid_core::Gains;
 use fspid_lti::Matrix;
+use fspid_numeric::Scalar;
 use fspid_numeric::scalar::Interval;
 use fspid_sim::loop_model::LoopModel;
 
@@ -25,7 +29,7 @@ use crate::check::{NotProved, inside_limit, reach};
 use crate::description::LoopDescription;
 use crate::gain_set::{GainSet, KnownSlopes};
 use crate::recheck::{Recheck, RecheckError};
-use crate::scope::Range;
+use crate::scope::Range as Asked;
 
 pub use search::{NonlinearVerdict, NotNonlinear, prove_nonlinear};
 pub use transition::Reach;
@@ -57,6 +61,8 @@ pub struct CheckedNonlinear {
     pub pitch_within_rad: f64,
     /// How far θ, q, V, α and elevator may come in the ellipsoid at samples, no more than the box.
     pub reached: [f64; MOTION],
+    /// How far θ, q, V and α may stay from the trim in the end: 0 in air of one density, to which every motion comes back.
+    pub remains: [f64; MOTION],
 }
 
 /// Why a claim about the nonlinear aircraft is not believed.
@@ -113,7 +119,7 @@ impl Nonlinear {
     /// The claim as a certificate of its own, about the return to the trim.
     fn alone(&self, certificate: &Certificate) -> Certificate {
         Certificate {
-            range: Range::REST,
+            range: Asked::REST,
             claim: Claim::CommonQuadratic { form: self.form.clone(), rate: self.rate },
             level: Some(self.level),
             steps: None,
@@ -138,6 +144,11 @@ impl Nonlinear {
         if !self.reach.is_allowed() {
             return Err(NonlinearError::Malformed { what: "a side of the box is not above 0" });
         }
+        let Range { min, max } = self.aircraft.densities_kg_m3;
+        if !(min <= self.aircraft.density_kg_m3 && self.aircraft.density_kg_m3 <= max) {
+            let what = "the density of the trim is not among those of the air";
+            return Err(NonlinearError::Malformed { what });
+        }
         let trim = self.aircraft.trim();
         let what = "no trim is found, or not only one";
         self.is_known_in(&trim.ok_or(NonlinearError::Malformed { what })?)?;
@@ -148,7 +159,8 @@ impl Nonlinear {
         for plant in transition.corners {
             let model = LoopModel::new(plant, description.settings());
             if inequalities == 0 {
-                inequalities += self.keeps_to_the_box(&model, set, &transition.within)?;
+                let within = (&transition.within, transition.drifts.as_slice());
+                inequalities += self.keeps_to_the_box(&model, set, within)?;
             }
             let found = Recheck::with(&alone, model, set.clone(), &known)?.until(stops).run()?;
             inequalities += found.inequalities;
@@ -158,8 +170,12 @@ impl Nonlinear {
             let what = "no pitch angle at all lies in the ellipsoid";
             return Err(NonlinearError::Malformed { what });
         }
-        let reached = self.reached(description)?;
-        Ok(CheckedNonlinear { corners, inequalities, pitch_within_rad: pitch, reached })
+        let reached = self.reached(description, self.level)?;
+        let remains = match self.level_left(&transition.drifts)? {
+            Some(level) => self.reached(description, level)?,
+            None => [0.0; MOTION],
+        };
+        Ok(CheckedNonlinear { corners, inequalities, pitch_within_rad: pitch, reached, remains })
     }
 
     /// Proves that the box stays where the derivatives are worth something, away from the elevator's stops, and flying.
@@ -191,15 +207,20 @@ impl Nonlinear {
         &self,
         model: &LoopModel<Interval>,
         set: &GainSet,
-        within: &[[Vec<Interval>; MOTION]; 2],
+        (within, drifts): (&[[Vec<Interval>; MOTION]; 2], &[Interval]),
     ) -> Result<usize, NonlinearError> {
+        // At the end of a sample so much less is left as the air may do by then.
+        let left = |place: usize, end: usize| {
+            let drift = if end == 0 { Interval::ZERO } else { drifts[place] };
+            (Interval::point(self.reach.motion[place]) - drift).lower().next_down()
+        };
         let mut rows = Vec::new();
         for (_, held) in set.held_corners() {
             let arriving = model.arriving_row(points(held.gains));
             rows.push((arriving.clone(), self.reach.command_rad.next_down()));
-            for end in within {
-                let own = end.iter().zip(self.reach.motion);
-                rows.extend(own.map(|(row, reach)| (of_loop(row, &arriving), reach.next_down())));
+            for (end, own) in within.iter().enumerate() {
+                let own = own.iter().enumerate();
+                rows.extend(own.map(|(place, row)| (of_loop(row, &arriving), left(place, end))));
             }
         }
         for (row, limit) in &rows {
@@ -208,14 +229,44 @@ impl Nonlinear {
         Ok(rows.len())
     }
 
-    /// How far everything may come at samples.
-    fn reached(&self, description: &LoopDescription) -> Result<[f64; MOTION], NonlinearError> {
+    /// Proves that air of other densities takes no motion out of the ellipsoid; answers the level that motions come down to,
+    /// none where they come to rest.
+    ///
+    /// With $d$ what the air adds in a sample, $|z^+|_P \le \rho |z|_P + |d|_P$ and $|d|_P \le b = \sum_i |d_i| \sqrt{P_{ii}}$:
+    ///
+    /// $$ b \le (1 - \rho) \sqrt{c}, \qquad \limsup |z|_P \le \frac{b}{1 - \rho} $$
+    fn level_left(&self, drifts: &[Interval]) -> Result<Option<f64>, NonlinearError> {
+        if drifts.iter().all(|drift| drift.upper() <= 0.0) {
+            return Ok(None);
+        }
+        let most = drifts.iter().enumerate().fold(Interval::ZERO, |sum, (place, drift)| {
+            let own = self.form.get(place, place).unwrap_or(f64::NAN);
+            sum + *drift * Interval::point(own).sqrt()
+        });
+        let left = Interval::ONE - Interval::point(self.rate);
+        let root = Interval::point(most.upper()) / left;
+        let level = (root * root).upper();
+        // Written so that NaN is too much.
+        if left.lower() > 0.0 && level <= self.level {
+            return Ok(Some(level));
+        }
+        let what =
+            "air of other densities takes motions out of the ellipsoid faster than the form falls";
+        Err(NonlinearError::Malformed { what })
+    }
+
+    /// How far everything may come at samples, within a level.
+    fn reached(
+        &self,
+        description: &LoopDescription,
+        level: f64,
+    ) -> Result<[f64; MOTION], NonlinearError> {
         let size = description.states();
         let mut reached = [0.0; MOTION];
         for (place, reached) in reached.iter_mut().enumerate() {
             let unit = |column| if column == place { Interval::ONE } else { Interval::ZERO };
             let row: Vec<Interval> = (0..size).map(unit).collect();
-            *reached = reach(&self.form, self.level, &row)?;
+            *reached = reach(&self.form, level, &row)?;
         }
         Ok(reached)
     }

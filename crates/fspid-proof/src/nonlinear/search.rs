@@ -10,7 +10,7 @@ use fspid_lti::Matrix;
 use fspid_numeric::scalar::Interval;
 use fspid_sim::loop_model::{LoopModel, SampledPlant};
 
-use super::transition::{Reach, Transition};
+use super::transition::{DENSITY, Reach, Transition};
 use super::{CheckedNonlinear, Nonlinear, NonlinearError, not_covered, of_loop};
 use crate::certificate::Certificate;
 use crate::description::{LoopDescription, NotProvable};
@@ -253,8 +253,9 @@ impl Search<'_> {
     /// Loops between corners that the form is made for: θ and q bend little, and stand in their middle.
     fn apart(&self, transition: &Transition) -> Vec<LoopModel<f64>> {
         let bits = transition.sides.iter().enumerate();
+        let stands = |number: usize| number < STIFF || number == DENSITY;
         let fixed =
-            bits.filter(|(_, number)| **number < STIFF).fold(0, |sum, (bit, _)| sum | 1 << bit);
+            bits.filter(|(_, number)| stands(**number)).fold(0, |sum, (bit, _)| sum | 1 << bit);
         let corners = &transition.corners;
         let settings = self.description().settings();
         let kept = (0..corners.len()).filter(|corner| corner & fixed == 0);
@@ -310,10 +311,14 @@ impl Search<'_> {
             let arriving = model.arriving_row(super::points(held.gains));
             let over = |it: &Interval| it.midpoint() / (SIDES * reach.command_rad);
             rows.push(arriving.iter().map(over).collect());
-            let ends = transition.within.iter();
-            for (row, side) in ends.flat_map(|piece| piece.iter().zip(reach.motion)) {
-                let over = |it: Interval| it.midpoint() / (SIDES * side);
-                rows.push(of_loop(row, &arriving).into_iter().map(over).collect());
+            for (end, own) in transition.within.iter().enumerate() {
+                for ((place, row), side) in own.iter().enumerate().zip(reach.motion) {
+                    let drift = if end == 0 { 0.0 } else { transition.drifts[place].upper() };
+                    let room = SIDES * side - drift - reach.blur_of(row);
+                    // Where nothing is left no form is wide enough.
+                    let over = |it: Interval| it.midpoint() / room.max(f64::EPSILON * side);
+                    rows.push(of_loop(row, &arriving).into_iter().map(over).collect());
+                }
             }
         }
         rows
@@ -327,19 +332,21 @@ impl Search<'_> {
         };
         let checked =
             |claim: &Nonlinear| claim.check(self.certificate, self.set, self.effort.stops);
+        let rates = RATES.map(|share| 1.0 - share * (1.0 - found.rate));
         let mut last = NonlinearError::Malformed { what: "no level was tried" };
         for number in 0..LEVELS {
             let level = 1.0 - 0.02 * f64::from(number);
-            let plain = claim(level, 1.0);
-            match checked(&plain) {
-                Ok(found_plain) => {
-                    let faster = RATES.iter().find_map(|share| {
-                        let faster = claim(level, 1.0 - share * (1.0 - found.rate));
-                        checked(&faster).ok().map(|it| (faster, it))
-                    });
-                    return Ok(faster.unwrap_or((plain, found_plain)));
-                }
-                Err(reason) => last = reason,
+            let mut proved = |rate: f64| {
+                let claim = claim(level, rate);
+                checked(&claim).map(|it| (claim, it)).map_err(|reason| last = reason).ok()
+            };
+            // In air of several densities only what falls at a rate keeps motions near.
+            let plain = if self.aircraft.height_m > 0.0 { None } else { Some(proved(1.0)) };
+            if plain == Some(None) {
+                continue;
+            }
+            if let Some(found) = rates.into_iter().find_map(proved).or(plain.flatten()) {
+                return Ok(found);
             }
         }
         Err(last)
@@ -358,7 +365,9 @@ fn directions(
     let scaled = |row: &[f64], by: f64| row.iter().map(|it| by * it).collect::<Vec<f64>>();
     let [most, ..] = reach.motion;
     let mut directions = vec![scaled(pitch, most)];
-    for (place, blur) in transition.blurs.iter().enumerate().filter(|(_, blur)| **blur > 0.0) {
+    let off = transition.blurs.iter().zip(&transition.drifts);
+    let off = off.map(|(blur, drift)| blur + drift.upper());
+    for (place, blur) in off.enumerate().filter(|(_, blur)| *blur > 0.0) {
         let mut unit = vec![0.0; size];
         unit[place] = BLUR * blur / (1.0 - rate);
         directions.push(unit);

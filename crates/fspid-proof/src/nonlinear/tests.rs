@@ -34,6 +34,8 @@ fn navion() -> MotionNumbers {
         airspeed_m_s: 53.64,
         flight_path_rad: 0.0,
         density_kg_m3: 1.2256,
+        height_m: 0.0,
+        densities_kg_m3: Known { min: 1.2256, max: 1.2256 },
         gravity_m_s2: 9.815,
         area_m2: 17.09,
         chord_m: 1.737,
@@ -89,6 +91,7 @@ struct Flown {
     aircraft: MotionNumbers,
     centre: [f64; MOTION],
     thrust_n: f64,
+    density_kg_m3: f64,
 }
 
 impl Flown {
@@ -96,7 +99,13 @@ impl Flown {
         let aircraft = navion();
         let trim = aircraft.trim().expect("a trim");
         let centre = aircraft.at_trim(&trim).map(Interval::midpoint);
-        Self { aircraft, centre, thrust_n: trim.thrust_n.midpoint() }
+        let density_kg_m3 = aircraft.density_kg_m3;
+        Self { aircraft, centre, thrust_n: trim.thrust_n.midpoint(), density_kg_m3 }
+    }
+
+    /// The same in air of another density.
+    fn in_air_of(density_kg_m3: f64) -> Self {
+        Self { density_kg_m3, ..Self::new() }
     }
 
     /// Rates of θ, q, V, α and of the deflection, which is counted as the command is.
@@ -104,7 +113,8 @@ impl Flown {
         let [theta, q, speed, alpha, deflection] = *state;
         let off = [theta, q, speed, alpha, -deflection];
         let at = core::array::from_fn(|i| self.centre[i] + off[i]);
-        let [theta, q, speed, alpha] = self.aircraft.rates(self.thrust_n, at);
+        let [theta, q, speed, alpha] =
+            self.aircraft.rates_in(self.density_kg_m3, self.thrust_n, at);
         [theta, q, speed, alpha, (command - deflection) / LAG_S]
     }
 
@@ -193,12 +203,11 @@ fn linear() -> Certificate {
 
 /// Loops of the controller around the flown plant: rows of the loop's matrix but for the plant's own.
 fn fly(
-    claim: &Nonlinear,
+    (claim, flown): (&Nonlinear, &Flown),
     start: &[f64],
     samples: usize,
     mut seen: impl FnMut(&[f64; MOTION]),
 ) -> Vec<f64> {
-    let flown = Flown::new();
     let model = description().enclosed().expect("a model").midpoint();
     let (matrix, arriving) = (model.closed(GAINS), model.arriving_row(GAINS));
     let along = |row: &Vec<f64>, z: &[f64]| row.iter().zip(z).map(|(r, z)| r * z).sum::<f64>();
@@ -247,7 +256,7 @@ fn flights_that_begin_at_the_edge_of_the_ellipsoid_stay_in_the_box_and_come_to_r
         }
         let scale = (0.999 * claim.level / value(&z)).sqrt();
         z.iter_mut().for_each(|it| *it *= scale);
-        let end = fly(&claim, &z, 1500, |at| {
+        let end = fly((&claim, &Flown::new()), &z, 1500, |at| {
             for (at, reach) in at.iter().zip(claim.reach.motion) {
                 assert!(at.abs() <= reach, "flight {number}: {at} beyond {reach}");
             }
@@ -267,4 +276,45 @@ fn flights_that_begin_at_the_edge_of_the_ellipsoid_stay_in_the_box_and_come_to_r
     assert!(refused(&|it| it.aircraft.longitudinal.pitch.elevator *= 3.0).contains("nonlinear"));
     assert!(refused(&|it| it.reach.command_rad = 1e-4).contains("limit"));
     assert!(refused(&|it| it.rate = 0.9).contains("fall"));
+}
+
+/// In air that is denser or thinner all along, as 10 m below and above the trim, flights from the edge of the ellipsoid stay
+/// in the box and come to where the certificate says; without the densities in the numbers the claim is another one.
+#[test]
+fn flights_in_denser_and_in_thinner_air_stay_in_the_box_and_come_near_the_trim() {
+    let (linear, sea_level) = (linear(), navion());
+    let ends = [0.999, 1.001].map(|share| share * sea_level.density_kg_m3);
+    let aircraft = MotionNumbers {
+        height_m: 10.0,
+        densities_kg_m3: Known { min: ends[0], max: ends[1] },
+        ..sea_level
+    };
+    let verdict = prove_nonlinear(&linear, &aircraft, &Effort::default()).expect("provable");
+    let NonlinearVerdict::Proved(claim, checked) = verdict else { panic!("{verdict:?}") };
+    assert!(checked.pitch_within_rad > 1.0_f64.to_radians(), "{checked:?}");
+    assert!(checked.remains[0] > 0.0 && checked.remains[0] < checked.reached[0], "{checked:?}");
+    for (number, density) in (0..6_u32).zip(ends.into_iter().cycle()) {
+        let flown = Flown::in_air_of(density);
+        let sign = if number % 4 < 2 { 1.0 } else { -1.0 };
+        let share = 1.0 - 0.15 * f64::from(number / 4);
+        let off = sign * share * 0.999 * checked.pitch_within_rad;
+        let start = description().enclosed().expect("a model").midpoint().pitch_off(off);
+        let end = fly((&claim, &flown), &start, 12_000, |at| {
+            for (at, reach) in at.iter().zip(claim.reach.motion) {
+                assert!(at.abs() <= reach, "flight {number}: {at} beyond {reach}");
+            }
+        });
+        // Two minutes: nearly as near as it will come.
+        for (place, (at, remains)) in end.iter().zip(checked.remains).enumerate().take(4) {
+            assert!(at.abs() <= 1.1 * remains, "flight {number}, {place}: {at} beyond {remains}");
+        }
+    }
+    // Broken on purpose: ten times the change of density takes motions out.
+    let wide = Known { min: 0.97 * ends[0], max: 1.03 * ends[1] };
+    let broken = MotionNumbers { densities_kg_m3: wide, ..aircraft };
+    let whole = Nonlinear { aircraft: broken, ..(*claim).clone() };
+    assert!(Certificate { nonlinear: Some(whole), ..linear.clone() }.check().is_err());
+    let whole = Nonlinear { aircraft: MotionNumbers { density_kg_m3: 1.1, ..aircraft }, ..*claim };
+    let refused = Certificate { nonlinear: Some(whole), ..linear }.check().expect_err("changed");
+    assert!(refused.to_string().contains("density of the trim"), "{refused}");
 }

@@ -31,6 +31,9 @@ use crate::description::LoopDescription;
 /// Place of the elevator among what the motion depends on; of an actuator's deflection among the states.
 const ELEVATOR: usize = 4;
 
+/// Number of the density, behind those of the motion.
+pub(super) const DENSITY: usize = MOTION;
+
 /// A matrix row by row.
 type Rows = Vec<Vec<Interval>>;
 
@@ -50,6 +53,13 @@ impl Reach {
         all.into_iter().all(|it| *it > 0.0 && it.is_finite())
     }
 
+    /// What the widths of a row's entries come to over the box; the rate of an actuator of second order has no side.
+    pub(super) fn blur_of(&self, row: &[Interval]) -> f64 {
+        let Some((command, own)) = row.split_last() else { return 0.0 };
+        let sides = own.iter().zip(self.motion).map(|(it, side)| it.radius() * side);
+        sides.sum::<f64>() + command.radius() * self.command_rad
+    }
+
     /// All sides times a factor.
     pub(crate) fn scaled(&self, factor: f64) -> Self {
         let Self { motion, command_rad } = self;
@@ -67,6 +77,8 @@ pub(crate) struct Transition {
     pub(crate) within: [[Vec<Interval>; MOTION]; 2],
     /// How far each state may be off at the end of a sample by what is not told apart, at most about.
     pub(crate) blurs: Vec<f64>,
+    /// How far air of another density than the trim's takes each state in a sample, wherever it begins.
+    pub(crate) drifts: Vec<Interval>,
 }
 
 /// The motion in continuous time, rows and columns over states and command; that of the command is 0.
@@ -80,6 +92,8 @@ struct Motion {
     /// States of plant and actuator.
     states: usize,
     lag: LagOf<Interval>,
+    /// Rates at the trim in air of another density, in magnitude.
+    driven: Vec<Interval>,
 }
 
 /// Why the motion over a box is not enclosed.
@@ -126,7 +140,9 @@ impl Transition {
         let corners = (0..1_usize << turned.len()).map(corner).collect();
         let blurs = wide[..motion.states].iter().map(|row| motion.size_of(row, reach)).collect();
         let sides = motion.moved.iter().map(|(number, _)| *number).collect();
-        Ok(Self { corners, sides, within: motion.within(&bounds, &all, dt_s), blurs })
+        let drifts = motion.drifts(&bounds, dt_s)?;
+        let within = motion.within(&bounds, &all, (&motion.around(dt_s)?, dt_s));
+        Ok(Self { corners, sides, within, blurs, drifts })
     }
 }
 
@@ -219,7 +235,16 @@ impl Motion {
                 moved.push((number, by));
             }
         }
-        Ok(Self { middle, moved, rest, states, lag })
+        let mut by = square(&over.slopes_by_density, lag);
+        by[ELEVATOR..].iter_mut().for_each(|row| row.fill(Interval::ZERO));
+        rest = zip(&rest, &by, |rest, it| rest + Interval::point(it.radius()));
+        by = zip(&by, &by, |it, _| Interval::point(it.midpoint()));
+        if by.iter().flatten().any(|entry| *entry != Interval::ZERO) {
+            moved.push((DENSITY, by));
+        }
+        let driven = over.rates_by_density.iter().map(|it| Interval::point(it.magnitude()));
+        let still = core::iter::repeat_n(Interval::ZERO, states - over.rates_by_density.len());
+        Ok(Self { middle, moved, rest, states, lag, driven: driven.chain(still).collect() })
     }
 
     /// What is of first order and not told apart: that of $\hat R$, and how numbers move around their means.
@@ -257,6 +282,8 @@ impl Motion {
             // A held command stands still; of an actuator of second order the rate has no side of the box.
             (LagOf::None, ELEVATOR) => return 0.0,
             (LagOf::Second(..), ELEVATOR) => return 2.0,
+            // How fast the density changes is not asked.
+            (_, DENSITY) => return 2.0,
             _ => {}
         }
         let sides = reach.motion.iter().enumerate().filter(|(place, _)| own || *place != ELEVATOR);
@@ -288,6 +315,15 @@ impl Motion {
         })
     }
 
+    /// What rates at the trim make of each state in a sample: $\int_0^T e^{(|A_0| + D) s} ds \ |w|$.
+    fn drifts(&self, bounds: &Rows, dt_s: Interval) -> Result<Vec<Interval>, NotProved> {
+        let own: Rows =
+            bounds[..self.states].iter().map(|row| row[..self.states].to_vec()).collect();
+        let by: Rows = self.driven.iter().map(|it| vec![*it]).collect();
+        let (_, moved) = held(&matrix(&own)?, &matrix(&by)?, dt_s)?;
+        Ok(moved.entries().map(|it| Interval::point(it.magnitude())).collect())
+    }
+
     fn sampled(&self, mut rows: Rows) -> SampledPlant<Interval> {
         let states = self.states;
         rows.truncate(states);
@@ -302,29 +338,42 @@ impl Motion {
 
     /// Rows of what the motion depends on at both ends of a sample, as the mean value theorem has them:
     ///
-    /// $$ \Phi(t) \in I + t [A_0 - D, A_0 + D] \pm (e^{(|A_0| + D) T} - I - (|A_0| + D) T) $$
+    /// $$ \Phi(t) \in I + t [A_0 - D, A_0 + D] \pm (e^{(|A_0| + D) t} - I - (|A_0| + D) t) $$
     ///
-    /// At every matrix of the middle the size of a row at a state is convex in t: where it is small enough at 0 and at T, it
-    /// is between.
-    fn within(&self, bounds: &Rows, all: &Rows, dt_s: Interval) -> [[Vec<Interval>; MOTION]; 2] {
+    /// At every matrix of the middle the size of a row at a state is convex in t, and so is what the words of second order
+    /// add to it at most, which are powers of t: where the sum is small enough at 0, without words, and at T, it is between.
+    /// A lag of first order bends as nothing else and is known in whole: it stays between where it is and where it is told
+    /// to go, and comes closer.
+    fn within(
+        &self,
+        bounds: &Rows,
+        all: &Rows,
+        (around, dt_s): (&Rows, Interval),
+    ) -> [[Vec<Interval>; MOTION]; 2] {
         let sizes = magnitudes(&self.middle);
-        let entry = |time_s: Interval, row: usize, column: usize| {
-            let unit = if row == column { Interval::ONE } else { Interval::ZERO };
+        let unit = |row, column| if row == column { Interval::ONE } else { Interval::ZERO };
+        let entry = |row: usize, column: usize| {
             let off = (bounds[row][column] - sizes[row][column]).magnitude();
             let slope = self.middle[row][column] + Interval::between(-off, off);
-            let words = (all[row][column] - unit - dt_s * bounds[row][column]).upper().max(0.0);
-            unit + time_s * slope + Interval::between(-words, words)
+            let first = unit(row, column) + dt_s * bounds[row][column];
+            let words = (all[row][column] - first).upper().max(0.0);
+            unit(row, column) + dt_s * slope + Interval::between(-words, words)
         };
-        [Interval::ZERO, dt_s].map(|time_s| {
-            let own =
-                |row: usize| (0..=self.states).map(|column| entry(time_s, row, column)).collect();
-            let mut rows: [Vec<Interval>; MOTION] = core::array::from_fn(own);
-            if self.lag == LagOf::None {
-                // The elevator is the command that arrives, at once.
-                rows[ELEVATOR].fill(Interval::ZERO);
-                rows[ELEVATOR][self.states] = Interval::ONE;
+        let rows = |entry: &dyn Fn(usize, usize) -> Interval| -> [Vec<Interval>; MOTION] {
+            core::array::from_fn(|row| (0..=self.states).map(|column| entry(row, column)).collect())
+        };
+        let mut ends = [rows(&unit), rows(&entry)];
+        match self.lag {
+            // The elevator is the command that arrives, at once.
+            LagOf::None => {
+                for end in &mut ends {
+                    end[ELEVATOR].fill(Interval::ZERO);
+                    end[ELEVATOR][self.states] = Interval::ONE;
+                }
             }
-            rows
-        })
+            LagOf::First(_) => ends[1][ELEVATOR].clone_from(&around[ELEVATOR]),
+            LagOf::Second(..) => {}
+        }
+        ends
     }
 }

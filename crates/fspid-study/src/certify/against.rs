@@ -103,7 +103,7 @@ impl CheckedFile {
             return;
         };
         let certified = json!(AircraftFile::of(&claim.aircraft));
-        match nonlinear::numbers(study) {
+        match nonlinear::numbers(study, claim.aircraft.height_m) {
             Ok(flown) => {
                 let flown = json!(AircraftFile::of(&flown));
                 walk(&mut against.differences, "nonlinear.aircraft", &certified, &flown);

@@ -2,8 +2,8 @@
 
 use fspid_aircraft::enclosure::MotionNumbers;
 use fspid_proof::{
-    Certificate, CheckedNonlinear, Effort, Nonlinear, NonlinearVerdict, NotProvable, Outcome,
-    Reach, Rechecked, Verdict, prove_nonlinear,
+    Certificate, CheckedNonlinear, Claim, Effort, Nonlinear, NonlinearVerdict, NotProvable,
+    Outcome, Reach, Rechecked, Verdict, prove_nonlinear,
 };
 use fspid_scenario::file::{FlownDerivatives, Study};
 use fspid_scenario::units::{FOOT_M, degrees};
@@ -12,6 +12,10 @@ use fspid_sim::aircraft::Forces;
 use serde_json::{Value, json};
 
 use crate::metrics::short;
+
+/// Heights above and below the trim over which the air is enclosed, the first that is proved: without one the air has
+/// everywhere the density of the trim.
+const HEIGHTS_M: [f64; 2] = [10.0, 0.0];
 
 /// What came of the nonlinear aircraft.
 #[derive(Clone, Debug)]
@@ -76,7 +80,7 @@ impl NonlinearAnswer {
 }
 
 /// The numbers of the aircraft that a study flies, where the claim can speak of it.
-pub(super) fn numbers(study: &Study) -> Result<MotionNumbers, NoNonlinear> {
+pub(super) fn numbers(study: &Study, height_m: f64) -> Result<MotionNumbers, NoNonlinear> {
     let scenario = &study.scenario;
     let aircraft = match &scenario.plant {
         Plant::Aircraft(plant) => plant.aircraft(),
@@ -93,9 +97,16 @@ pub(super) fn numbers(study: &Study) -> Result<MotionNumbers, NoNonlinear> {
     }
     let FlownDerivatives { data, laws, environment, target } =
         study.derivatives.as_ref().ok_or(NoNonlinear::NoDerivatives)?;
-    let numbers = MotionNumbers::of(data, *laws, *environment, *target);
+    let numbers = MotionNumbers::of(data, *laws, (*environment, height_m), *target);
     let finite = numbers.density_kg_m3.is_finite() && numbers.mass_kg.is_finite();
     finite.then_some(numbers).ok_or(NoNonlinear::NoNumbers)
+}
+
+/// Heights that are tried beside a linear claim: where that has no form for all gains, the nonlinear aircraft hardly has one,
+/// and is asked in the air that asks least.
+fn heights(claim: &Claim) -> &'static [f64] {
+    let at = if matches!(claim, Claim::BoundedRate(_)) { HEIGHTS_M.len() - 1 } else { 0 };
+    &HEIGHTS_M[at..]
 }
 
 /// Certifies the nonlinear aircraft beside the verdict of its linear loop, whose certificate then speaks of both.
@@ -107,14 +118,26 @@ pub(super) fn certified(
     outcome: &mut Outcome,
     effort: &Effort,
 ) -> Result<NonlinearAnswer, NotProvable> {
-    let aircraft = match numbers(study) {
-        Ok(aircraft) => aircraft,
-        Err(none) => return Ok(NonlinearAnswer::None(none)),
-    };
     let Verdict::Proved(certificate, rechecked) = &outcome.verdict else {
-        return Ok(NonlinearAnswer::LinearNotProved);
+        return Ok(match numbers(study, 0.0) {
+            Ok(_) => NonlinearAnswer::LinearNotProved,
+            Err(none) => NonlinearAnswer::None(none),
+        });
     };
-    let verdict = prove_nonlinear(certificate, &aircraft, effort)?;
+    let mut verdict = None;
+    for height_m in heights(&certificate.claim) {
+        let aircraft = match numbers(study, *height_m) {
+            Ok(aircraft) => aircraft,
+            Err(none) => return Ok(NonlinearAnswer::None(none)),
+        };
+        let found = prove_nonlinear(certificate, &aircraft, effort)?;
+        let proved = matches!(found, NonlinearVerdict::Proved(..));
+        verdict = Some(found);
+        if proved {
+            break;
+        }
+    }
+    let Some(verdict) = verdict else { return Ok(NonlinearAnswer::LinearNotProved) };
     let answer = NonlinearAnswer::Verdict(Box::new(verdict.clone()), Box::new(certificate.clone()));
     if let NonlinearVerdict::Proved(claim, checked) = verdict {
         let whole = Certificate { nonlinear: Some(*claim), ..certificate.clone() };
@@ -144,9 +167,39 @@ pub(super) fn sentence(
         _ => String::new(),
     };
     format!(
-        "the equations of motion themselves: a flight that begins in the certified ellipsoid, so with the pitch angle up to {begins} deg off and nothing else, stays within {pitch} deg of pitch, {rate} deg/s of pitch rate, {speed} of airspeed, {alpha} deg of angle of attack and {elevator} deg of elevator from the trim (commands within {command} deg), at samples and between them, meets no limit, and comes to rest at the trim{decay}; so with the set-point at the trim, no load, sensors without bias, wings level, the throttle of the trim, still air that has everywhere the density of the trim ({density} kg/m³), above the ground; the steps in which a simulation integrates are not covered, and all else here is about the linear model",
-        density = short(claim.aircraft.density_kg_m3),
+        "the equations of motion themselves: a flight that begins in the certified ellipsoid, so with the pitch angle up to {begins} deg off and nothing else, stays within {pitch} deg of pitch, {rate} deg/s of pitch rate, {speed} of airspeed, {alpha} deg of angle of attack and {elevator} deg of elevator from the trim (commands within {command} deg), at samples and between them, meets no limit, {comes}{decay}; so with the set-point at the trim, no load, sensors without bias, wings level, the throttle of the trim, still air {air}, above the ground; the steps in which a simulation integrates are not covered, and all else here is about the linear model",
+        comes = comes(checked),
+        air = air(&claim.aircraft),
     )
+}
+
+/// Where a flight ends.
+fn comes(checked: &CheckedNonlinear) -> String {
+    let [pitch, _, speed_m_s, ..] = checked.remains;
+    if pitch > 0.0 {
+        let pitch = above(degrees(pitch));
+        format!(
+            "and comes to within {pitch} deg of pitch and {} m/s of airspeed of the trim",
+            above(speed_m_s)
+        )
+    } else {
+        "and comes to rest at the trim".to_owned()
+    }
+}
+
+/// Which air is in the claim.
+fn air(aircraft: &MotionNumbers) -> String {
+    let MotionNumbers { height_m, density_kg_m3, densities_kg_m3, .. } = aircraft;
+    if *height_m > 0.0 {
+        format!(
+            "of any density from {} to {} kg/m³, as it has within {} m above and below the trim and for as long as the flight is there",
+            short(densities_kg_m3.min),
+            short(densities_kg_m3.max),
+            short(*height_m),
+        )
+    } else {
+        format!("that has everywhere the density of the trim ({} kg/m³)", short(*density_kg_m3))
+    }
 }
 
 /// Rounded up to two decimals, so that what is said to be kept is.

@@ -33,6 +33,11 @@ pub(super) struct AircraftFile {
     airspeed_m_s: f64,
     flight_path_rad: f64,
     density_kg_m3: f64,
+    /// Left away by those for which the air has everywhere the density of the trim.
+    #[serde(default, skip_serializing_if = "is_nothing")]
+    height_m: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    densities_kg_m3: Option<[f64; 2]>,
     gravity_m_s2: f64,
     area_m2: f64,
     chord_m: f64,
@@ -115,6 +120,9 @@ impl NonlinearFile {
             command_rad,
         } = self.reach;
         let motion = [pitch_rad, pitch_rate_rad_s, airspeed_m_s, alpha_rad, elevator_rad];
+        if (self.aircraft.height_m > 0.0) != self.aircraft.densities_kg_m3.is_some() {
+            return Err("height_m and densities_kg_m3 stand together or not at all".to_owned());
+        }
         Ok(Nonlinear {
             aircraft: self.aircraft.build(),
             reach: Reach { motion, command_rad },
@@ -137,6 +145,9 @@ impl AircraftFile {
             airspeed_m_s: numbers.airspeed_m_s,
             flight_path_rad: numbers.flight_path_rad,
             density_kg_m3: numbers.density_kg_m3,
+            height_m: numbers.height_m,
+            densities_kg_m3: (numbers.height_m > 0.0)
+                .then_some([numbers.densities_kg_m3.min, numbers.densities_kg_m3.max]),
             gravity_m_s2: numbers.gravity_m_s2,
             area_m2: numbers.area_m2,
             chord_m: numbers.chord_m,
@@ -167,6 +178,11 @@ impl AircraftFile {
             airspeed_m_s: self.airspeed_m_s,
             flight_path_rad: self.flight_path_rad,
             density_kg_m3: self.density_kg_m3,
+            height_m: self.height_m,
+            densities_kg_m3: match self.densities_kg_m3 {
+                Some([min, max]) => Range { min, max },
+                None => Range { min: self.density_kg_m3, max: self.density_kg_m3 },
+            },
             gravity_m_s2: self.gravity_m_s2,
             area_m2: self.area_m2,
             chord_m: self.chord_m,
@@ -192,6 +208,11 @@ impl AircraftFile {
             elevator_rad: range(self.elevator_rad),
         }
     }
+}
+
+/// True for a number that is left away.
+fn is_nothing(value: &f64) -> bool {
+    *value <= 0.0
 }
 
 /// Ends, none for an open one.

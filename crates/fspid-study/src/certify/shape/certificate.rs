@@ -118,6 +118,8 @@ const AIRCRAFT: Shape = Object(&[
     key("airspeed_m_s", Positive(FACTOR)),
     key("flight_path_rad", END),
     key("density_kg_m3", Positive(FACTOR)),
+    optional("height_m", Number(0.0, FACTOR)),
+    optional("densities_kg_m3", List(&Positive(FACTOR), [2, 2])),
     key("gravity_m_s2", Positive(FACTOR)),
     key("area_m2", Positive(FACTOR)),
     key("chord_m", Positive(FACTOR)),
