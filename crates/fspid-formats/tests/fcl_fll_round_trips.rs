@@ -120,7 +120,7 @@ fn shape(choices: &mut Choices) -> Membership {
     }
     // Half of a width among the smallest numbers is another's half too, and a trapezoid with one top
     // is a triangle.
-    let tiny = kind == ShapeKind::Cosine && 2.0 * (0.5 * params[1]) != params[1];
+    let tiny = kind == ShapeKind::Cosine && (2.0 * (0.5 * params[1])).total_cmp(&params[1]).is_ne();
     let pointed = kind == ShapeKind::Trapezoid && !(params[1] < params[2]);
     if kind.check(&params).is_err() || tiny || pointed {
         params = kind.example().to_vec();

@@ -74,6 +74,9 @@ struct Job<'a> {
     prepared: Option<Arc<Prepared>>,
 }
 
+/// What a little more of each sample of a flight adds to what is made of it, and that itself where it is asked for.
+type Price<'a> = dyn Fn(usize, &Flown, &Prepared) -> (Slopes, Option<f64>) + Sync + 'a;
+
 /// A flight with what a little more of each number of its controller adds to what was made of it, and that itself where
 /// it was asked for.
 struct Priced {
@@ -146,7 +149,7 @@ impl<'a> Differentiable<'a> {
         built: &Built,
         jobs: &[usize],
         point: &[f64],
-        price: &(dyn Fn(usize, &Flown, &Prepared) -> (Slopes, Option<f64>) + Sync),
+        price: &Price<'_>,
     ) -> Option<Vec<Priced>> {
         let groups = self.groups(jobs);
         let flown: Vec<Option<Vec<Priced>>> =
@@ -192,7 +195,7 @@ impl<'a> Differentiable<'a> {
         group: &[usize],
         built: &Built,
         point: &[f64],
-        price: &(dyn Fn(usize, &Flown, &Prepared) -> (Slopes, Option<f64>) + Sync),
+        price: &Price<'_>,
     ) -> Option<Vec<Priced>> {
         let prepared = group.iter().map(|job| self.prepared(*job, point));
         let prepared: Vec<Arc<Prepared>> = prepared.collect::<Option<_>>()?;
