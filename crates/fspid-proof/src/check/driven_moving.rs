@@ -3,8 +3,8 @@
 //! With loop, form and what is seen affine in gains κ that are counted in half widths of a box, as in
 //! [`super::moving`], and a disturbance that enters alike at all gains, $z^+ = M(\kappa) z + E u$:
 //!
-//! $$ F(\kappa, \kappa^+) = \begin{pmatrix} \alpha P(\kappa) - c(\kappa)^T c(\kappa) & 0 \cr 0 & \beta I \end{pmatrix}
-//!    - \begin{pmatrix} M(\kappa) & E \end{pmatrix}^T P(\kappa^+) \begin{pmatrix} M(\kappa) & E \end{pmatrix} $$
+//! $$ F(\kappa, \kappa^+) = \begin{pmatrix} \alpha P(\kappa) - c(\kappa)^T c(\kappa) & 0 \cr 0 & \beta I \end{pmatrix} -
+//!    \begin{pmatrix} M(\kappa) & E \end{pmatrix}^T P(\kappa^+) \begin{pmatrix} M(\kappa) & E \end{pmatrix} $$
 //!
 //! is affine in $\kappa^+$ for given κ, and of degree 3 in each gain, as the decrease without a disturbance is: the same
 //! Bernstein coefficients carry it, over the state and u.
