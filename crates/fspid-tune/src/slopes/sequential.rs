@@ -138,9 +138,10 @@ impl Sequential {
         self.penalty.unwrap_or(PENALTY * size)
     }
 
-    /// True where the slopes of all limits have to be found before the next candidate is known.
+    /// True where the slopes of all limits have to be paid for before the next candidate is known. Those that a saved
+    /// search finds anew were.
     pub(crate) fn wants_slopes(&self) -> bool {
-        self.asked.is_none() && self.here.as_ref().is_some_and(|it| it.rows.is_none())
+        self.asked.is_none() && self.here.as_ref().is_some_and(|it| !it.is_counted)
     }
 
     /// A candidate near the best one, for what is left of a budget that holds no more slopes.
