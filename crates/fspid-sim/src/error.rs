@@ -200,11 +200,6 @@ impl fmt::Display for SimError {
             Self::NotLinear => {
                 f.write_str("a nonlinear aircraft has no linear loop; allowed is a linear plant")
             }
-            Self::LeavesTrim { mode, at_s, how } => write!(
-                f,
-                "begun at its trim in mode {} of the autopilot, in still air, the aircraft {how} at t = {at_s} s: too soon for small motions about the trim, of which the poles would be; allowed is an aircraft that its loops or a shorter sample period hold there",
-                mode + 1
-            ),
             Self::Structure => f.write_str(
                 "gains along a flight are derived for supervisors whose rules conclude labels and that see the error and its change through even sets, and for controllers of which only the gains move",
             ),
@@ -219,15 +214,21 @@ impl fmt::Display for SimError {
             Self::Linear(error) => error.fmt(f),
             Self::Controller(error) => error.fmt(f),
             Self::Supervisor(error) => error.fmt(f),
-            about_others => about_others.fmt_about_others(f),
+            another => another.fmt_of_flights(f),
         }
     }
 }
 
 impl SimError {
-    /// What is wrong with controllers and aircraft that others compute; nothing for every other error.
-    fn fmt_about_others(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    /// What is wrong with an aircraft's own flight, and with controllers and aircraft that others compute; nothing for
+    /// every other error.
+    fn fmt_of_flights(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::LeavesTrim { mode, at_s, how } => write!(
+                f,
+                "begun at its trim in mode {} of the autopilot, in still air, the aircraft {how} at t = {at_s} s: too soon for small motions about the trim, of which the poles would be; allowed is an aircraft that its loops or a shorter sample period hold there",
+                mode + 1
+            ),
             Self::NoHost => f.write_str(
                 "this program starts no external controllers; allowed are controllers with equations, or a program that calls `fspid_sim::external::set_host`, as `fspid` does",
             ),

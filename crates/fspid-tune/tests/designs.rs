@@ -37,6 +37,16 @@ fn failed(answer: &Value, name: &str) -> u64 {
     controller(answer, name)["flights"]["failed"].as_u64().expect("a count")
 }
 
+/// Holds the contest of a design: error and travel of the self-tuning PID over those of the PID at most these, the
+/// self-tuner first, and so many flights of it and of the PID fail.
+fn is_first(name: &str, most: [f64; 2], fail: [u64; 2]) {
+    let answer = held(name);
+    let ratios = ratios(&answer);
+    assert!(ratios[0] <= most[0] && ratios[1] <= most[1], "{ratios:?}");
+    assert_eq!(answer["ranking"][0], "FSPID", "{:#}", answer["ranking"]);
+    assert_eq!([failed(&answer, "FSPID"), failed(&answer, "PID")], fail);
+}
+
 #[test]
 fn the_transport_flies_with_a_tenth_less_error_within_a_tenth_more_travel_where_it_was_not_tuned() {
     let answer = held("transport");
@@ -47,47 +57,28 @@ fn the_transport_flies_with_a_tenth_less_error_within_a_tenth_more_travel_where_
 
 #[test]
 fn the_light_aircraft_flies_with_a_tenth_less_error_and_breaks_no_requirement() {
-    let answer = held("light");
-    let [error, travel] = ratios(&answer);
-    assert!(error <= 0.90 && travel <= 1.05, "{error} {travel}");
-    assert_eq!(answer["ranking"][0], "FSPID", "{:#}", answer["ranking"]);
-    assert_eq!([failed(&answer, "FSPID"), failed(&answer, "PID")], [0, 0]);
+    is_first("light", [0.90, 1.05], [0, 0]);
 }
 
 #[test]
 fn the_self_tuner_of_six_light_aircraft_has_a_tenth_less_error_at_less_travel_and_keeps_the_margins()
  {
-    let answer = held("light-six");
-    let [error, travel] = ratios(&answer);
-    assert!(error <= 0.90 && travel <= 1.0, "{error} {travel}");
-    assert_eq!(answer["ranking"][0], "FSPID", "{:#}", answer["ranking"]);
-    assert_eq!([failed(&answer, "FSPID"), failed(&answer, "PID")], [3, 5]);
+    is_first("light-six", [0.90, 1.0], [3, 5]);
 }
 
+/// It overshoots in all steps of 1 deg and doublets, which nobody was tuned on, so that it does not win.
 #[test]
 fn the_self_tuner_of_six_small_unmanned_aircraft_has_a_fifth_less_error_at_less_travel() {
-    let answer = held("uav-six");
-    let [error, travel] = ratios(&answer);
-    assert!(error <= 0.80 && travel <= 0.95, "{error} {travel}");
-    // It overshoots in all steps of 1 deg and doublets, which nobody was tuned on, so that it does not win.
-    assert_eq!([failed(&answer, "FSPID"), failed(&answer, "PID")], [11, 2]);
+    is_first("uav-six", [0.80, 0.95], [11, 2]);
 }
 
 #[test]
 fn the_self_tuner_of_small_unmanned_aircraft_for_every_command_has_a_third_less_error_at_less_travel()
  {
-    let answer = held("uav-commands");
-    let [error, travel] = ratios(&answer);
-    assert!(error <= 0.64 && travel <= 1.0, "{error} {travel}");
-    assert_eq!(answer["ranking"][0], "FSPID", "{:#}", answer["ranking"]);
-    assert_eq!([failed(&answer, "FSPID"), failed(&answer, "PID")], [5, 2]);
+    is_first("uav-commands", [0.64, 1.0], [5, 2]);
 }
 
 #[test]
 fn the_self_tuner_of_transports_for_every_command_has_less_than_0_85_of_the_error() {
-    let answer = held("transport-commands");
-    let [error, travel] = ratios(&answer);
-    assert!(error <= 0.82 && travel <= 1.03, "{error} {travel}");
-    assert_eq!(answer["ranking"][0], "FSPID", "{:#}", answer["ranking"]);
-    assert_eq!([failed(&answer, "FSPID"), failed(&answer, "PID")], [7, 2]);
+    is_first("transport-commands", [0.82, 1.03], [7, 2]);
 }

@@ -6,7 +6,6 @@ use std::sync::OnceLock;
 
 use fspid_core::Gains;
 use fspid_lti::Matrix;
-use fspid_proof::check::{ActuatorLag, PrintedPlant};
 use fspid_proof::{
     AirPart, Asked, Certificate, Disturbed, Extent, LoopDescription, Quantity, Rechecked, Verdict,
     Way, bound_disturbances, certify, ways_of,
@@ -17,7 +16,7 @@ use fspid_sim::signal::{Disturbance, Entry, Profile, Shape};
 use fspid_sim::{Course, LinearPlant, Plant, Scenario, Timing, Weather, fly};
 
 use super::drawn::{self, Dice};
-use super::flown::{quick, without_limits};
+use super::flown::{printed, quick, without_limits};
 
 /// Rounding of flights, as a share, and rad.
 const SHARE: f64 = 1.0 + 1e-9;
@@ -262,13 +261,7 @@ pub(crate) fn frozen_norm(certificate: &Certificate, gains: Gains<f64>) -> f64 {
     let description = &certificate.description;
     let model = description.enclosed().expect("enclosed").midpoint();
     let matrix = model.closed_matrix(gains).expect("a matrix");
-    let plant = PrintedPlant {
-        numerator: &description.numerator,
-        denominator: &description.denominator,
-        elevator_sign: description.elevator_sign,
-        lag: ActuatorLag::from(description.actuator.lag()),
-        dt_s: description.controller.config().dt_s,
-    };
+    let plant = printed(description);
     let entry = plant.driven(None).expect("driven");
     let (states, inputs) = (matrix.rows(), entry.columns());
     let at = |frequency: f64| {

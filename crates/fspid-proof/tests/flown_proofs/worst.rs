@@ -3,10 +3,11 @@
 
 use fspid_core::Gains;
 use fspid_lti::Matrix;
-use fspid_proof::check::{ActuatorLag, PrintedPlant};
 use fspid_proof::gain_set::IncrementMap;
 use fspid_proof::{Certificate, Claim, Disturbed, Extent, Quantity, Way};
 use fspid_sim::Controller;
+
+use super::flown::printed;
 
 /// Samples of a motion of the gains.
 pub(crate) const SAMPLES: usize = 600;
@@ -73,13 +74,7 @@ struct Along {
 fn along(certificate: &Certificate, gains: &[Gains<f64>], of: (&Way, Quantity)) -> Along {
     let ((way, quantity), description) = (of, &certificate.description);
     let model = description.enclosed().expect("enclosed").midpoint();
-    let plant = PrintedPlant {
-        numerator: &description.numerator,
-        denominator: &description.denominator,
-        elevator_sign: description.elevator_sign,
-        lag: ActuatorLag::from(description.actuator.lag()),
-        dt_s: description.controller.config().dt_s,
-    };
+    let plant = printed(description);
     let numerator = match way {
         Way::Elevator => None,
         Way::Air { numerator, .. } => Some(&numerator[..]),

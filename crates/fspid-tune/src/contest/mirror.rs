@@ -1,6 +1,6 @@
 //! Whether a case that is called the mirror image of another is one.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use fspid_scenario::file::{Setting, Template};
 use fspid_scenario::tuning::Contest as Rules;
@@ -40,12 +40,11 @@ fn unlike(here: &[Setting], there: &[Setting]) -> Vec<String> {
         all.iter().map(|it| (it.path.clone(), it.value.clone())).collect()
     };
     let (here, there) = (by_path(here), by_path(there));
-    let paths: std::collections::BTreeSet<&String> = here.keys().chain(there.keys()).collect();
+    let paths: BTreeSet<&String> = here.keys().chain(there.keys()).collect();
     let told = paths.into_iter().filter_map(|path| match (here.get(path), there.get(path)) {
         (Some(mine), Some(theirs)) if is_signed(path) => {
             let wanted = negated(theirs);
-            (negated(mine) != *theirs && *mine != wanted)
-                .then(|| format!("`{path}` is {mine}, its mirror image is {wanted}"))
+            (*mine != wanted).then(|| format!("`{path}` is {mine}, its mirror image is {wanted}"))
         }
         (Some(mine), Some(theirs)) => {
             (mine != theirs).then(|| format!("`{path}` is {mine} here and {theirs} there"))

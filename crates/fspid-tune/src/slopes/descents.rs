@@ -35,6 +35,12 @@ impl Counted {
         Self { slopes: 1, analyses, descents: 0 }
     }
 
+    /// True for what any search can have counted.
+    pub(super) fn is_sound(self) -> bool {
+        let Self { slopes, analyses, descents } = self;
+        [slopes, analyses, descents].iter().all(|it| *it <= MOST_COUNTED)
+    }
+
     /// In words: "320 are 80 slopes and 12 are 36 linear loops, in 3 descents".
     pub(crate) fn in_words(&self, flights: usize) -> String {
         let Self { slopes, analyses, descents } = self;
@@ -82,10 +88,9 @@ impl Descents {
     }
 
     pub(crate) fn is_sound(&self, dimension: usize) -> bool {
-        let Counted { slopes, analyses, descents } = self.counted;
         self.run.is_sound(dimension)
             && self.penalty.is_none_or(|it| it.is_finite() && it > 0.0)
-            && [slopes, analyses, descents].iter().all(|it| *it <= MOST_COUNTED)
+            && self.counted.is_sound()
     }
 
     /// The next candidate, the same until it is told.

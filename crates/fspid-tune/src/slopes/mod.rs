@@ -124,19 +124,27 @@ impl<'a> Differentiable<'a> {
 
     /// The slope of that merit; none where a flight has none.
     pub(crate) fn slope(&self, point: &[f64], weights: &Weights) -> Option<Found> {
-        let built = self.construction.built(self.problem.its_flights(), point)?;
+        self.slope_of(&self.built(point)?, point, weights)
+    }
+
+    fn built(&self, point: &[f64]) -> Option<Built> {
+        self.construction.built(self.problem.its_flights(), point)
+    }
+
+    /// The slope, of the controllers at that point.
+    fn slope_of(&self, built: &Built, point: &[f64], weights: &Weights) -> Option<Found> {
         let price = |job: usize, flown: &Flown, prepared: &Prepared| {
             (self.price(job, flown, prepared, weights), None)
         };
         let all: Vec<usize> = (0..self.jobs.len()).collect();
         let mut of_class = vec![vec![0.0; NUMBERS]; built.controllers.len()];
-        for Priced { job, gradient, .. } in self.priced(&built, &all, point, &price)? {
+        for Priced { job, gradient, .. } in self.priced(built, &all, point, &price)? {
             let sum = of_class[built.class[job]].iter_mut().zip(&gradient);
             sum.for_each(|(sum, more)| *sum += more);
         }
         let mut slope = vec![0.0; point.len()];
         for (class, gradient) in of_class.iter().enumerate() {
-            add_columns(&built, class, gradient, &mut slope);
+            add_columns(built, class, gradient, &mut slope);
         }
         let analyses = self.add_loops(point, weights, &mut slope)?;
         Some(Found { slope, analyses })

@@ -7,7 +7,9 @@ use fspid_study::judgement::{SlopeOf, Sloped, add_slopes};
 use rayon::prelude::*;
 
 use super::merit::excess;
-use super::{Counted, Differentiable, Job, LOOP_STEP, LoopMeasure, Weights, add_columns, is_of};
+use super::{
+    Built, Counted, Differentiable, Job, LOOP_STEP, LoopMeasure, Weights, add_columns, is_of,
+};
 use crate::score::FlightScore;
 
 /// A limit of a flight counts from so far within it, as a share of the limit; its slope costs no more for it.
@@ -56,11 +58,12 @@ impl Differentiable<'_> {
         flights: &[FlightScore],
         weights: &Weights,
     ) -> Option<Rows> {
-        let found = self.slope(point, weights)?;
+        let built = self.built(point)?;
+        let found = self.slope_of(&built, point, weights)?;
         let mut rows =
             Rows { cost: found.slope, limits: Vec::new(), ways_back: 1, analyses: found.analyses };
-        self.add_means(point, flights, weights, &mut rows)?;
-        self.add_flights(point, weights, &mut rows)?;
+        self.add_means((point, &built), flights, weights, &mut rows)?;
+        self.add_flights((point, &built), weights, &mut rows)?;
         self.add_near_loops(point, weights, &mut rows)?;
         Some(rows)
     }
@@ -85,7 +88,7 @@ impl Differentiable<'_> {
 
     fn add_means(
         &self,
-        point: &[f64],
+        (point, built): (&[f64], &Built),
         flights: &[FlightScore],
         weights: &Weights,
         rows: &mut Rows,
@@ -100,7 +103,7 @@ impl Differentiable<'_> {
             if !(excess > -NEAR) {
                 continue;
             }
-            let found = self.slope(point, &weights.of_limit(index, by))?;
+            let found = self.slope_of(built, point, &weights.of_limit(index, by))?;
             rows.ways_back += 1;
             rows.analyses += found.analyses;
             let (of, slope) = (Which::Mean(index), found.slope);
@@ -110,12 +113,16 @@ impl Differentiable<'_> {
     }
 
     /// Limits of flights: of each flight its first one together, then its second one, and so on.
-    fn add_flights(&self, point: &[f64], weights: &Weights, rows: &mut Rows) -> Option<()> {
+    fn add_flights(
+        &self,
+        (point, built): (&[f64], &Built),
+        weights: &Weights,
+        rows: &mut Rows,
+    ) -> Option<()> {
         let asked = |job: usize, number: usize| {
             let mut of_flight = self.jobs[job].asked.iter().filter(|it| is_of(it, SlopeOf::Flight));
             of_flight.nth(number)
         };
-        let built = self.construction.built(self.problem.its_flights(), point)?;
         for number in 0.. {
             let jobs: Vec<usize> =
                 (0..self.jobs.len()).filter(|job| asked(*job, number).is_some()).collect();
@@ -128,10 +135,10 @@ impl Differentiable<'_> {
                 })
             };
             rows.ways_back += 1;
-            for priced in self.priced(&built, &jobs, point, &price)? {
+            for priced in self.priced(built, &jobs, point, &price)? {
                 let Some(excess) = priced.value else { continue };
                 let mut slope = vec![0.0; point.len()];
-                add_columns(&built, built.class[priced.job], &priced.gradient, &mut slope);
+                add_columns(built, built.class[priced.job], &priced.gradient, &mut slope);
                 let of = Which::Flight(priced.job, number);
                 rows.limits.push(Row { of, excess, slope, share: weights.share(priced.job) });
             }

@@ -1,7 +1,7 @@
 //! Downhill with each limit by itself: sequential quadratic programmes within a region of trust, as plain data.
 //!
-//! A descent on one merit meets a corner at each limit that binds, and crawls where a hundred do. Here the slope of each
-//! limit is known, so that a step goes along all of them at once ([`programme`](super::programme)); it is taken if the merit
+//! The merit of a descent has a corner at each limit that binds. Here the slope of each limit is known, so that a step goes
+//! along all of them at once ([`programme`](super::programme)); it is taken if the merit
 //! falls by a part of what was predicted, and the region grows or shrinks by how well that was. Curvature is learned of the
 //! cost with what its limits hold back (Broyden, Fletcher, Goldfarb, Shanno, damped by Powell).
 //!
@@ -34,8 +34,6 @@ const SAVES: f64 = 1e-5;
 const SPREADS: [f64; 3] = [0.02, 0.05, 0.1];
 /// How far from the best candidate the last ones lie, for which slopes would cost more than is left.
 const LAST_SPREAD: f64 = 1e-3;
-/// More than any search counts.
-const MOST_COUNTED: usize = 1 << 28;
 
 /// Where a descent stands.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -119,7 +117,6 @@ impl Sequential {
                 && finite(&it.cost)
                 && it.held.iter().all(|(_, by, slope)| by.is_finite() && finite(slope))
         };
-        let Counted { slopes, analyses, descents } = self.counted;
         in_cube(&self.first)
             && self.here.as_ref().is_none_or(|it| in_cube(&it.point) && it.merit.is_finite())
             && self.asked.as_ref().is_none_or(|it| in_cube(&it.point) && taken(&it.taken))
@@ -129,7 +126,7 @@ impl Sequential {
             && self.penalty.is_none_or(|it| it.is_finite() && it > 0.0)
             && self.curvature.len() == dimension * dimension
             && self.curvature.iter().all(|it| it.is_finite())
-            && [slopes, analyses, descents].iter().all(|it| *it <= MOST_COUNTED)
+            && self.counted.is_sound()
     }
 
     /// What breaking a limit by all of itself costs; by the cost of the first candidate if none was flown.
@@ -222,9 +219,9 @@ impl Sequential {
             here.is_counted = true;
         }
         let taken = self.taken.take();
-        let learned = taken.map(|taken| changes(&taken, &rows));
+        let learned = taken.map(|taken| (change_of_slope(&taken, &rows), taken.by));
         here.rows = Some(rows);
-        if let Some((by, change)) = learned {
+        if let Some((change, by)) = learned {
             self.learn(&by, &change);
         }
         Some(())
@@ -303,9 +300,8 @@ impl Rows {
     }
 }
 
-/// A step, and what it changed of the slope of the cost with what its limits hold back: of limits that are known at both
-/// ends.
-fn changes(taken: &Taken, rows: &Rows) -> (Vec<f64>, Vec<f64>) {
+/// What a step changed of the slope of the cost with what its limits hold back: of limits that are known at both ends.
+fn change_of_slope(taken: &Taken, rows: &Rows) -> Vec<f64> {
     let mut change: Vec<f64> =
         rows.cost.iter().zip(&taken.cost).map(|(after, before)| after - before).collect();
     for (of, by, before) in &taken.held {
@@ -314,5 +310,5 @@ fn changes(taken: &Taken, rows: &Rows) -> (Vec<f64>, Vec<f64>) {
             *change += by * (after - before);
         }
     }
-    (taken.by.clone(), change)
+    change
 }

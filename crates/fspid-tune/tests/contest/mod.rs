@@ -3,6 +3,7 @@
 #![allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")]
 
 mod linear_aircraft;
+mod mirror;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -558,22 +559,6 @@ fn names_that_there_are_not_are_refused_where_they_stand() {
     let bare = format!("{LOOP}{MARKED}{TUNING}");
     let told = place(&bare).refused(&Options::default());
     assert!(told.contains("no [[contest.case]]"), "{told}");
-}
-
-/// Three shipped contests told a step of 5 deg as the mirror image of one of -1 deg.
-#[test]
-fn a_case_that_is_no_mirror_image_of_the_one_it_names_is_refused_with_what_differs() {
-    let told = |set: &str| {
-        let text = marked().replace("setpoint.amplitude_deg=-2.0", set);
-        place(&text).refused(&Options::default())
-    };
-    let unlike = told("setpoint.amplitude_deg=-1.0");
-    let wanted = "case \"-2 deg\" is no mirror image of \"2 deg\": `setpoint.amplitude_deg` is -1.0, its mirror image is -2.0; leave out mirror_of";
-    assert!(unlike.contains(wanted), "{unlike}");
-    let same = told("setpoint.amplitude_deg=2.0");
-    assert!(same.contains("`setpoint.amplitude_deg` is 2.0, its mirror image is -2.0"), "{same}");
-    let other = told("setpoint={kind='step', amplitude_deg=-2.0, at_s=3.0}");
-    assert!(other.contains("`setpoint.at_s` is 3.0 here and"), "{other}");
 }
 
 #[test]
