@@ -16,7 +16,8 @@ use fspid_sim::signal::{Disturbance, Entry, Profile, Shape};
 use fspid_sim::{Course, LinearPlant, Plant, Scenario, Timing, Weather, fly};
 
 use super::drawn::{self, Dice};
-use super::flown::{printed, quick, without_limits};
+use super::flown::{quick, without_limits};
+use super::worst::printed;
 
 /// Rounding of flights, as a share, and rad.
 const SHARE: f64 = 1.0 + 1e-9;

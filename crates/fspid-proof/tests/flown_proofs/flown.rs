@@ -3,24 +3,12 @@
 use std::ops::ControlFlow;
 
 use fspid_core::{AntiWindup, Fspid, Guard, Pid, PidConfig};
-use fspid_proof::check::{ActuatorLag, PrintedPlant};
 use fspid_proof::{
     Asked, Certificate, Effort, LoopDescription, NotProvable, Rechecked, Verdict, certify,
 };
 use fspid_sim::actuator::Actuator;
 use fspid_sim::signal::{Disturbance, Entry, Profile, Shape};
 use fspid_sim::{Controller, NamedController, Outcome, Scenario, Timing, fly};
-
-/// Plant and servo of a certificate, as it prints them.
-pub(crate) fn printed(description: &LoopDescription) -> PrintedPlant<'_> {
-    PrintedPlant {
-        numerator: &description.numerator,
-        denominator: &description.denominator,
-        elevator_sign: description.elevator_sign,
-        lag: ActuatorLag::from(description.actuator.lag()),
-        dt_s: description.controller.config().dt_s,
-    }
-}
 
 /// Time constants of the proved rate that are flown, and the most samples of a flight.
 const TIME_CONSTANTS: f64 = 20.0;

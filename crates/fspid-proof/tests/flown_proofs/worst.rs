@@ -3,11 +3,10 @@
 
 use fspid_core::Gains;
 use fspid_lti::Matrix;
+use fspid_proof::check::{ActuatorLag, PrintedPlant};
 use fspid_proof::gain_set::IncrementMap;
-use fspid_proof::{Certificate, Claim, Disturbed, Extent, Quantity, Way};
+use fspid_proof::{Certificate, Claim, Disturbed, Extent, LoopDescription, Quantity, Way};
 use fspid_sim::Controller;
-
-use super::flown::printed;
 
 /// Samples of a motion of the gains.
 pub(crate) const SAMPLES: usize = 600;
@@ -61,6 +60,17 @@ pub(crate) fn motion(
         }
     }
     gains
+}
+
+/// Plant and servo of a certificate, as it prints them.
+pub(crate) fn printed(description: &LoopDescription) -> PrintedPlant<'_> {
+    PrintedPlant {
+        numerator: &description.numerator,
+        denominator: &description.denominator,
+        elevator_sign: description.elevator_sign,
+        lag: ActuatorLag::from(description.actuator.lag()),
+        dt_s: description.controller.config().dt_s,
+    }
 }
 
 /// The loop along a motion of its gains: its matrix at each sample, what is seen there, and how the elevator enters.
