@@ -50,4 +50,4 @@ pub use prove::{
 pub use recheck::{Kept, RecheckError, Rechecked, Remains};
 pub use rest::NoRest;
 pub use scope::{Asked, LeftOut, Range, Scope};
-pub use steps::{Stepped, Steps, Terminal};
+pub use steps::{NearGains, Stepped, Steps, Terminal};

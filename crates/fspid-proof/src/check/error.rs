@@ -71,6 +71,11 @@ pub enum NotProved {
         /// The limit.
         limit: f64,
     },
+    /// Gains that remember, which may leave the box that is claimed near rest.
+    #[error(
+        "gains that remember are not shown to stay in the box that is claimed near rest, or it is not within their limits"
+    )]
+    NotKept,
     /// A number that is not allowed.
     #[error("{what} is {found:?}; allowed is {allowed}")]
     Number {

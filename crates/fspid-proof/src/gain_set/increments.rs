@@ -20,7 +20,7 @@ use crate::solve::never;
 /// fires to one half: $400 \epsilon$ of the range. Corners of triangles that are rounded add
 /// $500 \epsilon$; grades that are, where a cell is enclosed by its slopes, $300 \epsilon$. The
 /// places of samples, with at least [`FEWEST_CELLS`] between them, would add $2000 \epsilon$.
-const ROUNDING: f64 = 1.0 / (1_u64 << 40) as f64;
+pub(super) const ROUNDING: f64 = 1.0 / (1_u64 << 40) as f64;
 /// What each sample of a sampled centroid adds to [`ROUNDING`]: two roundings of sums up to the
 /// range.
 const ROUNDING_PER_SAMPLE: f64 = 1.0 / (1_u64 << 50) as f64;

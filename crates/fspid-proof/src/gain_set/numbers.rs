@@ -79,7 +79,7 @@ impl Numbers<'_> {
         places
     }
 
-    fn at(
+    pub(super) fn at(
         &self,
         output: Output,
         (row, down): (usize, Interval),

@@ -21,7 +21,7 @@ use crate::nonlinear::{CheckedNonlinear, NonlinearError};
 use crate::rest::{NoRest, Rest};
 use crate::sizes::{self, WrongSizes};
 use crate::solve::never;
-use crate::steps::{Stepped, corners_within};
+use crate::steps::{Stepped, Terminal, corners_within};
 
 pub(crate) use disturbed::DrivenLoop;
 pub(crate) use moving::{Corner, moved_inputs, part_in};
@@ -285,12 +285,8 @@ impl<'a> Recheck<'a> {
     }
 
     /// Proves that a form decreases, and that no limit acts, for all gains that there are within its level.
-    fn holds_near_rest(&self) -> Result<(), RecheckError> {
-        let (Claim::CommonQuadratic { form, rate }, Some(level)) =
-            (&self.certificate.claim, self.certificate.level)
-        else {
-            return Err(malformed("steps: no form near rest"));
-        };
+    fn holds_near_rest(&self, terminal: &Terminal) -> Result<(), RecheckError> {
+        let Terminal { form, rate, .. } = terminal;
         let description = &self.certificate.description;
         if let Some(what) = limits::not_covered(description) {
             return Err(malformed(what));
@@ -299,7 +295,7 @@ impl<'a> Recheck<'a> {
         if !(*rate < 1.0) || self.off_rad > 0.0 || self.is_blurred() {
             return Err(malformed("steps: near rest something remains"));
         }
-        for corner in corners_within(description, &self.model, &self.held, (form, level))? {
+        for corner in corners_within(description, &self.model, &self.held, terminal)? {
             self.holds(corner, form, *rate, None)?;
         }
         Ok(())
@@ -314,7 +310,7 @@ impl<'a> Recheck<'a> {
         let near_rest = steps.near_rest(self.certificate);
         let known = KnownSlopes::default();
         let near = Recheck::with(&near_rest, self.model.clone(), self.set.clone(), &known)?;
-        near.until(self.stops).holds_near_rest()?;
+        near.until(self.stops).holds_near_rest(&steps.terminal)?;
         let stepped = steps.proved(self.certificate, &self.model, &self.set, self.stops);
         stepped.map(Some).map_err(malformed)
     }

@@ -130,6 +130,38 @@ impl Affine {
         Self::sum([(Interval::ONE, self), (Interval::ONE, other)])
     }
 
+    /// The linear part of $x y$, and how far the product may be from it.
+    ///
+    /// With $x = c + \sum p_j \xi_j$ and $y = d + \sum q_j \xi_j$ the linear part is $c d + \sum (c q_j + d p_j) \xi_j$, and
+    /// what is left at most $\sum |p_j| \sum |q_j|$. What the ball adds to y is multiplied by everything that x may be; x has
+    /// none of its own.
+    pub(super) fn product(&self, other: &Self) -> (Self, f64) {
+        let [of_self, of_other] = [self.spread(), other.spread()];
+        let mut linear = Self { centre: self.centre * other.centre, ..Self::default() };
+        linear.parts.resize(self.parts.len().max(other.parts.len()), 0.0);
+        for (place, part) in linear.parts.iter_mut().enumerate() {
+            let at = |parts: &[f64]| parts.get(place).copied().unwrap_or(0.0);
+            *part = self.centre * at(&other.parts) + other.centre * at(&self.parts);
+        }
+        let [own, theirs] = [self.centre.abs(), other.centre.abs()];
+        let sizes = raised(own * theirs + own * of_other + theirs * of_self, 6);
+        let tiny = f64::MIN_POSITIVE * (linear.parts.len() as f64 + 1.0);
+        let off = raised(own + of_self + self.off, 3) * other.off
+            + raised(theirs + of_other, 2) * self.off
+            + 4.0 * ROUNDING * sizes;
+        linear.off = raised(off + tiny, 6);
+        let most = raised(own + of_self + self.off, 3);
+        linear.of_ball = if other.of_ball > 0.0 { raised(most * other.of_ball, 2) } else { 0.0 };
+        (linear, raised(of_self * of_other, 2))
+    }
+
+    /// The same with what the ball adds as its own.
+    pub(super) fn owned(mut self) -> Self {
+        self.off = raised(self.off + self.of_ball, 2);
+        self.of_ball = 0.0;
+        self
+    }
+
     /// $a x$.
     pub(super) fn times(&self, factor: Interval) -> Self {
         Self::sum([(factor, self)])

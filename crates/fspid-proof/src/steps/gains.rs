@@ -63,6 +63,18 @@ pub(super) struct Between {
     pub(super) radius: [f64; 3],
 }
 
+impl Between {
+    /// All of a box.
+    pub(super) fn holding(bounds: [Interval; 3]) -> Self {
+        around(bounds.map(Interval::midpoint), bounds)
+    }
+
+    /// True where a gain may be zero.
+    pub(super) fn may_be_zero(&self, gain: usize) -> bool {
+        self.radius[gain] >= self.middle[gain].abs()
+    }
+}
+
 impl<'a> SeenGains<'a> {
     pub(super) fn of(
         set: &GainSet,
@@ -91,6 +103,11 @@ impl<'a> SeenGains<'a> {
         if let Some(over) = &self.over {
             over.borrow_mut().last = None;
         }
+    }
+
+    /// Bounds of the gains at rest.
+    pub(super) fn rest(&self) -> [Interval; 3] {
+        self.rest
     }
 
     /// The gains at rest.

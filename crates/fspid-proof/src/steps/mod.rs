@@ -15,10 +15,12 @@ mod near;
 mod sample;
 mod servo;
 mod terminal;
+mod tuned;
 #[cfg(test)]
 mod tests;
 
-use fspid_core::{IntegralForm, Law};
+use fspid_core::{Fspid, IntegralForm, Law, SelfTuner};
+use fspid_fuzzy::Output;
 use fspid_fuzzy::system::System;
 use fspid_numeric::scalar::Interval;
 use fspid_sim::Controller;
@@ -34,10 +36,11 @@ use flights::{Landed, Patch, Ready};
 use near::system;
 use sample::{Moment, Stop};
 use terminal::NearRest;
+use tuned::Tuner;
 
 pub(crate) use near::corners_within;
 
-pub use terminal::Terminal;
+pub use terminal::{NearGains, Terminal};
 
 /// Longest flight of a set, s, and in samples.
 const LONGEST_S: f64 = 400.0;
@@ -46,6 +49,8 @@ const MOST_SAMPLES: usize = 40_000;
 /// seconds. A search may take so many times as much.
 const MOST_CHECKED: usize = 280_000;
 const MOVING: usize = 6;
+/// The same where they remember: some dozens of sets of half a minute, each of them flown with hundreds of unknowns.
+const MOST_REMEMBERED: usize = 16 * MOST_CHECKED;
 const SEARCHED: usize = 6;
 /// Most boxes along the set-points.
 pub const MOST_PIECES: usize = 4096;
@@ -57,7 +62,8 @@ const NARROWEST: f64 = 1.0 / 2048.0;
 /// Steps from rest that end at their set-point, limits acting on the way.
 ///
 /// From rest at the trim without a load, a step of the set-point by up to `setpoint_rad` and at the same sample one of a load
-/// at the elevator by up to `load_rad`, either way, both of which then stay.
+/// at the elevator by up to `load_rad`, either way, both of which then stay. Gains that remember begin at the nominal ones, or
+/// at those that a long rest has brought them to ([`Stepped::rested_s`]).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Steps {
     /// Largest step, rad.
@@ -85,6 +91,9 @@ pub struct Stepped {
     pub settled_s: f64,
     /// In some flight a limit may act.
     pub limited: bool,
+    /// Of gains that remember, how long a rest has to last before a step that is not at the controller's first sample, s: they
+    /// are then at those of rest, but for a thousandth of the way.
+    pub rested_s: Option<f64>,
 }
 
 /// Why nothing is claimed of steps.
@@ -99,18 +108,42 @@ pub(crate) fn not_covered(description: &LoopDescription) -> Option<&'static str>
         return Some("the literal integral is not flown in sets");
     }
     if let Controller::SelfTuning(fspid) = &description.controller {
-        let tuner = fspid.tuner();
-        if !tuner.is_plain() {
-            return Some(
-                "a supervisor that is a network or whose rules conclude numbers, that sees something else than error and change, through sets that are not even, or whose gains something follows is not flown in sets",
-            );
-        }
-        // What they reach is no box, and the middle of a box need be none of them.
-        if tuner.settings().law != Law::Memoryless {
-            return Some("gains that remember are not flown in sets");
-        }
+        return not_flown(fspid);
     }
     None
+}
+
+/// What of a self-tuner is not flown in sets.
+fn not_flown(fspid: &Fspid<f64>) -> Option<&'static str> {
+    let tuner = fspid.tuner();
+    if tuner.settings().law == Law::Memoryless {
+        return (!tuner.is_plain()).then_some(
+            "gains that jump by a supervisor that is a network or whose rules conclude numbers, that sees something else than error and change, through sets that are not even, or whose gains something follows are not flown in sets",
+        );
+    }
+    if Tuner::of(fspid).is_none() {
+        return Some(
+            "gains that remember are flown in sets where they leak, by rules that conclude numbers, refuse no input and have no dead zone, and see the change of the error or the error of a model",
+        );
+    }
+    // Rest then depends on the gains, which come to theirs as late as they like.
+    let weight = fspid.config().setpoint_weights.proportional;
+    let holds = weight.to_bits() != 1.0_f64.to_bits()
+        || tuner.settings().gain_coupling.setpoint_weight != 0.0;
+    holds.then_some(
+        "gains that remember and move what holds a set-point, by a set-point weight that is not 1, are not flown in sets; `feedforward` holds it beside them",
+    )
+}
+
+/// Most work of a re-check.
+fn most_checked(description: &LoopDescription) -> usize {
+    if remembers(description) { MOST_REMEMBERED } else { MOST_CHECKED }
+}
+
+/// True for a self-tuner whose gains remember.
+fn remembers(description: &LoopDescription) -> bool {
+    let Controller::SelfTuning(fspid) = &description.controller else { return false };
+    fspid.tuner().settings().law != Law::Memoryless
 }
 
 /// True where a load moves the pitch rate at once, and the controller sees it: it is not said whether before or after.
@@ -126,8 +159,12 @@ fn is_elsewhere(description: &LoopDescription, rest: &Rest) -> bool {
 
 /// True where a flight to the other side is the mirror image: then one side is flown.
 fn is_odd(description: &LoopDescription) -> bool {
-    let Controller::Fixed(pid) = &description.controller else { return false };
-    let config = pid.config();
+    let config = description.controller.config();
+    if let Controller::SelfTuning(fspid) = &description.controller
+        && !Tuner::of(fspid).is_some_and(|_| answers_evenly(fspid.tuner()))
+    {
+        return false;
+    }
     let even =
         |ends: Option<(f64, f64)>| ends.is_none_or(|(least, most)| (least + most).abs() <= 0.0);
     let clamps = match &config.anti_windup {
@@ -139,12 +176,22 @@ fn is_odd(description: &LoopDescription) -> bool {
     [clamps, output, actuator.command_limits_rad(), actuator.travel_rad()].into_iter().all(even)
 }
 
+/// True where rules that conclude numbers answer the same to inputs of the other sign.
+fn answers_evenly(tuner: &SelfTuner<f64>) -> bool {
+    let Some(table) = tuner.supervisor().numbers() else { return false };
+    Output::ALL.into_iter().all(|output| {
+        let numbers: Vec<u64> =
+            table.grid(output).iter().flatten().map(|number| (number + 0.0).to_bits()).collect();
+        numbers.iter().eq(numbers.iter().rev())
+    })
+}
+
 /// A form that falls for all gains, for the ball around what is told apart: that of the claim, where it is one for all gains
 /// and has a rate. Gains that stand still are those near rest.
 fn common(certificate: &Certificate, terminal: &Terminal) -> Terminal {
     match (&certificate.claim, &certificate.description.controller) {
         (Claim::CommonQuadratic { form, rate }, Controller::SelfTuning(_)) if *rate < 1.0 => {
-            Terminal { form: form.clone(), rate: *rate, level: terminal.level }
+            Terminal { form: form.clone(), rate: *rate, ..terminal.clone() }
         }
         _ => terminal.clone(),
     }
@@ -175,7 +222,7 @@ impl<'a> Flights<'a> {
         let dt_s = description.controller.config().dt_s;
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
         let longest = ((LONGEST_S / dt_s) as usize).min(MOST_SAMPLES);
-        let (flown, most) = (0, MOST_CHECKED);
+        let (flown, most) = (0, most_checked(description));
         let each = match &description.controller {
             Controller::Fixed(_) => 1,
             Controller::SelfTuning(_) => MOVING,
@@ -246,6 +293,8 @@ impl Steps {
     ) -> Option<Self> {
         let description = &certificate.description;
         let Range { setpoint_rad, load_rad } = certificate.range;
+        // Sets of both are as many as those of one times those of the other; gains that remember need narrow ones.
+        let load_rad = if remembers(description) { 0.0 } else { load_rad };
         let limited = !description.limits().is_empty();
         if not_covered(description).is_some() || !limited || !(setpoint_rad > 0.0) {
             return None;
@@ -260,9 +309,10 @@ impl Steps {
         let common = common(certificate, &terminal);
         let forms = [&terminal, &common];
         let mut flights = Flights::of(description, model, set, forms, system.as_ref())?;
-        (flights.stops, flights.most) = (stops, SEARCHED * MOST_CHECKED / 2);
+        let most_checked = most_checked(description);
+        (flights.stops, flights.most) = (stops, SEARCHED * most_checked / 2);
         let odd = is_odd(description);
-        let allowed = if odd { MOST_CHECKED } else { MOST_CHECKED / 2 };
+        let allowed = if odd { most_checked } else { most_checked / 2 };
         let loads = if load_rad > 0.0 { 2 } else { 1 };
         let up = flights.side(setpoint_rad, load_rad, loads, allowed);
         let reached = up.last().copied().unwrap_or(0.0);
@@ -330,6 +380,7 @@ impl Steps {
             sets,
             settled_s: worst.samples as f64 * dt_s,
             limited: worst.limited,
+            rested_s: flights.ready.rests_s(),
         })
     }
 
@@ -354,7 +405,7 @@ impl Steps {
 
     /// The claim that the form near rest is checked as.
     pub(crate) fn near_rest(&self, certificate: &Certificate) -> Certificate {
-        let Terminal { form, rate, level } = &self.terminal;
+        let Terminal { form, rate, level, gains: _ } = &self.terminal;
         Certificate {
             claim: Claim::CommonQuadratic { form: form.clone(), rate: *rate },
             level: Some(*level),

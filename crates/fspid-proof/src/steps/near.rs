@@ -1,8 +1,7 @@
 //! The gains that a loop can have near rest.
 
-use fspid_core::Fspid;
+use fspid_core::{Fspid, Gains};
 use fspid_fuzzy::system::System;
-use fspid_lti::Matrix;
 use fspid_numeric::scalar::Interval;
 use fspid_sim::Controller;
 use fspid_sim::loop_model::LoopModel;
@@ -12,24 +11,39 @@ use crate::description::LoopDescription;
 use crate::gain_set::{GainSet, GainsOver, HeldGains};
 use crate::recheck::input_rows;
 
+use super::terminal::Terminal;
+use super::tuned::{Tuner, corners};
+
 /// The rules of a self-tuner, made ready to be enclosed.
 pub(super) fn system(description: &LoopDescription) -> Option<System> {
     let Controller::SelfTuning(fspid) = &description.controller else { return None };
     System::new(fspid_fuzzy::system::Parts::try_from(fspid.tuner().supervisor()).ok()?).ok()
 }
 
-/// Corners of all gains that the controller can have in the ellipsoid $z^T P z \le$ `level` around rest.
+/// Corners of all gains that the controller can have in the ellipsoid $z^T P z \le$ `level` around rest, where they remember
+/// in the box that is claimed.
 ///
 /// `held` is the set of all gains, with what they make of the command that is held.
 pub(crate) fn corners_within(
     description: &LoopDescription,
     model: &LoopModel<Interval>,
     held: &GainSet,
-    (form, level): (&Matrix, f64),
+    terminal: &Terminal,
 ) -> Result<Vec<HeldGains>, NotProved> {
+    let Terminal { form, level, .. } = terminal;
+    let level = *level;
     let Controller::SelfTuning(fspid) = &description.controller else {
         return Ok(held.held_corners().map(|(_, corner)| corner).collect());
     };
+    if let Some(near) = &terminal.gains {
+        let tuner = Tuner::of(fspid).ok_or(NotProved::NotKept)?;
+        let seen = seen_within(&tuner, model, terminal)?;
+        let bounds = near.bounds();
+        if !(near.model_rad >= 0.0) || !tuner.keeps(bounds, seen) {
+            return Err(NotProved::NotKept);
+        }
+        return Ok(corners(bounds).map(plain).collect());
+    }
     let [error, change] = input_rows(model, fspid);
     let within = [reach(form, level, &error)?, reach(form, level, &change)?];
     let inputs = within.map(|most| Interval::between(-most, most));
@@ -67,7 +81,33 @@ fn boxed(gains: [Interval; 3]) -> Vec<HeldGains> {
     };
     let corner = |corner: usize| {
         let [kp, ki, kd] = [0, 1, 2].map(|gain| end(corner, gain));
-        HeldGains { gains: fspid_core::Gains { kp, ki, kd }, change_gain: 0.0, remembered: None }
+        plain(Gains { kp, ki, kd })
     };
     (0..8).map(corner).collect()
+}
+
+/// Gains that make nothing of a held command.
+fn plain(gains: Gains<f64>) -> HeldGains {
+    HeldGains { gains, change_gain: 0.0, remembered: None }
+}
+
+/// Most of the error, rad, and of what a supervisor sees beside it, in the ellipsoid around rest.
+pub(super) fn seen_within(
+    tuner: &Tuner<'_>,
+    model: &LoopModel<Interval>,
+    terminal: &Terminal,
+) -> Result<[f64; 2], NotProved> {
+    let Terminal { form, level, gains, .. } = terminal;
+    let [error, change] = model.error_rows();
+    let error_rad = reach(form, *level, &error)?;
+    let model_rad = gains.map_or(0.0, |near| near.model_rad);
+    let second = match tuner.change_divisor() {
+        Some(divisor) => {
+            let most = Interval::point(reach(form, *level, &change)?) / Interval::point(divisor);
+            most.upper()
+        }
+        // The model is off its set-point, and the pitch angle off its own.
+        None => (Interval::point(error_rad) + Interval::point(model_rad)).upper(),
+    };
+    Ok([error_rad, second])
 }

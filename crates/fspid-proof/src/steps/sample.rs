@@ -5,11 +5,13 @@
 
 use fspid_core::{AntiWindup, PidConfig};
 use fspid_numeric::scalar::Interval;
+use fspid_sim::loop_model::Followers;
 
 use super::affine::{Affine, raised};
 use super::cut::Line;
 use super::gains::{Between, SeenGains};
 use super::servo::Curve;
+use super::tuned::{Shown, Tuned, Tuner};
 
 /// Where something may be cut: what the command becomes, what the integral takes of the error, what the servo makes of what
 /// arrives, and how fast it runs.
@@ -52,6 +54,9 @@ pub(super) struct Flown<'a> {
     pub(super) rate: Row,
     pub(super) config: PidConfig<f64>,
     pub(super) gains: SeenGains<'a>,
+    /// Of a law that remembers.
+    pub(super) tuner: Option<Tuner<'a>>,
+    pub(super) followers: Followers,
     pub(super) curve: Option<Curve>,
     /// Limits of the command that arrives, rad.
     pub(super) arriving: Option<(f64, f64)>,
@@ -71,6 +76,8 @@ pub(super) struct Flight {
     pub(super) last: Affine,
     pub(super) setpoint: Affine,
     pub(super) load: Affine,
+    /// What a tuner remembers.
+    pub(super) tuned: Option<Tuned>,
     /// Radius, in the norm of the form, of what is beside the values.
     pub(super) ball: f64,
     /// Unknowns so far.
@@ -144,6 +151,8 @@ struct Seen {
     error: Affine,
     derivative: Option<Affine>,
     gains: Between,
+    /// What a tuner remembers of this sample, and the gains that answer it.
+    tuned: Option<Tuned>,
 }
 
 /// What the controller answers.
@@ -176,7 +185,12 @@ impl Pass<'_, '_> {
         values.extend(integral.filter(|_| layout.integral.is_some()));
         values.extend(seen.derivative.clone().filter(|_| layout.derivative.is_some()));
         values.extend(layout.previous.map(|_| seen.pitch.times(-Interval::ONE)));
-        let known = values.iter().chain([&command]).all(|value| value.magnitude().is_finite());
+        let remembered = seen.tuned.iter().flat_map(Tuned::each);
+        let known = values
+            .iter()
+            .chain([&command])
+            .chain(remembered)
+            .all(|value| value.magnitude().is_finite());
         if !known || values.len() != layout.size {
             return Err(Stop::Lost);
         }
@@ -186,6 +200,7 @@ impl Pass<'_, '_> {
             last: command,
             setpoint: self.now.setpoint.clone(),
             load: self.now.load.clone(),
+            tuned: seen.tuned,
             ball: self.now.ball,
             symbols: self.symbols,
             limited: self.now.limited || cut,
@@ -256,9 +271,29 @@ impl Pass<'_, '_> {
                 (change.clone(), change)
             }
         };
-        let gains = match self.judge {
-            Judge::Forced(_, gains) => gains,
-            Judge::Measured => gains.seen(error.range(), of_error.range()).ok_or(Stop::Lost)?,
+        let shown = Shown {
+            error: &error,
+            change: &of_error,
+            pitch: &pitch,
+            setpoint: &self.now.setpoint,
+        };
+        let tuned = match (self.judge, &self.flown.tuner, &self.now.tuned) {
+            (Judge::Measured, Some(tuner), Some(now)) => {
+                let symbols = &mut self.symbols;
+                let mut symbol = || {
+                    *symbols += 1;
+                    *symbols - 1
+                };
+                Some(tuner.after(now, &shown, &mut symbol))
+            }
+            _ => None,
+        };
+        let gains = match (self.judge, &self.flown.tuner, &tuned) {
+            (Judge::Forced(_, gains), ..) => gains,
+            (Judge::Measured, Some(tuner), Some(tuned)) => Between::holding(tuner.ranges(tuned)),
+            (Judge::Measured, ..) => {
+                gains.seen(error.range(), of_error.range()).ok_or(Stop::Lost)?
+            }
         };
         let derivative = layout.previous.map(|_| {
             let filter = point(config.derivative.filter_s);
@@ -266,17 +301,44 @@ impl Pass<'_, '_> {
             let before = layout.derivative.map(|place| self.state(place)).unwrap_or_default();
             Affine::sum([(filter * over, &before), (over, &of_derivative)])
         });
-        Ok(Seen { pitch, rate, error, derivative, gains })
+        Ok(Seen { pitch, rate, error, derivative, gains, tuned })
+    }
+
+    /// What a gain makes of a number: the linear part, and how far it may be from that.
+    fn multiplied(&self, seen: &Seen, gain: usize, of: &Affine) -> (Affine, f64) {
+        if let Some(tuned) = &seen.tuned {
+            return tuned.gains[gain].product(of);
+        }
+        let Between { middle, radius } = seen.gains;
+        (of.times(point(middle[gain])), raised(radius[gain] * of.magnitude(), 2))
+    }
+
+    /// The same of the rate gain, which may follow kd.
+    fn damped(&self, seen: &Seen) -> (Affine, f64) {
+        let Followers { coupling, nominal } = self.flown.followers;
+        let base = point(self.flown.config.rate_gain_s);
+        let follows = point(coupling.rate_gain);
+        if follows.magnitude() == 0.0 {
+            return (seen.rate.times(base), 0.0);
+        }
+        let base = base - follows * point(nominal.kd);
+        if let Some(tuned) = &seen.tuned {
+            let constant = Affine::constant(base);
+            let gain = Affine::sum([(Interval::ONE, &constant), (follows, &tuned.gains[2])]);
+            return gain.product(&seen.rate);
+        }
+        let Between { middle: [.., kd], radius: [.., off_kd] } = seen.gains;
+        let most = follows.magnitude() * off_kd * seen.rate.magnitude();
+        (seen.rate.times(base + follows * point(kd)), raised(most, 3))
     }
 
     fn answered(&mut self, seen: &Seen) -> Result<Answered, Stop> {
         let config = &self.flown.config;
         let dt_s = point(config.dt_s);
-        let Between { middle: [kp, ki, kd], radius: [off_kp, off_ki, off_kd] } = seen.gains;
         let before = self.flown.layout.integral.map(|place| self.state(place));
-        let mut added = seen.error.times(point(ki) * dt_s);
-        if off_ki > 0.0 && before.is_some() {
-            let most = raised(off_ki * config.dt_s * seen.error.magnitude(), 4);
+        let (added, most) = self.multiplied(seen, 1, &seen.error);
+        let (mut added, most) = (added.times(dt_s), raised(most * config.dt_s, 2));
+        if most > 0.0 && before.is_some() {
             let symbol = self.symbol();
             added = added.and_noise(most, symbol);
         }
@@ -288,16 +350,20 @@ impl Pass<'_, '_> {
         }
         let weight = point(config.setpoint_weights.proportional);
         let driven = Affine::sum([(weight, &self.now.setpoint), (-Interval::ONE, &seen.pitch)]);
+        let nothing = Affine::default();
+        let (proportional, by_kp) = self.multiplied(seen, 0, &driven);
+        let (damping, by_rate) = self.damped(seen);
+        let derivative = seen.derivative.as_ref().unwrap_or(&nothing);
+        let (derivative, by_kd) = self.multiplied(seen, 2, derivative);
         let mut free = Affine::sum([
-            (point(kp), &driven),
-            (point(-config.rate_gain_s), &seen.rate),
+            (Interval::ONE, &proportional),
+            (-Interval::ONE, &damping),
             (point(config.feedforward), &self.now.setpoint),
-            (Interval::ONE, term.as_ref().unwrap_or(&Affine::default())),
-            (point(kd), seen.derivative.as_ref().unwrap_or(&Affine::default())),
+            (Interval::ONE, term.as_ref().unwrap_or(&nothing)),
+            (Interval::ONE, &derivative),
         ]);
-        let by_kd = seen.derivative.as_ref().map_or(0.0, |d| off_kd * d.magnitude());
-        let most = raised(off_kp * driven.magnitude() + by_kd, 6);
-        if off_kp > 0.0 || off_kd > 0.0 {
+        let most = raised(by_kp + by_kd + by_rate, 4);
+        if by_kp > 0.0 || by_kd > 0.0 || by_rate > 0.0 {
             let symbol = self.symbol();
             free = free.and_noise(most, symbol);
         }
@@ -312,7 +378,7 @@ impl Pass<'_, '_> {
             (AntiWindup::BackCalculation { tracking_s }, Some(wound), _) => match excess {
                 None => Some(wound),
                 // Nothing is pulled while the gain is zero.
-                Some(_) if off_ki >= ki.abs() => return Err(Stop::Lost),
+                Some(_) if seen.gains.may_be_zero(1) => return Err(Stop::Lost),
                 Some(excess) => {
                     let share = dt_s / point(*tracking_s);
                     Some(Affine::sum([(Interval::ONE, &wound), (-share, &excess)]))

@@ -13,16 +13,19 @@
 use fspid_core::Gains;
 use fspid_lti::Matrix;
 use fspid_numeric::scalar::Interval;
+use fspid_sim::Controller;
 use fspid_sim::loop_model::LoopModel;
 
-use crate::certificate::Certificate;
+use crate::certificate::{Certificate, Claim};
 use crate::check::{IntervalMatrix, decreases};
 use crate::gain_set::{GainSet, HeldGains};
 use crate::limits;
 use crate::rest::Rest;
 use crate::solve;
 
-use super::near::corners_within;
+use super::flights::around;
+use super::near::{corners_within, seen_within};
+use super::tuned::Tuner;
 
 /// Part of the way from the slowest mode to 1 at which the form still decreases.
 const SLOWER: f64 = 0.5;
@@ -32,6 +35,12 @@ const REGULAR: f64 = 1e-9;
 const WEIGHTS: [f64; 6] = [0.0, 0.01, 0.1, 1.0, 10.0, 100.0];
 /// Levels are tried so many times, each a quarter of the one before.
 const QUARTERS: i32 = 9;
+/// Gains that remember may be off those at rest by such shares of all of them, the widest first.
+const ROOMS: [f64; 6] = [1.0, 0.5, 0.25, 0.1, 0.04, 0.016];
+/// Of the widest ellipsoid that is found one with more room may have so much.
+const ENOUGH: f64 = 0.4;
+/// Of the largest error near rest the reference model may still be off so much.
+const MODEL: f64 = 0.25;
 
 /// A form near rest.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,6 +51,24 @@ pub struct Terminal {
     pub rate: f64,
     /// c.
     pub level: f64,
+    /// Of gains that remember, where they have to be.
+    pub gains: Option<NearGains>,
+}
+
+/// Gains near rest that remember, and what has become of their reference model.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NearGains {
+    /// Least and most of kp, ki and kd: a box that they stay in.
+    pub gains: [[f64; 2]; 3],
+    /// Most that the reference model is off the set-point from then on, rad; 0 without one.
+    pub model_rad: f64,
+}
+
+impl NearGains {
+    /// The box; nothing lies in one whose ends are not in order.
+    pub(crate) fn bounds(&self) -> [Interval; 3] {
+        self.gains.map(|[least, most]| Interval::new(least, most).unwrap_or(Interval::ZERO))
+    }
 }
 
 /// A loop of which a form near rest is looked for.
@@ -56,12 +83,41 @@ pub(super) struct NearRest<'a> {
 impl NearRest<'_> {
     /// The form with the largest ellipsoid that is found.
     pub(super) fn found(&self) -> Option<Terminal> {
+        let Controller::SelfTuning(fspid) = &self.certificate.description.controller else {
+            return self.largest(None).map(|(_, terminal)| terminal);
+        };
+        let Some(tuner) = Tuner::of(fspid) else {
+            return self.largest(None).map(|(_, terminal)| terminal);
+        };
+        // The more gains may still be off those at rest, the earlier a flight is near; and the smaller is what is near.
+        let found = ROOMS.into_iter().filter_map(|room| self.largest(Some((&tuner, room))));
+        let found: Vec<(f64, Terminal)> = self.own(&tuner).into_iter().chain(found).collect();
+        let widest = found.iter().map(|(within, _)| *within).fold(0.0, f64::max);
+        found.into_iter().find(|(within, _)| *within >= ENOUGH * widest).map(|(_, it)| it)
+    }
+
+    /// The claim's own form, where it is one for all gains and has a rate.
+    fn own(&self, tuner: &Tuner<'_>) -> Option<(f64, Terminal)> {
+        let (Claim::CommonQuadratic { form, rate }, Some(level)) =
+            (&self.certificate.claim, self.certificate.level)
+        else {
+            return None;
+        };
+        let plain = Terminal { form: form.clone(), rate: *rate, level, gains: None };
+        let terminal = self.with_gains(tuner, 1.0, plain)?;
+        let within = limits::pitch_within(self.enclosed, form, level)?;
+        (*rate < 1.0 && self.holds(&terminal)).then_some((within, terminal))
+    }
+
+    /// The form with the largest ellipsoid, and how far the pitch angle may be off in it, rad; with gains that remember
+    /// within a share of all of them, around those at rest.
+    fn largest(&self, remembered: Option<(&Tuner<'_>, f64)>) -> Option<(f64, Terminal)> {
         let [kp, ki, kd] = self.held.rest.map(Interval::midpoint);
         let gains = Gains { kp, ki, kd };
         let model = self.enclosed.midpoint();
         let mut best: Option<(f64, Terminal)> = None;
         for weight in WEIGHTS {
-            let Some(terminal) = self.weighted(&model, gains, weight) else { continue };
+            let Some(terminal) = self.weighted(&model, gains, weight, remembered) else { continue };
             // Compared by how far the pitch angle may be off.
             let within = limits::pitch_within(self.enclosed, &terminal.form, terminal.level);
             let within = within.unwrap_or(0.0);
@@ -69,11 +125,16 @@ impl NearRest<'_> {
                 best = Some((within, terminal));
             }
         }
-        best.map(|(_, terminal)| terminal)
+        best
     }
 
-    fn weighted(&self, model: &LoopModel<f64>, gains: Gains<f64>, weight: f64) -> Option<Terminal> {
-        let description = &self.certificate.description;
+    fn weighted(
+        &self,
+        model: &LoopModel<f64>,
+        gains: Gains<f64>,
+        weight: f64,
+        remembered: Option<(&Tuner<'_>, f64)>,
+    ) -> Option<Terminal> {        let description = &self.certificate.description;
         let matrix = model.closed_matrix(gains).ok()?;
         let radius = fspid_lti::spectral_radius(&matrix).ok()?;
         let rate = radius + SLOWER * (1.0 - radius);
@@ -110,16 +171,43 @@ impl NearRest<'_> {
         let corner = HeldGains { gains, change_gain: 0.0, remembered: None };
         let most = limits::level(description, model, &[corner], &form, self.rest)?;
         let levels = (0..QUARTERS).map(|quarter| most * 0.95 * libm::ldexp(1.0, -2 * quarter));
-        let mut levels = levels.filter(|level| self.holds(&form, rate, *level));
         (rate < 1.0).then_some(())?;
-        let level = levels.next()?;
-        Some(Terminal { form, rate, level })
+        let terminals = levels.filter_map(|level| {
+            let plain = Terminal { form: form.clone(), rate, level, gains: None };
+            match remembered {
+                None => Some(plain),
+                Some((tuner, room)) => self.with_gains(tuner, room, plain),
+            }
+        });
+        let mut terminals = terminals.filter(|terminal| self.holds(terminal));
+        terminals.next()
+    }
+
+    /// The form with the box of gains that it keeps: so much of all gains around those at rest, and where they tend to.
+    fn with_gains(&self, tuner: &Tuner<'_>, room: f64, plain: Terminal) -> Option<Terminal> {
+        let error_rad = seen_within(tuner, self.enclosed, &plain).ok()?[0];
+        let model_rad = match tuner.change_divisor() {
+            Some(_) => 0.0,
+            None => MODEL * error_rad,
+        };
+        let with = |gains: [Interval; 3]| {
+            let gains = gains.map(|gain| [gain.lower(), gain.upper()]);
+            Terminal { gains: Some(NearGains { gains, model_rad }), ..plain.clone() }
+        };
+        let bounds = around(self.held, room);
+        let seen = seen_within(tuner, self.enclosed, &with(bounds)).ok()?;
+        let targets = tuner.targets(seen);
+        let whole = self.held.bounds();
+        let kept = |gain: usize| bounds[gain].hull(targets[gain]).intersection(whole[gain]);
+        Some(with([kept(0)?, kept(1)?, kept(2)?]))
     }
 
     /// Whether a form decreases, and no limit acts, for all gains within its ellipsoid.
-    fn holds(&self, form: &Matrix, rate: f64, level: f64) -> bool {
+    fn holds(&self, terminal: &Terminal) -> bool {
+        let Terminal { form, rate, level, .. } = terminal;
+        let (rate, level) = (*rate, *level);
         let description = &self.certificate.description;
-        let corners = corners_within(description, self.enclosed, self.held, (form, level));
+        let corners = corners_within(description, self.enclosed, self.held, terminal);
         corners.is_ok_and(|corners| {
             corners.iter().all(|HeldGains { gains, change_gain, remembered: _ }| {
                 let model = self.enclosed.with_change_gain(Interval::point(*change_gain));

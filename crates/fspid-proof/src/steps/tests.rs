@@ -33,6 +33,69 @@ fn flown(scenario: &Scenario, [setpoint_rad, load_rad]: [f64; 2], at: usize) -> 
     theta.split_off(at)
 }
 
+/// Drawn self-tuners that remember, each flown as a set and at three points of it: from the controller's first sample, and
+/// from a rest as long as the claim asks for.
+#[test]
+fn a_set_of_flights_holds_every_flight_of_a_self_tuner_that_remembers() {
+    let (mut compared, mut limited, mut moved) = (0, 0, 0.0_f64);
+    for seed in 0..60 {
+        let mut scenario = drawn::remembering_with_limits(&mut drawn::Dice::new(seed));
+        scenario.surroundings.pitch_sensor = None;
+        let plant = scenario.plant.linear().expect("linear");
+        let controller = &scenario.controllers[0].controller;
+        let Ok(description) = LoopDescription::of(&scenario, plant, controller) else { continue };
+        let Controller::SelfTuning(fspid) = controller else { continue };
+        if !remembers(&description) {
+            continue;
+        }
+        if let Some(what) = not_covered(&description) {
+            assert!(what.contains("literal") || what.contains("lag"), "{seed}: {what}");
+            continue;
+        }
+        let Ok(model) = description.enclosed() else { continue };
+        let set = IncrementMap::of(fspid.tuner(), 12).expect("bounded").gains(1.0);
+        let loop_ = flights::flown(&description, &model, &set, None).expect("enclosed");
+        let tuner = loop_.tuner.as_ref().expect("remembers");
+        let rest = (tuner.rests_s() / scenario.timing.dt_s()).ceil() as usize;
+        let most = 0.02 + 0.1 * (seed % 7) as f64;
+        let patch = Patch { setpoint: [most, most * 1.001], load: [0.0, 0.0] };
+        for (first, at) in [(Moment::First, 0), (Moment::Stepped, rest)] {
+            let flights: Vec<Vec<f64>> = [0.0, 0.4, 1.0]
+                .map(|share: f64| {
+                    let [a, b] = patch.setpoint;
+                    flown(&scenario, [a + share * (b - a), 0.0], at)
+                })
+                .to_vec();
+            let mut set = flights::begun(&loop_, patch, first);
+            let begun = tuner.ranges(set.tuned.as_ref().expect("remembers"));
+            for sample in 0..SAMPLES {
+                let range = set.values[0].range();
+                for flight in &flights {
+                    let theta = flight[sample];
+                    let inside =
+                        theta >= range.lower() - ROUNDING && theta <= range.upper() + ROUNDING;
+                    assert!(inside, "{seed} {first:?}, sample {sample}: {theta:e} {range:?}");
+                }
+                let moment = if sample == 0 { first } else { Moment::Later };
+                let Ok(passage) = loop_.pass(&set, moment, Judge::Measured) else { break };
+                set = passage.flight;
+                if set.symbols > 800 || range.width() > 0.1 {
+                    break;
+                }
+                compared += 1;
+            }
+            limited += usize::from(set.limited);
+            let ended = tuner.ranges(set.tuned.as_ref().expect("remembers"));
+            for (one, other) in begun.into_iter().zip(ended) {
+                let apart = (one.midpoint() - other.midpoint()).abs();
+                moved = moved.max(apart / one.magnitude().max(1e-9));
+            }
+        }
+    }
+    assert!(compared > 3000 && limited > 15, "{compared} samples, {limited} sets at limits");
+    assert!(moved > 0.1, "gains moved by {moved} of themselves at most");
+}
+
 /// Drawn loops with every limit there is, each flown as a set and at three points of it.
 #[test]
 fn a_set_of_flights_holds_every_flight_of_the_simulator() {
@@ -69,7 +132,7 @@ fn a_set_of_flights_holds_every_flight_of_the_simulator() {
                     flown(&scenario, [between(patch.setpoint), between(patch.load)], at)
                 })
                 .to_vec();
-            let mut set = flights::begun(&loop_, patch);
+            let mut set = flights::begun(&loop_, patch, first);
             for sample in 0..SAMPLES {
                 let range = set.values[0].range();
                 for flight in &flights {

@@ -228,6 +228,43 @@ pub(crate) fn with_limits(dice: &mut Dice) -> Scenario {
     scenario
 }
 
+/// The same with a self-tuner that remembers, by rules that conclude numbers, and moves nothing that holds a set-point.
+pub(crate) fn remembering_with_limits(dice: &mut Dice) -> Scenario {
+    let mut scenario = structured_by(dice, |dice, _, settings| {
+        let leakage_per_s = dice.sized(0.3, 3.0);
+        let scale = settings.output_scale;
+        let of_law = |gain: f64| 0.6 * leakage_per_s * gain;
+        let coupling = GainCoupling { setpoint_weight: 0.0, ..settings.gain_coupling };
+        let second_input = match settings.second_input {
+            SecondInput::Rate => SecondInput::Change,
+            other => other,
+        };
+        let settings = TunerSettings {
+            law: Law::Accumulating { leakage_per_s },
+            output_scale: Gains {
+                kp: of_law(scale.kp),
+                ki: of_law(scale.ki),
+                kd: of_law(scale.kd),
+            },
+            gain_coupling: coupling,
+            second_input,
+            dead_zone: None,
+            ..settings
+        };
+        (numbers(dice, 5.0, OutOfRange::Clamp), settings)
+    });
+    let controller = scenario.controllers[0].controller;
+    let limited = with_limits(dice);
+    if let Controller::SelfTuning(fspid) = controller {
+        let weights =
+            SetpointWeights { proportional: 1.0, ..fspid.config().setpoint_weights };
+        let config = PidConfig { setpoint_weights: weights, guard: Guard::default(), ..*fspid.config() };
+        let fspid = Fspid::new(*fspid.tuner(), config).expect("allowed");
+        scenario.controllers[0].controller = Controller::SelfTuning(fspid);
+    }
+    Scenario { actuator: limited.actuator, setpoint: limited.setpoint, surroundings: limited.surroundings, ..scenario }
+}
+
 fn actuator(dice: &mut Dice) -> Actuator {
     let lag = match (dice.part() * 4.0) as u32 {
         0 => Lag::NONE,

@@ -16,7 +16,7 @@ use crate::json::{merged, present, with_null_reasons};
 const SCHEMA: u32 = 2;
 
 /// Why keys of these answers are null.
-const NULLS: [(&str, &str); 17] = [
+const NULLS: [(&str, &str); 18] = [
     ("decay_per_sample", "the claim is one of growth, or no rate is proved"),
     (
         "law_keeps_to_the_rate",
@@ -27,6 +27,7 @@ const NULLS: [(&str, &str); 17] = [
     ("steps_within_deg", "no step from rest is proved with limits acting"),
     ("steps_load_within_deg", "no step from rest is proved with limits acting"),
     ("steps_limited_until_s", "no step from rest is proved with limits acting"),
+    ("steps_after_rest_s", "no step from rest is proved with limits acting, or no gains remember"),
     ("no_limit_acts_up_to", "there are no limits, or they are not covered"),
     ("open_because", "there is an answer, or nothing more is known of why there is none"),
     ("at", "no question can be asked of the family, or the loop as it is is not proved"),

@@ -120,6 +120,7 @@ impl Told {
                 "steps_within_deg": stepped.map(|it| told_deg(it.setpoint_rad)),
                 "steps_load_within_deg": stepped.map(|it| told_deg(it.load_rad)),
                 "steps_limited_until_s": stepped.map(|it| it.settled_s),
+                "steps_after_rest_s": stepped.and_then(|it| it.rested_s),
             });
             merged([told, bounds])
         };
@@ -212,8 +213,15 @@ fn steps(stepped: &Stepped) -> String {
     } else {
         "without meeting one on the way"
     };
+    let rest = match stepped.rested_s {
+        None => "from rest at the trim".to_owned(),
+        Some(rested_s) => format!(
+            "from rest at the trim, at the controller's first sample or after a rest of {} s",
+            short(rested_s)
+        ),
+    };
     format!(
-        "from rest at the trim, sensors without bias, any step of the set-point by up to {} deg{loaded} ends where the loop without limits does, {acting}; {} s later none acts any more",
+        "{rest}, sensors without bias, any step of the set-point by up to {} deg{loaded} ends where the loop without limits does, {acting}; {} s later none acts any more",
         short(setpoint),
         short(stepped.settled_s)
     )

@@ -1,0 +1,263 @@
+//! A self-tuner that remembers, for all flights of a set at once: its gains and its reference model are numbers over the
+//! unknowns of the set, as the states of the loop are.
+//!
+//! What the rules add to a gain is a straight line along what the supervisor sees, and an unknown for the rest; what a gain
+//! multiplies is the linear part of the product, and an unknown for the rest. Both rests shrink with the square of a box, but
+//! where what is seen passes the centre of a set.
+
+use fspid_core::equations::{LawKind, SecondInputKind, TunerEquations};
+use fspid_core::{Fspid, Gains, ModelState, ReferenceModel};
+use fspid_numeric::scalar::Interval;
+
+use super::affine::Affine;
+use super::cut::Line;
+use crate::gain_set::Lines;
+
+/// Of the way from the nominal gains to those at rest so much may be left when a step comes.
+const LEFT: f64 = 1.0 / 1024.0;
+/// Most samples after which the reference model is asked to have come nearer.
+const MOST_POWERS: usize = 100_000;
+
+/// What a self-tuner remembers at a sample.
+#[derive(Clone, Debug)]
+pub(super) struct Tuned {
+    /// kp, ki, kd.
+    pub(super) gains: [Affine; 3],
+    /// Pitch of the reference model, rad, and its rate, rad/s.
+    pub(super) model: [Affine; 2],
+}
+
+impl Tuned {
+    /// Everything that is remembered.
+    pub(super) fn each(&self) -> impl Iterator<Item = &Affine> {
+        self.gains.iter().chain(&self.model)
+    }
+
+    /// The same, to be changed.
+    pub(super) fn each_mut(&mut self) -> impl Iterator<Item = &mut Affine> {
+        self.gains.iter_mut().chain(&mut self.model)
+    }
+}
+
+/// The tuner of a loop.
+pub(super) struct Tuner<'a> {
+    lines: Lines<'a>,
+    equations: TunerEquations<f64>,
+    /// Most that the reference model is off later, in units of where it is: see [`later`](Self::later).
+    later: f64,
+}
+
+/// What a supervisor is shown.
+pub(super) struct Shown<'a> {
+    pub(super) error: &'a Affine,
+    /// The difference of the error.
+    pub(super) change: &'a Affine,
+    pub(super) pitch: &'a Affine,
+    pub(super) setpoint: &'a Affine,
+}
+
+impl<'a> Tuner<'a> {
+    /// The tuner of a law with leakage whose rules conclude numbers; nothing of another.
+    pub(super) fn of(fspid: &'a Fspid<f64>) -> Option<Self> {
+        let equations = *fspid.tuner_equations();
+        let structure = equations.structure;
+        let settings = fspid.tuner().settings();
+        let leaks = structure.law == LawKind::Accumulating && equations.numbers.leakage_per_s > 0.0;
+        let sees = structure.second_input != SecondInputKind::Rate;
+        if !(leaks && sees) || settings.dead_zone.is_some() {
+            return None;
+        }
+        let lines = Lines::of(fspid.tuner())?;
+        let later = match structure.second_input {
+            SecondInputKind::ModelError => most_later(&equations)?,
+            SecondInputKind::Change | SecondInputKind::Rate => 0.0,
+        };
+        Some(Self { lines, equations, later })
+    }
+
+    /// At rest: at the controller's first sample the nominal gains, later those that it has come to, within [`LEFT`] of the
+    /// way. The symbol is that of how much is left.
+    pub(super) fn begun(&self, rest: [Interval; 3], first: bool, symbol: usize) -> Tuned {
+        let gains = [0, 1, 2].map(|gain: usize| {
+            let nominal = self.equations.gains[gain].nominal;
+            if first {
+                return Affine::constant(Interval::point(nominal));
+            }
+            let rest = rest[gain];
+            let left = (Interval::point(nominal) - rest) * Interval::point(0.5 * LEFT);
+            let middle = Affine::constant(rest + left);
+            middle.and_noise(left.magnitude(), symbol)
+        });
+        Tuned { gains, model: [Affine::default(), Affine::default()] }
+    }
+
+    /// How long a rest has to last for [`begun`](Self::begun), s.
+    pub(super) fn rests_s(&self) -> f64 {
+        let numbers = &self.equations.numbers;
+        let share = numbers.leakage_per_s * numbers.dt_s;
+        let samples = libm::ceil(libm::log(LEFT) / libm::log(1.0 - share.min(0.5))) + 1.0;
+        samples * numbers.dt_s
+    }
+
+    /// What is remembered after a sample, with the gains that answer it; `symbol` gives a new unknown.
+    pub(super) fn after(
+        &self,
+        now: &Tuned,
+        shown: &Shown<'_>,
+        symbol: &mut dyn FnMut() -> usize,
+    ) -> Tuned {
+        let n = self.equations.numbers.map(|number| Interval::point(*number));
+        let second = match self.equations.structure.second_input {
+            SecondInputKind::ModelError => now.model[0].less(shown.pitch),
+            SecondInputKind::Change | SecondInputKind::Rate => {
+                shown.change.times(Interval::ONE / n.change_divisor)
+            }
+        };
+        let error = shown.error.times(n.sign * n.error_per_rad);
+        let second = second.times(n.sign * n.change_per_rad);
+        let lines = self.lines.along([error.range(), second.range()]);
+        let keeps = Interval::ONE - n.leakage_per_s * n.dt_s;
+        let gains = [0, 1, 2].map(|gain: usize| {
+            let (own, line) = (&self.equations.gains[gain], &lines[gain]);
+            let per_increment = Interval::point(own.scale) * n.dt_s;
+            let beside = line.beside * per_increment;
+            let pulled = n.leakage_per_s * n.dt_s * Interval::point(own.nominal);
+            let middle = Interval::point(beside.midpoint());
+            let constant = Affine::constant(middle + pulled);
+            let [by_error, by_second] = line.slopes.map(|slope| Interval::point(slope) * per_increment);
+            let free = Affine::sum([
+                (keeps, &now.gains[gain]),
+                (by_error, &error),
+                (by_second, &second),
+                (Interval::ONE, &constant),
+            ]);
+            let radius = (beside - middle).magnitude();
+            let free = if radius > 0.0 { free.and_noise(radius, symbol()) } else { free };
+            let free = free.owned();
+            let within = Line::clamped(free.range(), own.lower, own.upper);
+            if within == Line::SAME {
+                return free;
+            }
+            let place = if within.half > 0.0 { symbol() } else { 0 };
+            within.of(&free, place).owned()
+        });
+        Tuned { gains, model: self.model_after(now, shown.setpoint) }
+    }
+
+    fn model_after(&self, now: &Tuned, setpoint: &Affine) -> [Affine; 2] {
+        let [pitch, rate] = &now.model;
+        if self.equations.structure.second_input != SecondInputKind::ModelError {
+            return now.model.clone();
+        }
+        let [[by_pitch, by_rate], [held, damped]] = model_matrix(&self.equations);
+        // What the set-point adds is what the place no longer pulls.
+        let next_rate = Affine::sum([(held, pitch), (damped, rate), (-held, setpoint)]);
+        let to_pitch = Interval::ONE - by_pitch;
+        let next_pitch = Affine::sum([(by_pitch, pitch), (by_rate, rate), (to_pitch, setpoint)]);
+        [next_pitch, next_rate]
+    }
+
+    /// Most that the reference model is away from its set-point from now on, rad.
+    pub(super) fn model_later(&self, now: &Tuned, setpoint: &Affine) -> f64 {
+        let unit = Interval::ONE / Interval::point(self.equations.numbers.bandwidth_rad_s);
+        let [pitch, rate] = &now.model;
+        if self.equations.structure.second_input != SecondInputKind::ModelError {
+            return 0.0;
+        }
+        let most = pitch.less(setpoint).magnitude().max(rate.times(unit).magnitude());
+        (Interval::point(most) * Interval::point(self.later)).upper()
+    }
+
+    /// Bounds of the gains of a set: those of its numbers, and their limits.
+    pub(super) fn ranges(&self, tuned: &Tuned) -> [Interval; 3] {
+        [0, 1, 2].map(|gain: usize| {
+            let own = &self.equations.gains[gain];
+            let range = tuned.gains[gain].range();
+            let limits = Interval::new(own.lower, own.upper).unwrap_or(Interval::ENTIRE);
+            range.intersection(limits).unwrap_or(range)
+        })
+    }
+
+    /// True where gains that lie in a box stay there while error and what is seen beside it, rad, keep to these sizes.
+    ///
+    /// $k^+ = (1 - \lambda T) k + \lambda T (k' + s \Delta k / \lambda)$ is a mean of two numbers of the box, and so is what limits
+    /// make of it, where the box lies within them.
+    pub(super) fn keeps(&self, gains: [Interval; 3], seen: [f64; 2]) -> bool {
+        let within = |gain: usize| {
+            let own = &self.equations.gains[gain];
+            gains[gain].lower() >= own.lower && gains[gain].upper() <= own.upper
+        };
+        let targets = self.targets(seen).into_iter();
+        targets.zip(gains).all(|(to, own)| own.encloses(to)) && (0..3).all(within)
+    }
+
+    /// Where gains tend to while inputs lie between bounds: their increments over the leakage, within the limits.
+    pub(super) fn targets(&self, [error_rad, second_rad]: [f64; 2]) -> [Interval; 3] {
+        let n = self.equations.numbers.map(|number| Interval::point(*number));
+        let between = |most: f64| Interval::between(-most, most);
+        let inputs = [n.error_per_rad * between(error_rad), n.change_per_rad * between(second_rad)];
+        let answers = self.lines.over(inputs);
+        [0, 1, 2].map(|gain: usize| {
+            let own = &self.equations.gains[gain];
+            let free = Interval::point(own.nominal)
+                + Interval::point(own.scale) * answers[gain] / n.leakage_per_s;
+            let within = |end: f64| end.max(own.lower).min(own.upper);
+            Interval::between(within(free.lower()), within(free.upper()))
+        })
+    }
+
+    /// What is seen beside the error is a change of it in this unit; nothing for a reference model.
+    pub(super) fn change_divisor(&self) -> Option<f64> {
+        let is_model = self.equations.structure.second_input == SecondInputKind::ModelError;
+        (!is_model).then_some(self.equations.numbers.change_divisor)
+    }
+}
+
+/// $y^+ = y + T q^+$, $q^+ = q + T (\omega^2 (r - y) - 2 \zeta \omega q)$ as rows over (y, q), the set-point at zero.
+fn model_matrix(equations: &TunerEquations<f64>) -> [[Interval; 2]; 2] {
+    let row = |pitch: f64, rate: f64| {
+        let model = ReferenceModel {
+            bandwidth_rad_s: Interval::point(equations.numbers.bandwidth_rad_s),
+            damping: Interval::point(equations.numbers.damping),
+        };
+        let now = ModelState {
+            pitch_rad: Interval::point(pitch),
+            rate_rad_s: Interval::point(rate),
+        };
+        model.next(now, Interval::ZERO, Interval::point(equations.numbers.dt_s))
+    };
+    let [by_pitch, by_rate] = [row(1.0, 0.0), row(0.0, 1.0)];
+    [[by_pitch.pitch_rad, by_rate.pitch_rad], [by_pitch.rate_rad_s, by_rate.rate_rad_s]]
+}
+
+/// Most of the pitch of a model that begins with pitch and rate (in units of its bandwidth) within 1: the largest sum of the
+/// first rows of the powers of its matrix, up to one whose rows both have a sum of at most 1 and that begins it again.
+fn most_later(equations: &TunerEquations<f64>) -> Option<f64> {
+    let omega = Interval::point(equations.numbers.bandwidth_rad_s);
+    let [[a, b], [c, d]] = model_matrix(equations);
+    let step = [[a, b * omega], [c / omega, d]];
+    let size = |row: [Interval; 2]| row[0].magnitude() + row[1].magnitude();
+    let (mut power, mut most) = (step, 1.0_f64);
+    for _ in 0..MOST_POWERS {
+        most = most.max(size(power[0]));
+        if size(power[0]) < 0.999 && size(power[1]) < 0.999 {
+            return Some(most * (1.0 + 1e-9));
+        }
+        let entry = |row: usize, column: usize| {
+            power[row][0] * step[0][column] + power[row][1] * step[1][column]
+        };
+        power = [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]];
+    }
+    None
+}
+
+/// The gains at corners of a box.
+pub(super) fn corners(bounds: [Interval; 3]) -> impl Iterator<Item = Gains<f64>> {
+    (0..8_usize).map(move |corner| {
+        let end = |gain: usize| match corner >> gain & 1 {
+            0 => bounds[gain].lower(),
+            _ => bounds[gain].upper(),
+        };
+        Gains { kp: end(0), ki: end(1), kd: end(2) }
+    })
+}
