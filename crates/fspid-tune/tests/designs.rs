@@ -84,8 +84,7 @@ fn the_self_tuner_of_transports_for_every_command_has_less_than_0_85_of_the_erro
 }
 
 #[test]
-fn the_proved_self_tuner_of_small_unmanned_aircraft_has_a_quarter_less_error_and_breaks_nothing_that_the_pid_keeps()
- {
+fn the_proved_self_tuner_of_small_unmanned_aircraft_has_a_quarter_less_error_at_less_travel() {
     is_first("uav-steps", [0.77, 0.98], [2, 2]);
 }
 
@@ -93,4 +92,10 @@ fn the_proved_self_tuner_of_small_unmanned_aircraft_has_a_quarter_less_error_and
 fn the_proved_self_tuner_of_transports_has_less_error_at_the_travel_of_the_pid_and_keeps_the_margins()
  {
     is_first("transport-steps", [0.87, 1.0], [1, 6]);
+}
+
+#[test]
+fn the_proved_self_tuner_of_light_aircraft_has_0_85_of_the_error_at_less_travel_and_breaks_nothing()
+{
+    is_first("light-steps", [0.85, 0.98], [0, 0]);
 }
