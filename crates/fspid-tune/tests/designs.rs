@@ -82,3 +82,20 @@ fn the_self_tuner_of_small_unmanned_aircraft_for_every_command_has_a_third_less_
 fn the_self_tuner_of_transports_for_every_command_has_less_than_0_85_of_the_error() {
     is_first("transport-commands", [0.82, 1.03], [7, 2]);
 }
+
+#[test]
+fn the_proved_self_tuner_of_small_unmanned_aircraft_has_a_quarter_less_error_at_less_travel() {
+    is_first("uav-steps", [0.77, 0.98], [2, 2]);
+}
+
+#[test]
+fn the_proved_self_tuner_of_transports_has_less_error_at_the_travel_of_the_pid_and_keeps_the_margins()
+ {
+    is_first("transport-steps", [0.87, 1.0], [1, 6]);
+}
+
+#[test]
+fn the_proved_self_tuner_of_light_aircraft_has_0_85_of_the_error_at_less_travel_and_breaks_nothing()
+{
+    is_first("light-steps", [0.85, 0.98], [0, 0]);
+}

@@ -51,6 +51,9 @@ fn the_contests_of_six_train_and_judge_on_all_six_kinds_of_their_class_and_on_no
         ("transport-six.toml", "transport"),
         ("transport-six-choose.toml", "transport"),
         ("uav.toml", "uav"),
+        ("light-steps.toml", "light"),
+        ("transport-steps.toml", "transport"),
+        ("uav-steps.toml", "uav"),
     ] {
         let study = contest(name);
         let (_, kinds) = AIRCRAFT_CLASSES.iter().find(|it| it.0 == class).expect("a class");
@@ -83,5 +86,19 @@ fn designs_are_chosen_on_cases_that_are_neither_trained_on_nor_judged_on() {
             rest.split_once("[contest]").expect("a contest").0.to_owned()
         };
         assert_eq!(before(&format!("{class}-six-choose.toml")), before(&name), "{class}");
+    }
+}
+
+#[test]
+fn flights_that_a_proved_design_is_judged_on_were_judged_by_no_other() {
+    for (name, before) in [
+        ("light-steps.toml", ["light-six.toml", "light-six-choose.toml"]),
+        ("transport-steps.toml", ["transport-six.toml", "transport-six-choose.toml"]),
+        ("uav-steps.toml", ["uav.toml", "uav-commands.toml"]),
+    ] {
+        let judge = contest(name);
+        for other in before {
+            assert_apart(name, judged(&judge), judged(&contest(other)));
+        }
     }
 }

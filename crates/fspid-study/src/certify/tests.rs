@@ -546,3 +546,12 @@ fn the_learned_self_tuner_of_six_small_unmanned_aircraft_is_proved_around_the_tr
         );
     }
 }
+
+/// Not around the trim alone: for the step and the load that the design's file flies.
+#[test]
+fn a_learned_self_tuner_that_feeds_the_set_point_forward_is_proved_for_the_step_that_it_flies() {
+    let condition = ["aircraft.name=zagi", "aircraft.airspeed_m_s=14", "aircraft.altitude_m=100"];
+    let found = certified(&load("data/designs/learned/uav-steps.toml", &condition));
+    assert!(found.all_proved(), "{}", found.text());
+    assert!(checked(&written(&found)).holds());
+}
