@@ -178,6 +178,22 @@ fn conditional_integration_stops_for_the_smallest_excess() {
     assert_eq!(integral_term(&state, 1.0, config), 0.0);
 }
 
+/// The direction is that of ki e: where this product underflows there is none, and the sum of the literal form takes
+/// the error of a cut command. Its term, ki T times as much, is zero all the same.
+#[test]
+fn conditional_integration_lets_a_sum_grow_whose_drive_is_below_the_smallest_number() {
+    let config = PidConfig {
+        integral: IntegralForm::Literal,
+        anti_windup: AntiWindup::Conditional,
+        limits: Limits::new(ControllerSetting::OutputLimits, -1.0, 1e-30).ok(),
+        ..PidConfig::sampled_every(0.01_f32)
+    };
+    let faint = Gains { kp: 1.0, ki: 1e-30, kd: 0.0 };
+    let (controller, mut state) = (pid(faint, config), State::new());
+    assert!(controller.step(&mut state, error(1e-20)).saturated);
+    assert_eq!((state.integral(), integral_term(&state, faint.ki, config)), (1e-20, 0.0));
+}
+
 #[test]
 fn clamping_bounds_the_integral_term_of_the_very_sample() {
     for form in FORMS {

@@ -144,6 +144,33 @@ fn a_bent_input_reaches_the_even_sets_at_their_centres() {
     assert_eq!((places.warp(7.5, 5.0), places.warp(-7.5, 5.0)), (7.5, -7.5));
 }
 
+/// Straight from knot to knot: 0, the small centre, the medium one and the range go to its thirds.
+#[test]
+fn between_the_centres_an_input_is_bent_along_straight_lines() {
+    for (small, medium, range) in [(0.1, 0.5, 5.0), (0.4, 0.9, 3.0), (0.25, 0.5, 1.0)] {
+        let places: SetCentres<f64> = SetCentres::new(small, medium).expect("in order");
+        let knots = [0.0, small * range, medium * range, range];
+        for (n, ends) in knots.windows(2).enumerate() {
+            for share in [0.125, 0.5, 0.75] {
+                let input = ends[0] + share * (ends[1] - ends[0]);
+                let seen = (n as f64 + share) * range / 3.0;
+                let warp = places.warp(input, range);
+                // A few roundings of numbers up to the range.
+                assert!((warp - seen).abs() < 1e-15 * 4.0 * range, "{input}: {warp} {seen}");
+            }
+        }
+    }
+}
+
+/// An export has its signs by the same comparison: a zero has no other bits there.
+#[test]
+fn a_zero_of_either_sign_is_bent_to_the_positive_one() {
+    let places: SetCentres<f64> = SetCentres::new(0.1, 0.5).expect("in order");
+    for zero in [0.0, -0.0] {
+        assert_eq!(places.warp(zero, 5.0).to_bits(), 0.0_f64.to_bits());
+    }
+}
+
 #[test]
 fn bending_is_odd_and_increasing() {
     let mut random = Random(8);

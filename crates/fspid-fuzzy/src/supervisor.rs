@@ -541,4 +541,10 @@ mod tests {
             assert_eq!((supervisor.defuzzifier(), supervisor.out_of_range()), (rule, policy));
         }
     }
+
+    /// Scenarios are full of them: a word that changes makes files of before unreadable.
+    #[test]
+    fn policies_are_called_in_files_as_ever() {
+        assert_eq!(OutOfRange::ALL.map(OutOfRange::name), ["clamp", "evaluate", "error"]);
+    }
 }

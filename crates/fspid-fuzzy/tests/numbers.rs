@@ -110,6 +110,29 @@ fn the_grades_of_an_input_sum_to_one_and_only_neighbours_have_any() {
     assert_eq!(supervisor.grades(7.0), [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
 }
 
+/// Doubling is exact: over twice the range the same cells answer twice the inputs, to the bit.
+#[test]
+fn over_twice_the_range_twice_the_inputs_have_the_same_grades_and_the_same_answer() {
+    let grids = [drawn(1), drawn(2), drawn(3)];
+    let table = NumberTable::new(grids).expect("finite");
+    let narrow = supervisor(grids, OutOfRange::Clamp);
+    let wide = Supervisor::of_numbers(&table, 6.0, OutOfRange::Clamp).expect("allowed");
+    for n in 0..1000 {
+        let (error, change) = (3.3 * libm::sin(f64::from(n)), 3.3 * libm::cos(f64::from(2 * n)));
+        assert_eq!(wide.grades(2.0 * error), narrow.grades(error), "{error}");
+        assert_eq!(delta(&wide, 2.0 * error, 2.0 * change), delta(&narrow, error, change));
+    }
+}
+
+#[test]
+fn rules_that_conclude_numbers_tell_them_and_no_labels() {
+    let table = NumberTable::new([drawn(1), drawn(2), drawn(3)]).expect("finite");
+    let supervisor = Supervisor::of_numbers(&table, 3.0, OutOfRange::Clamp).expect("allowed");
+    assert_eq!(supervisor.numbers(), Some(&table));
+    assert!(supervisor.table().is_none() && supervisor.network().is_none());
+    assert!(!supervisor.has_labels());
+}
+
 #[test]
 fn numbers_that_are_none_or_beyond_the_range_are_refused_with_their_cell() {
     for bad in [f64::NAN, f64::INFINITY] {
