@@ -55,6 +55,10 @@ pub(crate) struct Arguments {
     /// each case, and in all of them together.
     #[arg(long, conflicts_with = "check")]
     disturbances: bool,
+    /// With `--cases`: fly in sets the steps of self-tuners that remember as well, as is done without `--cases`. Up to a minute
+    /// for each case.
+    #[arg(long, requires = "cases")]
+    steps: bool,
     /// Certify as well the nonlinear aircraft in a box around its trim, which the search makes as large as it can.
     #[arg(long, conflicts_with_all = ["check", "cases"])]
     nonlinear: bool,
@@ -167,8 +171,8 @@ fn prove_cases(
     for change in cases.changes().to_vec() {
         let changed = changed(path, &change, arguments)?;
         let only = arguments.controller.as_deref();
-        let effort = Effort::default();
-        let Arguments { disturbances, family, .. } = *arguments;
+        let Arguments { disturbances, family, steps, .. } = *arguments;
+        let effort = Effort { remembered_steps: steps, ..Effort::default() };
         let question = Question { only, disturbances, family, effort: &effort };
         let added = certifying(telling, |tell| {
             let mut tell = |name: &str| tell(&format!("{name} at {}", change.name));

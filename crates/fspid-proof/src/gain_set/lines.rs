@@ -7,7 +7,7 @@
 //! R shrinks with the square of the box where no centre is inside, and with the box where one is.
 
 use fspid_core::{SelfTuner, SetCentres};
-use fspid_fuzzy::{NumberTable, Output, OutOfRange};
+use fspid_fuzzy::{NumberTable, OutOfRange, Output};
 use fspid_numeric::scalar::Interval;
 
 use super::increments::ROUNDING;
@@ -155,15 +155,22 @@ mod tests {
             let lines = Lines::of(&tuner).expect("numbers");
             for (from, width) in [(-2.4, 0.3), (-0.1, 0.2), (0.3, 1.9), (0.21, 1e-3), (-2.4, 4.9)] {
                 let inputs = [from, -0.7 * from].map(|at| Interval::between(at, at + width));
-                let [along, over] = [lines.along(inputs), lines.over(inputs).map(|beside| Line { slopes: [0.0; 2], beside })];
+                let [along, over] = [
+                    lines.along(inputs),
+                    lines.over(inputs).map(|beside| Line { slopes: [0.0; 2], beside }),
+                ];
                 for step in 0..=400 {
                     let share = |by: usize| (step * by % 401) as f64 / 400.0;
-                    let [error, second] = [inputs[0].lower() + share(1) * width, inputs[1].lower() + share(37) * width];
+                    let [error, second] = [
+                        inputs[0].lower() + share(1) * width,
+                        inputs[1].lower() + share(37) * width,
+                    ];
                     let gains = tuner.increments_where_seen(error, second).expect("clamped");
                     for of in [along, over] {
                         for (line, answer) in of.iter().zip([gains.kp, gains.ki, gains.kd]) {
                             let off = answer - line.slopes[0] * error - line.slopes[1] * second;
-                            let within = off >= line.beside.lower() - 1e-12 && off <= line.beside.upper() + 1e-12;
+                            let within = off >= line.beside.lower() - 1e-12
+                                && off <= line.beside.upper() + 1e-12;
                             assert!(within, "{error} {second}: {off} {:?}", line.beside);
                         }
                     }
@@ -180,6 +187,11 @@ mod tests {
             let inputs = [0.1, 0.9].map(|at| Interval::between(at, at + width));
             lines.along(inputs).map(|line| line.beside.width()).into_iter().fold(0.0, f64::max)
         };
-        assert!(left(0.02) > 1e-5 && left(0.002) < 0.011 * left(0.02), "{} {}", left(0.02), left(0.002));
+        assert!(
+            left(0.02) > 1e-5 && left(0.002) < 0.011 * left(0.02),
+            "{} {}",
+            left(0.02),
+            left(0.002)
+        );
     }
 }

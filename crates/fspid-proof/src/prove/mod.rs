@@ -26,7 +26,7 @@ use crate::recheck::{Kept, Recheck, RecheckError, Rechecked};
 use crate::rest::{NoRest, Rest};
 use crate::scope::{Asked, Range};
 use crate::solve::{self, never};
-use crate::steps::Steps;
+use crate::steps::{self, Steps};
 
 /// How hard to try. Nothing depends on a clock.
 #[derive(Clone, Copy, Debug)]
@@ -44,6 +44,8 @@ pub struct Effort {
     /// Changes of gains in a sample, in half widths of their box, largest first: those that a proof for
     /// gains of bounded rate is tried with.
     pub changes: &'static [f64],
+    /// Whether steps with limits of gains that remember are flown in sets, which takes up to a minute.
+    pub remembered_steps: bool,
     /// Asked between the steps of the work; once it says yes, [`certify`] gives up with [`NotProvable::Stopped`]. It may not
     /// say no again.
     pub stops: fn() -> bool,
@@ -58,6 +60,7 @@ impl Default for Effort {
             largest_factor: 64.0,
             frozen_points: 33,
             changes: &[0.1, 0.03, 0.01, 0.003, 0.001, 0.0003],
+            remembered_steps: true,
             stops: never,
         }
     }
@@ -244,6 +247,9 @@ impl<'a> Prover<'a> {
     /// The verdict with what is proved of steps from rest.
     fn with_steps(&self, verdict: Verdict, set: &GainSet) -> Verdict {
         let Verdict::Proved(certificate, rechecked) = verdict else { return verdict };
+        if steps::remembers(&certificate.description) && !self.effort.remembered_steps {
+            return Verdict::Proved(certificate, rechecked);
+        }
         let held = self.rest(set).ok().and_then(|rest| self.held(set, 1.0, &rest).ok());
         let steps = held.and_then(|held| {
             Steps::found(&certificate, &self.enclosed, [set, &held], self.effort.stops)

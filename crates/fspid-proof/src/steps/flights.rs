@@ -213,8 +213,7 @@ impl<'a> Ready<'a> {
     fn gather(&self, flight: &mut Flight) {
         let part = |value: &Affine, symbol: usize| value.parts.get(symbol).copied().unwrap_or(0.0);
         let size = |symbol: usize| -> f64 {
-            let column: Vec<f64> =
-                flight.values.iter().map(|value| part(value, symbol)).collect();
+            let column: Vec<f64> = flight.values.iter().map(|value| part(value, symbol)).collect();
             let tuned = flight.tuned.iter().flat_map(Tuned::each);
             self.near.size_of(&column) + tuned.map(|value| part(value, symbol).abs()).sum::<f64>()
         };
@@ -222,7 +221,8 @@ impl<'a> Ready<'a> {
             (OWN..flight.symbols).map(|symbol| (size(symbol), symbol)).collect();
         sizes.sort_unstable_by(|one, other| other.0.total_cmp(&one.0).then(one.1.cmp(&other.1)));
         let gone = sizes.split_off(sizes.len().min(KEPT_REMEMBERED));
-        let mut kept: Vec<usize> = (0..OWN).chain(sizes.iter().map(|(_, symbol)| *symbol)).collect();
+        let mut kept: Vec<usize> =
+            (0..OWN).chain(sizes.iter().map(|(_, symbol)| *symbol)).collect();
         kept.sort_unstable();
         let mut symbols = kept.len();
         // Of the ball what it adds to each state: unknowns are followed, where a ball only grows with what moves by it.
@@ -247,7 +247,11 @@ impl<'a> Ready<'a> {
         match (&self.flown.tuner, &flight.tuned, &self.near_gains) {
             (None, None, None) => true,
             (Some(tuner), Some(tuned), Some(near)) => {
-                let mut inside = near.bounds().into_iter().zip(tuner.ranges(tuned));
+                // What the law reaches at all is known apart from the flights.
+                let all = self.around.last().copied().unwrap_or([Interval::ENTIRE; 3]);
+                let reached = tuner.ranges(tuned).into_iter().zip(all);
+                let reached = reached.map(|(range, all)| range.intersection(all).unwrap_or(range));
+                let mut inside = near.bounds().into_iter().zip(reached);
                 inside.all(|(bounds, range)| bounds.encloses(range))
                     && tuner.model_later(tuned, &flight.setpoint) <= near.model_rad
             }

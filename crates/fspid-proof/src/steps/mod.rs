@@ -15,9 +15,9 @@ mod near;
 mod sample;
 mod servo;
 mod terminal;
-mod tuned;
 #[cfg(test)]
 mod tests;
+mod tuned;
 
 use fspid_core::{Fspid, IntegralForm, Law, SelfTuner};
 use fspid_fuzzy::Output;
@@ -141,7 +141,7 @@ fn most_checked(description: &LoopDescription) -> usize {
 }
 
 /// True for a self-tuner whose gains remember.
-fn remembers(description: &LoopDescription) -> bool {
+pub(crate) fn remembers(description: &LoopDescription) -> bool {
     let Controller::SelfTuning(fspid) = &description.controller else { return false };
     fspid.tuner().settings().law != Law::Memoryless
 }

@@ -271,12 +271,8 @@ impl Pass<'_, '_> {
                 (change.clone(), change)
             }
         };
-        let shown = Shown {
-            error: &error,
-            change: &of_error,
-            pitch: &pitch,
-            setpoint: &self.now.setpoint,
-        };
+        let shown =
+            Shown { error: &error, change: &of_error, pitch: &pitch, setpoint: &self.now.setpoint };
         let tuned = match (self.judge, &self.flown.tuner, &self.now.tuned) {
             (Judge::Measured, Some(tuner), Some(now)) => {
                 let symbols = &mut self.symbols;

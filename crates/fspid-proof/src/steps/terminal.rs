@@ -39,6 +39,8 @@ const QUARTERS: i32 = 9;
 const ROOMS: [f64; 6] = [1.0, 0.5, 0.25, 0.1, 0.04, 0.016];
 /// Of the widest ellipsoid that is found one with more room may have so much.
 const ENOUGH: f64 = 0.4;
+/// The box is so much wider, of all gains, than those that gains tend to, which they only come near.
+const SLACK: f64 = 1.0 / 1024.0;
 /// Of the largest error near rest the reference model may still be off so much.
 const MODEL: f64 = 0.25;
 
@@ -134,7 +136,8 @@ impl NearRest<'_> {
         gains: Gains<f64>,
         weight: f64,
         remembered: Option<(&Tuner<'_>, f64)>,
-    ) -> Option<Terminal> {        let description = &self.certificate.description;
+    ) -> Option<Terminal> {
+        let description = &self.certificate.description;
         let matrix = model.closed_matrix(gains).ok()?;
         let radius = fspid_lti::spectral_radius(&matrix).ok()?;
         let rate = radius + SLOWER * (1.0 - radius);
@@ -198,7 +201,11 @@ impl NearRest<'_> {
         let seen = seen_within(tuner, self.enclosed, &with(bounds)).ok()?;
         let targets = tuner.targets(seen);
         let whole = self.held.bounds();
-        let kept = |gain: usize| bounds[gain].hull(targets[gain]).intersection(whole[gain]);
+        let kept = |gain: usize| {
+            let slack = SLACK * whole[gain].width();
+            let wider = bounds[gain].hull(targets[gain]) + Interval::between(-slack, slack);
+            wider.intersection(whole[gain])
+        };
         Some(with([kept(0)?, kept(1)?, kept(2)?]))
     }
 

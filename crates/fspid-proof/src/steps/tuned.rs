@@ -124,7 +124,8 @@ impl<'a> Tuner<'a> {
             let pulled = n.leakage_per_s * n.dt_s * Interval::point(own.nominal);
             let middle = Interval::point(beside.midpoint());
             let constant = Affine::constant(middle + pulled);
-            let [by_error, by_second] = line.slopes.map(|slope| Interval::point(slope) * per_increment);
+            let [by_error, by_second] =
+                line.slopes.map(|slope| Interval::point(slope) * per_increment);
             let free = Affine::sum([
                 (keeps, &now.gains[gain]),
                 (by_error, &error),
@@ -220,10 +221,8 @@ fn model_matrix(equations: &TunerEquations<f64>) -> [[Interval; 2]; 2] {
             bandwidth_rad_s: Interval::point(equations.numbers.bandwidth_rad_s),
             damping: Interval::point(equations.numbers.damping),
         };
-        let now = ModelState {
-            pitch_rad: Interval::point(pitch),
-            rate_rad_s: Interval::point(rate),
-        };
+        let now =
+            ModelState { pitch_rad: Interval::point(pitch), rate_rad_s: Interval::point(rate) };
         model.next(now, Interval::ZERO, Interval::point(equations.numbers.dt_s))
     };
     let [by_pitch, by_rate] = [row(1.0, 0.0), row(0.0, 1.0)];

@@ -229,6 +229,7 @@ pub(crate) fn with_limits(dice: &mut Dice) -> Scenario {
 }
 
 /// The same with a self-tuner that remembers, by rules that conclude numbers, and moves nothing that holds a set-point.
+#[allow(dead_code, reason = "asked by a test inside of the crate")]
 pub(crate) fn remembering_with_limits(dice: &mut Dice) -> Scenario {
     let mut scenario = structured_by(dice, |dice, _, settings| {
         let leakage_per_s = dice.sized(0.3, 3.0);
@@ -256,13 +257,18 @@ pub(crate) fn remembering_with_limits(dice: &mut Dice) -> Scenario {
     let controller = scenario.controllers[0].controller;
     let limited = with_limits(dice);
     if let Controller::SelfTuning(fspid) = controller {
-        let weights =
-            SetpointWeights { proportional: 1.0, ..fspid.config().setpoint_weights };
-        let config = PidConfig { setpoint_weights: weights, guard: Guard::default(), ..*fspid.config() };
+        let weights = SetpointWeights { proportional: 1.0, ..fspid.config().setpoint_weights };
+        let config =
+            PidConfig { setpoint_weights: weights, guard: Guard::default(), ..*fspid.config() };
         let fspid = Fspid::new(*fspid.tuner(), config).expect("allowed");
         scenario.controllers[0].controller = Controller::SelfTuning(fspid);
     }
-    Scenario { actuator: limited.actuator, setpoint: limited.setpoint, surroundings: limited.surroundings, ..scenario }
+    Scenario {
+        actuator: limited.actuator,
+        setpoint: limited.setpoint,
+        surroundings: limited.surroundings,
+        ..scenario
+    }
 }
 
 fn actuator(dice: &mut Dice) -> Actuator {

@@ -547,11 +547,39 @@ fn the_learned_self_tuner_of_six_small_unmanned_aircraft_is_proved_around_the_tr
     }
 }
 
-/// Not around the trim alone: for the step and the load that the design's file flies.
+/// Not around the trim alone, and with the limits that may act on the way: the flights of steps of 0.2 deg are one set, those
+/// of 5 deg some dozens.
 #[test]
-fn a_learned_self_tuner_that_feeds_the_set_point_forward_is_proved_for_the_step_that_it_flies() {
-    let condition = ["aircraft.name=zagi", "aircraft.airspeed_m_s=14", "aircraft.altitude_m=100"];
+fn steps_of_a_learned_self_tuner_that_remembers_are_proved_with_its_limits() {
+    let condition = [
+        "aircraft.name=ultra-stick-25e",
+        "aircraft.airspeed_m_s=13",
+        "aircraft.altitude_m=100",
+        "setpoint.amplitude_deg=0.2",
+    ];
     let found = certified(&load("data/designs/learned/uav-steps.toml", &condition));
     assert!(found.all_proved(), "{}", found.text());
-    assert!(checked(&written(&found)).holds());
+    let text = written(&found);
+    let file = checked(&text);
+    assert!(file.holds());
+    let rechecked = file.result.as_ref().expect("holds");
+    let stepped = rechecked.stepped.expect("steps are proved");
+    assert!((stepped.setpoint_rad.to_degrees() - 0.2).abs() < 1e-12, "{stepped:?}");
+    // What is left of a thousandth leaks away with 0.2529 a second.
+    let rested_s = stepped.rested_s.expect("gains remember");
+    assert!((rested_s - libm::log(1024.0) / 0.2529).abs() < 0.1, "{rested_s}");
+    assert!(found.text().contains("after a rest of"), "{}", found.text());
+
+    // Gains that are said to stay in less than they do, and a model that is said to be nearer than it is.
+    let changed = |change: &dyn Fn(&mut Value)| {
+        let mut value: Value = serde_json::from_str(&text).expect("JSON");
+        change(&mut value["steps"]["near_rest"]["gains"]);
+        let file = checked(&resealed(&value).expect("a certificate"));
+        assert!(!file.holds());
+        file.result.as_ref().expect_err("refused").to_string()
+    };
+    let narrower = changed(&|gains| gains["most"] = gains["least"].clone());
+    assert!(narrower.contains("gains that remember"), "{narrower}");
+    let nearer = changed(&|gains| gains["model_rad"] = json!(0.0));
+    assert!(nearer.contains("not shown to end near its rest"), "{nearer}");
 }

@@ -53,8 +53,20 @@ const STEPS: Shape = Object(&[
     key("loads", Whole(1, MOST_LOADS as u64)),
     key(
         "near_rest",
-        Object(&[key("rate", RATE), key("form", FORM), key("level", Positive(LARGE))]),
+        Object(&[
+            key("rate", RATE),
+            key("form", FORM),
+            key("level", Positive(LARGE)),
+            optional("gains", REMEMBERED),
+        ]),
     ),
+]);
+
+/// Gains that remember, and how far their reference model may be off.
+const REMEMBERED: Shape = Object(&[
+    key("least", List(&Number(-LARGE, LARGE), [3, 3])),
+    key("most", List(&Number(-LARGE, LARGE), [3, 3])),
+    key("model_rad", Number(0.0, ANGLE)),
 ]);
 
 /// What differs, claims, and parts with their plants.
