@@ -412,7 +412,7 @@ pub(super) fn begun(flown: &Flown<'_>, patch: Patch, moment: Moment) -> Flight {
     let rest = flown.gains.rest();
     let begun = |tuner: &Tuner<'_>| tuner.begun(rest, moment == Moment::First, OWN);
     let tuned = flown.tuner.as_ref().map(begun);
-    let symbols = OWN + usize::from(tuned.is_some());
+    let symbols = OWN + tuned.as_ref().map_or(0, |tuned| tuned.gains.len());
     Flight { values, last, setpoint, load, tuned, ball: 0.0, symbols, limited: false }
 }
 

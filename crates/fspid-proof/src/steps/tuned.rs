@@ -76,7 +76,8 @@ impl<'a> Tuner<'a> {
     }
 
     /// At rest: at the controller's first sample the nominal gains, later those that it has come to, within [`LEFT`] of the
-    /// way. The symbol is that of how much is left.
+    /// way. The symbol and the two after it are those of how much is left of each: one rises where another falls, and limits
+    /// end the way of each for itself.
     pub(super) fn begun(&self, rest: [Interval; 3], first: bool, symbol: usize) -> Tuned {
         let gains = [0, 1, 2].map(|gain: usize| {
             let nominal = self.equations.gains[gain].nominal;
@@ -86,7 +87,7 @@ impl<'a> Tuner<'a> {
             let rest = rest[gain];
             let left = (Interval::point(nominal) - rest) * Interval::point(0.5 * LEFT);
             let middle = Affine::constant(rest + left);
-            middle.and_noise(left.magnitude(), symbol)
+            middle.and_noise(left.magnitude(), symbol + gain)
         });
         Tuned { gains, model: [Affine::default(), Affine::default()] }
     }
