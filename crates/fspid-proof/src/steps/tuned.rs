@@ -43,7 +43,7 @@ impl Tuned {
 pub(super) struct Tuner<'a> {
     lines: Lines<'a>,
     equations: TunerEquations<f64>,
-    /// Most that the reference model is off later, in units of where it is: see [`later`](Self::later).
+    /// Most that the reference model is off later, in units of where it is.
     later: f64,
 }
 
