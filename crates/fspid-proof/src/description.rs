@@ -220,7 +220,8 @@ impl LoopDescription {
     }
 
     /// Plant and actuator as they are printed.
-    pub(crate) fn printed(&self) -> PrintedPlant<'_> {
+    #[must_use]
+    pub fn printed(&self) -> PrintedPlant<'_> {
         PrintedPlant {
             numerator: &self.numerator,
             denominator: &self.denominator,

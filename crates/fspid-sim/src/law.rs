@@ -2,8 +2,8 @@
 //!
 //! Over the whole sample it is one matrix product. Over a part it is the action of a matrix
 //! exponential on the state: its Taylor series over pieces so short that what follows its last term
-//! is below rounding. Neither allocates. Where such pieces would be too many, as of an aircraft with the inertia of a
-//! pencil, the exponential is made for the part, which does.
+//! is below rounding. Neither allocates. Where such pieces would be too many, as of an aircraft that answers within
+//! microseconds, the exponential is made for the part, which does.
 
 use fspid_lti::{FineMatrix, Matrix, exponential, exponential_change};
 

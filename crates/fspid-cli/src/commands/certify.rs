@@ -55,8 +55,8 @@ pub(crate) struct Arguments {
     /// each case, and in all of them together.
     #[arg(long, conflicts_with = "check")]
     disturbances: bool,
-    /// With `--cases`: fly in sets the steps of self-tuners that remember as well, as is done without `--cases`. Up to a minute
-    /// for each case.
+    /// With `--cases`: fly in sets the steps of self-tuners that remember as well, as is done without `--cases`. It takes a
+    /// minute or two for each case.
     #[arg(long, requires = "cases")]
     steps: bool,
     /// Certify as well the nonlinear aircraft in a box around its trim, which the search makes as large as it can.

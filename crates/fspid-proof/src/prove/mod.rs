@@ -44,7 +44,7 @@ pub struct Effort {
     /// Changes of gains in a sample, in half widths of their box, largest first: those that a proof for
     /// gains of bounded rate is tried with.
     pub changes: &'static [f64],
-    /// Whether steps with limits of gains that remember are flown in sets, which takes up to a minute.
+    /// Whether steps with limits of gains that remember are flown in sets, which takes a minute or two.
     pub remembered_steps: bool,
     /// Asked between the steps of the work; once it says yes, [`certify`] gives up with [`NotProvable::Stopped`]. It may not
     /// say no again.

@@ -16,7 +16,7 @@ use super::sample::{
 };
 use super::servo::Curve;
 use super::terminal::{NearGains, Terminal};
-use super::tuned::{Tuned, Tuner};
+use super::tuned::{LEFT, Tuned, Tuner};
 use crate::check::{IntervalMatrix, NotProved};
 use crate::description::LoopDescription;
 use crate::gain_set::GainSet;
@@ -26,8 +26,8 @@ const MOST_SYMBOLS: usize = 256;
 const KEPT_SYMBOLS: usize = 160;
 /// The same of gains that remember, where the smallest become one for each number. The fewer, the narrower a set has to be:
 /// steps of the small unmanned `uav-steps.toml` up to 5 deg took 98 sets with 256, 30 with 384, 22 with 512 and 16 with 768.
-const MOST_REMEMBERED: usize = 640;
-const KEPT_REMEMBERED: usize = 320;
+const MOST_FOLLOWED: usize = 640;
+const KEPT_FOLLOWED: usize = 320;
 /// Every so many samples it is asked whether the flights are near enough to rest.
 const LOOKS: usize = 8;
 /// Shares of all gains, around those at rest, for each of which the growth of the ball is known.
@@ -154,7 +154,7 @@ impl<'a> Ready<'a> {
         next.ball = raised(grown + self.norm.of_box(&off), 4);
         next.values.iter_mut().for_each(|value| (value.off, value.of_ball) = (0.0, 0.0));
         match next.tuned {
-            Some(_) if next.symbols > MOST_REMEMBERED => self.gather(&mut next),
+            Some(_) if next.symbols > MOST_FOLLOWED => self.gather(&mut next),
             None if next.symbols > MOST_SYMBOLS => self.absorb(&mut next),
             _ => {}
         }
@@ -220,7 +220,7 @@ impl<'a> Ready<'a> {
         let mut sizes: Vec<(f64, usize)> =
             (OWN..flight.symbols).map(|symbol| (size(symbol), symbol)).collect();
         sizes.sort_unstable_by(|one, other| other.0.total_cmp(&one.0).then(one.1.cmp(&other.1)));
-        let gone = sizes.split_off(sizes.len().min(KEPT_REMEMBERED));
+        let gone = sizes.split_off(sizes.len().min(KEPT_FOLLOWED));
         let mut kept: Vec<usize> =
             (0..OWN).chain(sizes.iter().map(|(_, symbol)| *symbol)).collect();
         kept.sort_unstable();
@@ -409,8 +409,7 @@ pub(super) fn begun(flown: &Flown<'_>, patch: Patch, moment: Moment) -> Flight {
     let place = flown.layout.plant - if flown.lag_order == 2 { 2 } else { 1 };
     values[place] = load.clone();
     let last = Affine::default();
-    let rest = flown.gains.rest();
-    let begun = |tuner: &Tuner<'_>| tuner.begun(rest, moment == Moment::First, OWN);
+    let begun = |tuner: &Tuner<'_>| tuner.begun(flown.rested, moment == Moment::First, OWN);
     let tuned = flown.tuner.as_ref().map(begun);
     let symbols = OWN + tuned.as_ref().map_or(0, |tuned| tuned.gains.len());
     Flight { values, last, setpoint, load, tuned, ball: 0.0, symbols, limited: false }
@@ -535,6 +534,7 @@ pub(super) fn flown<'a>(
         config,
         gains: SeenGains::of(set, fspid, system),
         tuner: fspid.and_then(Tuner::of),
+        rested: around(set, LEFT),
         followers: settings.followers,
         curve: Curve::of(description)?,
         arriving,

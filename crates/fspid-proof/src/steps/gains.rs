@@ -105,11 +105,6 @@ impl<'a> SeenGains<'a> {
         }
     }
 
-    /// Bounds of the gains at rest.
-    pub(super) fn rest(&self) -> [Interval; 3] {
-        self.rest
-    }
-
     /// The gains at rest.
     pub(super) fn at_rest(&self) -> Between {
         around(self.rest.map(Interval::midpoint), self.rest)

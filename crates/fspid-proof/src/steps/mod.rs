@@ -50,7 +50,7 @@ const MOST_SAMPLES: usize = 40_000;
 const MOST_CHECKED: usize = 280_000;
 const MOVING: usize = 6;
 /// The same where they remember: some dozens of sets of half a minute, each of them flown with hundreds of unknowns.
-const MOST_REMEMBERED: usize = 16 * MOST_CHECKED;
+const MOST_CHECKED_REMEMBERED: usize = 16 * MOST_CHECKED;
 const SEARCHED: usize = 6;
 /// Most boxes along the set-points.
 pub const MOST_PIECES: usize = 4096;
@@ -63,7 +63,7 @@ const NARROWEST: f64 = 1.0 / 2048.0;
 ///
 /// From rest at the trim without a load, a step of the set-point by up to `setpoint_rad` and at the same sample one of a load
 /// at the elevator by up to `load_rad`, either way, both of which then stay. Gains that remember begin at the nominal ones, or
-/// at those that a long rest has brought them to ([`Stepped::rested_s`]).
+/// at those that a long rest has brought them to, from wherever they were ([`Stepped::rested_s`]).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Steps {
     /// Largest step, rad.
@@ -137,7 +137,7 @@ fn not_flown(fspid: &Fspid<f64>) -> Option<&'static str> {
 
 /// Most work of a re-check.
 fn most_checked(description: &LoopDescription) -> usize {
-    if remembers(description) { MOST_REMEMBERED } else { MOST_CHECKED }
+    if remembers(description) { MOST_CHECKED_REMEMBERED } else { MOST_CHECKED }
 }
 
 /// True for a self-tuner whose gains remember.
@@ -161,7 +161,7 @@ fn is_elsewhere(description: &LoopDescription, rest: &Rest) -> bool {
 fn is_odd(description: &LoopDescription) -> bool {
     let config = description.controller.config();
     if let Controller::SelfTuning(fspid) = &description.controller
-        && !Tuner::of(fspid).is_some_and(|_| answers_evenly(fspid.tuner()))
+        && !answers_evenly(fspid.tuner())
     {
         return false;
     }

@@ -12,7 +12,7 @@ use crate::gain_set::{GainSet, GainsOver, HeldGains};
 use crate::recheck::input_rows;
 
 use super::terminal::Terminal;
-use super::tuned::{Tuner, corners};
+use super::tuned::Tuner;
 
 /// The rules of a self-tuner, made ready to be enclosed.
 pub(super) fn system(description: &LoopDescription) -> Option<System> {
@@ -42,7 +42,7 @@ pub(crate) fn corners_within(
         if !(near.model_rad >= 0.0) || !tuner.keeps(bounds, seen) {
             return Err(NotProved::NotKept);
         }
-        return Ok(corners(bounds).map(plain).collect());
+        return Ok(boxed(bounds));
     }
     let [error, change] = input_rows(model, fspid);
     let within = [reach(form, level, &error)?, reach(form, level, &change)?];
@@ -81,14 +81,9 @@ fn boxed(gains: [Interval; 3]) -> Vec<HeldGains> {
     };
     let corner = |corner: usize| {
         let [kp, ki, kd] = [0, 1, 2].map(|gain| end(corner, gain));
-        plain(Gains { kp, ki, kd })
+        HeldGains { gains: Gains { kp, ki, kd }, change_gain: 0.0, remembered: None }
     };
     (0..8).map(corner).collect()
-}
-
-/// Gains that make nothing of a held command.
-fn plain(gains: Gains<f64>) -> HeldGains {
-    HeldGains { gains, change_gain: 0.0, remembered: None }
 }
 
 /// Most of the error, rad, and of what a supervisor sees beside it, in the ellipsoid around rest.

@@ -56,6 +56,8 @@ pub(super) struct Flown<'a> {
     pub(super) gains: SeenGains<'a>,
     /// Of a law that remembers.
     pub(super) tuner: Option<Tuner<'a>>,
+    /// Where its gains are after a rest.
+    pub(super) rested: [Interval; 3],
     pub(super) followers: Followers,
     pub(super) curve: Option<Curve>,
     /// Limits of the command that arrives, rad.

@@ -67,7 +67,7 @@ pub struct NearGains {
 }
 
 impl NearGains {
-    /// The box; nothing lies in one whose ends are not in order.
+    /// The box; one whose ends are not in order is that of zeros alone, and is proved or refused as such.
     pub(crate) fn bounds(&self) -> [Interval; 3] {
         self.gains.map(|[least, most]| Interval::new(least, most).unwrap_or(Interval::ZERO))
     }
@@ -85,10 +85,11 @@ pub(super) struct NearRest<'a> {
 impl NearRest<'_> {
     /// The form with the largest ellipsoid that is found.
     pub(super) fn found(&self) -> Option<Terminal> {
-        let Controller::SelfTuning(fspid) = &self.certificate.description.controller else {
-            return self.largest(None).map(|(_, terminal)| terminal);
+        let tuner = match &self.certificate.description.controller {
+            Controller::Fixed(_) => None,
+            Controller::SelfTuning(fspid) => Tuner::of(fspid),
         };
-        let Some(tuner) = Tuner::of(fspid) else {
+        let Some(tuner) = tuner else {
             return self.largest(None).map(|(_, terminal)| terminal);
         };
         // The more gains may still be off those at rest, the earlier a flight is near; and the smaller is what is near.

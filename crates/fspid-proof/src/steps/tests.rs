@@ -33,6 +33,39 @@ fn flown(scenario: &Scenario, [setpoint_rad, load_rad]: [f64; 2], at: usize) -> 
     theta.split_off(at)
 }
 
+/// How many samples of a set hold those of three flights in it, as long as it says something, and what it has come to.
+fn held(
+    loop_: &sample::Flown<'_>,
+    scenario: &Scenario,
+    patch: Patch,
+    (first, at): (Moment, usize),
+) -> (usize, sample::Flight) {
+    let flights: Vec<Vec<f64>> = [0.0, 0.4, 1.0]
+        .map(|share: f64| {
+            let between = |[a, b]: [f64; 2]| a + share * (b - a);
+            flown(scenario, [between(patch.setpoint), between(patch.load)], at)
+        })
+        .to_vec();
+    let mut set = flights::begun(loop_, patch, first);
+    for sample in 0..SAMPLES {
+        let range = set.values[0].range();
+        for flight in &flights {
+            let theta = flight[sample];
+            let inside = theta >= range.lower() - ROUNDING && theta <= range.upper() + ROUNDING;
+            let name = &scenario.name;
+            assert!(inside, "{name} {first:?}, sample {sample}: {theta:e} {range:?}");
+        }
+        let moment = if sample == 0 { first } else { Moment::Later };
+        let Ok(passage) = loop_.pass(&set, moment, Judge::Measured) else { return (sample, set) };
+        set = passage.flight;
+        // Sets so wide say nothing any more.
+        if set.symbols > 800 || range.width() > 1.0 {
+            return (sample, set);
+        }
+    }
+    (SAMPLES, set)
+}
+
 /// Drawn self-tuners that remember, each flown as a set and at three points of it: from the controller's first sample, and
 /// from a rest as long as the claim asks for.
 #[test]
@@ -40,6 +73,7 @@ fn a_set_of_flights_holds_every_flight_of_a_self_tuner_that_remembers() {
     let (mut compared, mut limited, mut moved) = (0, 0, 0.0_f64);
     for seed in 0..60 {
         let mut scenario = drawn::remembering_with_limits(&mut drawn::Dice::new(seed));
+        scenario.name = format!("seed {seed}");
         scenario.surroundings.pitch_sensor = None;
         let plant = scenario.plant.linear().expect("linear");
         let controller = &scenario.controllers[0].controller;
@@ -60,40 +94,19 @@ fn a_set_of_flights_holds_every_flight_of_a_self_tuner_that_remembers() {
         let most = 0.02 + 0.1 * (seed % 7) as f64;
         let patch = Patch { setpoint: [most, most * 1.001], load: [0.0, 0.0] };
         for (first, at) in [(Moment::First, 0), (Moment::Stepped, rest)] {
-            let flights: Vec<Vec<f64>> = [0.0, 0.4, 1.0]
-                .map(|share: f64| {
-                    let [a, b] = patch.setpoint;
-                    flown(&scenario, [a + share * (b - a), 0.0], at)
-                })
-                .to_vec();
-            let mut set = flights::begun(&loop_, patch, first);
-            let tuned = set.tuned.as_ref().expect("remembers");
+            let begun = flights::begun(&loop_, patch, first);
+            let tuned = begun.tuned.as_ref().expect("remembers");
             // What is left of one gain's way says nothing of another's.
             let own = |gain: usize, symbol: usize| {
                 tuned.gains[gain].parts.get(symbol).copied().unwrap_or(0.0) > 0.0
             };
             let shared = |symbol: &usize| (0..3).filter(|gain| own(*gain, *symbol)).count() > 1;
-            assert_eq!((0..set.symbols).find(shared), None, "{seed} {first:?}");
-            let begun = tuner.ranges(tuned);
-            for sample in 0..SAMPLES {
-                let range = set.values[0].range();
-                for flight in &flights {
-                    let theta = flight[sample];
-                    let inside =
-                        theta >= range.lower() - ROUNDING && theta <= range.upper() + ROUNDING;
-                    assert!(inside, "{seed} {first:?}, sample {sample}: {theta:e} {range:?}");
-                }
-                let moment = if sample == 0 { first } else { Moment::Later };
-                let Ok(passage) = loop_.pass(&set, moment, Judge::Measured) else { break };
-                set = passage.flight;
-                if set.symbols > 800 || range.width() > 0.1 {
-                    break;
-                }
-                compared += 1;
-            }
-            limited += usize::from(set.limited);
-            let ended = tuner.ranges(set.tuned.as_ref().expect("remembers"));
-            for (one, other) in begun.into_iter().zip(ended) {
+            assert_eq!((0..begun.symbols).find(shared), None, "{seed} {first:?}");
+            let (samples, ended) = held(&loop_, &scenario, patch, (first, at));
+            compared += samples;
+            limited += usize::from(ended.limited);
+            let ended = tuner.ranges(ended.tuned.as_ref().expect("remembers"));
+            for (one, other) in tuner.ranges(tuned).into_iter().zip(ended) {
                 let apart = (one.midpoint() - other.midpoint()).abs();
                 moved = moved.max(apart / one.magnitude().max(1e-9));
             }
@@ -113,6 +126,7 @@ fn a_set_of_flights_holds_every_flight_of_the_simulator() {
             0 => drawn::scenario(dice),
             _ => drawn::with_limits(dice),
         };
+        scenario.name = format!("seed {seed}");
         // Bias and resolution are no part of a claim about steps.
         scenario.surroundings.pitch_sensor = None;
         let plant = scenario.plant.linear().expect("linear");
@@ -132,32 +146,10 @@ fn a_set_of_flights_holds_every_flight_of_the_simulator() {
         let loop_ = flights::flown(&description, &model, &set, rules.as_ref()).expect("enclosed");
         let most = 0.02 + 0.1 * (seed % 7) as f64;
         let patch = Patch { setpoint: [most, most * 1.001], load: [-0.01, -0.0099] };
-        for (first, at) in [(Moment::First, 0), (Moment::Stepped, 3)] {
-            let flights: Vec<Vec<f64>> = [0.0, 0.4, 1.0]
-                .map(|share: f64| {
-                    let between = |[a, b]: [f64; 2]| a + share * (b - a);
-                    flown(&scenario, [between(patch.setpoint), between(patch.load)], at)
-                })
-                .to_vec();
-            let mut set = flights::begun(&loop_, patch, first);
-            for sample in 0..SAMPLES {
-                let range = set.values[0].range();
-                for flight in &flights {
-                    let theta = flight[sample];
-                    let inside =
-                        theta >= range.lower() - ROUNDING && theta <= range.upper() + ROUNDING;
-                    assert!(inside, "{seed} {first:?}, sample {sample}: {theta:e} {range:?}");
-                }
-                let moment = if sample == 0 { first } else { Moment::Later };
-                let Ok(passage) = loop_.pass(&set, moment, Judge::Measured) else { break };
-                set = passage.flight;
-                // Sets so wide say nothing any more.
-                if set.symbols > 400 || range.width() > 1.0 {
-                    break;
-                }
-                compared += 1;
-            }
-            limited += usize::from(set.limited);
+        for moment in [(Moment::First, 0), (Moment::Stepped, 3)] {
+            let (samples, ended) = held(&loop_, &scenario, patch, moment);
+            compared += samples;
+            limited += usize::from(ended.limited);
         }
     }
     assert!(compared > 1000 && limited > 15, "{compared} samples, {limited} sets at limits");

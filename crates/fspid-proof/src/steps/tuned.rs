@@ -6,15 +6,15 @@
 //! where what is seen passes the centre of a set.
 
 use fspid_core::equations::{LawKind, SecondInputKind, TunerEquations};
-use fspid_core::{Fspid, Gains, ModelState, ReferenceModel};
+use fspid_core::{Fspid, ModelState, ReferenceModel};
 use fspid_numeric::scalar::Interval;
 
 use super::affine::Affine;
 use super::cut::Line;
 use crate::gain_set::Lines;
 
-/// Of the way from the nominal gains to those at rest so much may be left when a step comes.
-const LEFT: f64 = 1.0 / 1024.0;
+/// Of the way from any gains to those at rest so much may be left when a step comes.
+pub(super) const LEFT: f64 = 1.0 / 1024.0;
 /// Most samples after which the reference model is asked to have come nearer.
 const MOST_POWERS: usize = 100_000;
 
@@ -75,24 +75,22 @@ impl<'a> Tuner<'a> {
         Some(Self { lines, equations, later })
     }
 
-    /// At rest: at the controller's first sample the nominal gains, later those that it has come to, within [`LEFT`] of the
-    /// way. The symbol and the two after it are those of how much is left of each: one rises where another falls, and limits
-    /// end the way of each for itself.
-    pub(super) fn begun(&self, rest: [Interval; 3], first: bool, symbol: usize) -> Tuned {
+    /// At rest: at the controller's first sample the nominal gains, later those of a box. The symbol and the two after it are
+    /// those of the gains: one may rise where another falls, and limits end the way of each for itself.
+    pub(super) fn begun(&self, rested: [Interval; 3], first: bool, symbol: usize) -> Tuned {
         let gains = [0, 1, 2].map(|gain: usize| {
             let nominal = self.equations.gains[gain].nominal;
-            if first {
-                return Affine::constant(Interval::point(nominal));
-            }
-            let rest = rest[gain];
-            let left = (Interval::point(nominal) - rest) * Interval::point(0.5 * LEFT);
-            let middle = Affine::constant(rest + left);
-            middle.and_noise(left.magnitude(), symbol + gain)
+            let [lower, upper] = match first {
+                true => [nominal; 2],
+                false => [rested[gain].lower(), rested[gain].upper()],
+            };
+            Affine::unknown([lower, upper], symbol + gain)
         });
         Tuned { gains, model: [Affine::default(), Affine::default()] }
     }
 
-    /// How long a rest has to last for [`begun`](Self::begun), s.
+    /// How long a rest has to last, s, for gains to have come within [`LEFT`] of the way to those at rest, from wherever they
+    /// were: $(1 - \lambda T)^n$ of it is left after n samples.
     pub(super) fn rests_s(&self) -> f64 {
         let numbers = &self.equations.numbers;
         let share = numbers.leakage_per_s * numbers.dt_s;
@@ -249,15 +247,4 @@ fn most_later(equations: &TunerEquations<f64>) -> Option<f64> {
         power = [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]];
     }
     None
-}
-
-/// The gains at corners of a box.
-pub(super) fn corners(bounds: [Interval; 3]) -> impl Iterator<Item = Gains<f64>> {
-    (0..8_usize).map(move |corner| {
-        let end = |gain: usize| match corner >> gain & 1 {
-            0 => bounds[gain].lower(),
-            _ => bounds[gain].upper(),
-        };
-        Gains { kp: end(0), ki: end(1), kd: end(2) }
-    })
 }

@@ -17,7 +17,6 @@ use fspid_sim::{Course, LinearPlant, Plant, Scenario, Timing, Weather, fly};
 
 use super::drawn::{self, Dice};
 use super::flown::{quick, without_limits};
-use super::worst::printed;
 
 /// Rounding of flights, as a share, and rad.
 const SHARE: f64 = 1.0 + 1e-9;
@@ -262,7 +261,7 @@ pub(crate) fn frozen_norm(certificate: &Certificate, gains: Gains<f64>) -> f64 {
     let description = &certificate.description;
     let model = description.enclosed().expect("enclosed").midpoint();
     let matrix = model.closed_matrix(gains).expect("a matrix");
-    let plant = printed(description);
+    let plant = description.printed();
     let entry = plant.driven(None).expect("driven");
     let (states, inputs) = (matrix.rows(), entry.columns());
     let at = |frequency: f64| {

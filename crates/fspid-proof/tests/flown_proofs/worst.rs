@@ -3,9 +3,8 @@
 
 use fspid_core::Gains;
 use fspid_lti::Matrix;
-use fspid_proof::check::{ActuatorLag, PrintedPlant};
 use fspid_proof::gain_set::IncrementMap;
-use fspid_proof::{Certificate, Claim, Disturbed, Extent, LoopDescription, Quantity, Way};
+use fspid_proof::{Certificate, Claim, Disturbed, Extent, Quantity, Way};
 use fspid_sim::Controller;
 
 /// Samples of a motion of the gains.
@@ -62,17 +61,6 @@ pub(crate) fn motion(
     gains
 }
 
-/// Plant and servo of a certificate, as it prints them.
-pub(crate) fn printed(description: &LoopDescription) -> PrintedPlant<'_> {
-    PrintedPlant {
-        numerator: &description.numerator,
-        denominator: &description.denominator,
-        elevator_sign: description.elevator_sign,
-        lag: ActuatorLag::from(description.actuator.lag()),
-        dt_s: description.controller.config().dt_s,
-    }
-}
-
 /// The loop along a motion of its gains: its matrix at each sample, what is seen there, and how the elevator enters.
 struct Along {
     matrices: Vec<Matrix>,
@@ -84,7 +72,7 @@ struct Along {
 fn along(certificate: &Certificate, gains: &[Gains<f64>], of: (&Way, Quantity)) -> Along {
     let ((way, quantity), description) = (of, &certificate.description);
     let model = description.enclosed().expect("enclosed").midpoint();
-    let plant = printed(description);
+    let plant = description.printed();
     let numerator = match way {
         Way::Elevator => None,
         Way::Air { numerator, .. } => Some(&numerator[..]),

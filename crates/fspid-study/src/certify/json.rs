@@ -15,6 +15,9 @@ use crate::json::{merged, present, with_null_reasons};
 /// Version of the answer's shape.
 const SCHEMA: u32 = 2;
 
+/// Why nothing is said of steps.
+const NO_STEPS: &str = "no step from rest is proved with limits acting; of gains that remember it is asked in cases with --steps alone";
+
 /// Why keys of these answers are null.
 const NULLS: [(&str, &str); 18] = [
     ("decay_per_sample", "the claim is one of growth, or no rate is proved"),
@@ -24,10 +27,10 @@ const NULLS: [(&str, &str); 18] = [
     ),
     ("limits_left_out", "no limit is left out"),
     ("pitch_within_deg", "the claim holds for every pitch angle"),
-    ("steps_within_deg", "no step from rest is proved with limits acting"),
-    ("steps_load_within_deg", "no step from rest is proved with limits acting"),
-    ("steps_limited_until_s", "no step from rest is proved with limits acting"),
-    ("steps_after_rest_s", "no step from rest is proved with limits acting, or no gains remember"),
+    ("steps_within_deg", NO_STEPS),
+    ("steps_load_within_deg", NO_STEPS),
+    ("steps_limited_until_s", NO_STEPS),
+    ("steps_after_rest_s", "no such step is proved, or no gains remember"),
     ("no_limit_acts_up_to", "there are no limits, or they are not covered"),
     ("open_because", "there is an answer, or nothing more is known of why there is none"),
     ("at", "no question can be asked of the family, or the loop as it is is not proved"),
