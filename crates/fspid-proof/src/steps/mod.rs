@@ -18,6 +18,7 @@ mod terminal;
 #[cfg(test)]
 mod tests;
 mod tuned;
+mod wide;
 
 use fspid_core::{Fspid, IntegralForm, Law, SelfTuner};
 use fspid_fuzzy::Output;
@@ -304,7 +305,7 @@ impl Steps {
             return None;
         }
         let near = NearRest { certificate, enclosed: model, held, rest: &rest };
-        let terminal = near.found()?;
+        let terminal = near.found(stops)?;
         let system = system(description);
         let common = common(certificate, &terminal);
         let forms = [&terminal, &common];

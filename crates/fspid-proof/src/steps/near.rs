@@ -74,7 +74,7 @@ fn over(
 }
 
 /// Corners of a box of gains.
-fn boxed(gains: [Interval; 3]) -> Vec<HeldGains> {
+pub(super) fn boxed(gains: [Interval; 3]) -> Vec<HeldGains> {
     let end = |corner: usize, gain: usize| match corner >> gain & 1 {
         0 => gains[gain].lower(),
         _ => gains[gain].upper(),

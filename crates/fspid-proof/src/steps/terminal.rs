@@ -8,7 +8,8 @@
 //!
 //! counts how near to its limits the loop comes from now on: where it is 1 or less, none acts. The second sum makes room for
 //! gains that are somewhat off those at rest; the smaller the ellipsoid, the less they are. Ordinary arithmetic finds it; that
-//! it decreases for all gains near rest, and that no limit acts there, is proved as of any other form.
+//! it decreases for all gains near rest, and that no limit acts there, is proved as of any other form. Of gains that remember
+//! see [`super::wide`].
 
 use fspid_core::Gains;
 use fspid_lti::Matrix;
@@ -16,16 +17,16 @@ use fspid_numeric::scalar::Interval;
 use fspid_sim::Controller;
 use fspid_sim::loop_model::LoopModel;
 
-use crate::certificate::{Certificate, Claim};
+use crate::certificate::Certificate;
 use crate::check::{IntervalMatrix, decreases};
 use crate::gain_set::{GainSet, HeldGains};
 use crate::limits;
 use crate::rest::Rest;
 use crate::solve;
 
-use super::flights::around;
-use super::near::{corners_within, seen_within};
+use super::near::corners_within;
 use super::tuned::Tuner;
+use super::wide::wide;
 
 /// Part of the way from the slowest mode to 1 at which the form still decreases.
 const SLOWER: f64 = 0.5;
@@ -35,14 +36,13 @@ const REGULAR: f64 = 1e-9;
 const WEIGHTS: [f64; 6] = [0.0, 0.01, 0.1, 1.0, 10.0, 100.0];
 /// Levels are tried so many times, each a quarter of the one before.
 const QUARTERS: i32 = 9;
-/// Gains that remember may be off those at rest by such shares of all of them, the widest first.
-const ROOMS: [f64; 6] = [1.0, 0.5, 0.25, 0.1, 0.04, 0.016];
-/// Of the widest ellipsoid that is found one with more room may have so much.
+/// Largest error, rad, near rest that is tried for gains that remember, how much smaller each is than the one before, and how
+/// many there are.
+const LARGEST_ERROR_RAD: f64 = 0.1;
+const SMALLER: f64 = 0.7;
+const ERRORS: u8 = 26;
+/// Of the widest ellipsoid that is found one with more room for gains may have so much.
 const ENOUGH: f64 = 0.4;
-/// The box is so much wider, of all gains, than those that gains tend to, which they only come near.
-const SLACK: f64 = 1.0 / 1024.0;
-/// Of the largest error near rest the reference model may still be off so much.
-const MODEL: f64 = 0.25;
 
 /// A form near rest.
 #[derive(Clone, Debug, PartialEq)]
@@ -84,43 +84,34 @@ pub(super) struct NearRest<'a> {
 
 impl NearRest<'_> {
     /// The form with the largest ellipsoid that is found.
-    pub(super) fn found(&self) -> Option<Terminal> {
+    pub(super) fn found(&self, stops: fn() -> bool) -> Option<Terminal> {
         let tuner = match &self.certificate.description.controller {
             Controller::Fixed(_) => None,
             Controller::SelfTuning(fspid) => Tuner::of(fspid),
         };
         let Some(tuner) = tuner else {
-            return self.largest(None).map(|(_, terminal)| terminal);
+            return self.largest();
         };
-        // The more gains may still be off those at rest, the earlier a flight is near; and the smaller is what is near.
-        let found = ROOMS.into_iter().filter_map(|room| self.largest(Some((&tuner, room))));
-        let found: Vec<(f64, Terminal)> = self.own(&tuner).into_iter().chain(found).collect();
+        // The larger the error, the more gains may still be off those at rest, and the earlier a flight is near.
+        let errors = (0..ERRORS).map(|power| LARGEST_ERROR_RAD * libm::pow(SMALLER, power.into()));
+        let found = errors.filter_map(|error_rad| {
+            let terminal = wide(self, &tuner, error_rad, stops)?;
+            let within = limits::pitch_within(self.enclosed, &terminal.form, terminal.level)?;
+            self.holds(&terminal).then_some((within, terminal))
+        });
+        let found: Vec<(f64, Terminal)> = found.collect();
         let widest = found.iter().map(|(within, _)| *within).fold(0.0, f64::max);
         found.into_iter().find(|(within, _)| *within >= ENOUGH * widest).map(|(_, it)| it)
     }
 
-    /// The claim's own form, where it is one for all gains and has a rate.
-    fn own(&self, tuner: &Tuner<'_>) -> Option<(f64, Terminal)> {
-        let (Claim::CommonQuadratic { form, rate }, Some(level)) =
-            (&self.certificate.claim, self.certificate.level)
-        else {
-            return None;
-        };
-        let plain = Terminal { form: form.clone(), rate: *rate, level, gains: None };
-        let terminal = self.with_gains(tuner, 1.0, plain)?;
-        let within = limits::pitch_within(self.enclosed, form, level)?;
-        (*rate < 1.0 && self.holds(&terminal)).then_some((within, terminal))
-    }
-
-    /// The form with the largest ellipsoid, and how far the pitch angle may be off in it, rad; with gains that remember
-    /// within a share of all of them, around those at rest.
-    fn largest(&self, remembered: Option<(&Tuner<'_>, f64)>) -> Option<(f64, Terminal)> {
+    /// The form with the largest ellipsoid, of gains that do not remember.
+    fn largest(&self) -> Option<Terminal> {
         let [kp, ki, kd] = self.held.rest.map(Interval::midpoint);
         let gains = Gains { kp, ki, kd };
         let model = self.enclosed.midpoint();
         let mut best: Option<(f64, Terminal)> = None;
         for weight in WEIGHTS {
-            let Some(terminal) = self.weighted(&model, gains, weight, remembered) else { continue };
+            let Some(terminal) = self.weighted(&model, gains, weight) else { continue };
             // Compared by how far the pitch angle may be off.
             let within = limits::pitch_within(self.enclosed, &terminal.form, terminal.level);
             let within = within.unwrap_or(0.0);
@@ -128,16 +119,10 @@ impl NearRest<'_> {
                 best = Some((within, terminal));
             }
         }
-        best
+        best.map(|(_, terminal)| terminal)
     }
 
-    fn weighted(
-        &self,
-        model: &LoopModel<f64>,
-        gains: Gains<f64>,
-        weight: f64,
-        remembered: Option<(&Tuner<'_>, f64)>,
-    ) -> Option<Terminal> {
+    fn weighted(&self, model: &LoopModel<f64>, gains: Gains<f64>, weight: f64) -> Option<Terminal> {
         let description = &self.certificate.description;
         let matrix = model.closed_matrix(gains).ok()?;
         let radius = fspid_lti::spectral_radius(&matrix).ok()?;
@@ -176,38 +161,10 @@ impl NearRest<'_> {
         let most = limits::level(description, model, &[corner], &form, self.rest)?;
         let levels = (0..QUARTERS).map(|quarter| most * 0.95 * libm::ldexp(1.0, -2 * quarter));
         (rate < 1.0).then_some(())?;
-        let terminals = levels.filter_map(|level| {
-            let plain = Terminal { form: form.clone(), rate, level, gains: None };
-            match remembered {
-                None => Some(plain),
-                Some((tuner, room)) => self.with_gains(tuner, room, plain),
-            }
-        });
+        let terminals =
+            levels.map(|level| Terminal { form: form.clone(), rate, level, gains: None });
         let mut terminals = terminals.filter(|terminal| self.holds(terminal));
         terminals.next()
-    }
-
-    /// The form with the box of gains that it keeps: so much of all gains around those at rest, and where they tend to.
-    fn with_gains(&self, tuner: &Tuner<'_>, room: f64, plain: Terminal) -> Option<Terminal> {
-        let error_rad = seen_within(tuner, self.enclosed, &plain).ok()?[0];
-        let model_rad = match tuner.change_divisor() {
-            Some(_) => 0.0,
-            None => MODEL * error_rad,
-        };
-        let with = |gains: [Interval; 3]| {
-            let gains = gains.map(|gain| [gain.lower(), gain.upper()]);
-            Terminal { gains: Some(NearGains { gains, model_rad }), ..plain.clone() }
-        };
-        let bounds = around(self.held, room);
-        let seen = seen_within(tuner, self.enclosed, &with(bounds)).ok()?;
-        let targets = tuner.targets(seen);
-        let whole = self.held.bounds();
-        let kept = |gain: usize| {
-            let slack = SLACK * whole[gain].width();
-            let wider = bounds[gain].hull(targets[gain]) + Interval::between(-slack, slack);
-            wider.intersection(whole[gain])
-        };
-        Some(with([kept(0)?, kept(1)?, kept(2)?]))
     }
 
     /// Whether a form decreases, and no limit acts, for all gains within its ellipsoid.
