@@ -422,3 +422,20 @@ fn free_numbers_of_a_supervisor_are_tuned_alike_on_any_number_of_threads() {
     done(&["check", "one.toml"], folder);
     assert!(done(&["simulate", "one.toml"], folder).contains("TS"));
 }
+
+#[test]
+fn check_tells_of_every_case_that_makes_no_scenario() {
+    let folder = folder();
+    let folder = folder.path();
+    done(&["check", "pitch.toml"], folder);
+    let wrong = "\n[[tuning.case]]\nname = \"misspelt\"\nset = [\"plant.presett=navion-paper\"]\n
+[[tuning.case]]\nname = \"misspelt as well\"\nset = [\"plant.presett=navion-paper\"]\n
+[contest]\n[[contest.case]]\nname = \"backwards\"\nset = [\"loop.duration_s=-1\"]\n";
+    std::fs::write(folder.join("wrong.toml"), format!("{SCENARIO}{wrong}")).expect("written");
+    let told = refused(&["check", "wrong.toml"], folder);
+    assert!(told.contains("case \"misspelt\" makes the scenario wrong"), "{told}");
+    assert!(told.contains("plant.presett") && told.contains("loop.duration_s"), "{told}");
+    assert!(told.contains("case \"backwards\""), "{told}");
+    // The same mistake once.
+    assert!(!told.contains("misspelt as well"), "{told}");
+}

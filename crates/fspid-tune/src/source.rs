@@ -1,8 +1,9 @@
 //! Where a scenario comes from.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use fspid_scenario::file::Template;
+use fspid_scenario::file::{Study, Template};
 use fspid_scenario::tuning::Case;
 
 use crate::error::TuneError;
@@ -33,13 +34,25 @@ impl Source {
         let template = self.template()?;
         let study = template.study();
         let mut files = study.files.clone();
-        let tuned = study.tuning.iter().flat_map(|tuning| &tuning.cases);
-        for case in tuned.chain(study.contest.iter().flat_map(|contest| &contest.cases)) {
+        for case in cases(study) {
             files.extend(self.case(case)?.study().files.iter().cloned());
         }
         files.sort_unstable();
         files.dedup();
         Ok(files)
+    }
+
+    /// What is wrong with the scenario as the cases of its tuning and its contest make it, in their order; of cases that are
+    /// wrong in the same way the first.
+    #[must_use]
+    pub fn wrong_cases(&self, study: &Study) -> Vec<TuneError> {
+        let mut known = BTreeSet::new();
+        let mut is_new = |error: &TuneError| match error {
+            TuneError::Case { problems, .. } => known.insert(problems.to_string()),
+            _ => true,
+        };
+        let wrong = cases(study).filter_map(|case| self.case(case).err());
+        wrong.filter(|error| is_new(error)).collect()
     }
 
     /// Reads the scenario with the changes of a case.
@@ -51,6 +64,12 @@ impl Source {
             problems: Box::new(problems),
         })
     }
+}
+
+/// Cases that a scenario is tuned on, and those that it is judged by.
+fn cases(study: &Study) -> impl Iterator<Item = &Case> {
+    let tuned = study.tuning.iter().flat_map(|tuning| &tuning.cases);
+    tuned.chain(study.contest.iter().flat_map(|contest| &contest.cases))
 }
 
 /// The folder that paths in a scenario are relative to.

@@ -9,12 +9,18 @@ use super::Format;
 use crate::argument::InFile;
 use crate::exit::{Failure, note};
 use fspid_diagnostics::digits::counted;
-use fspid_scenario::file::{self, Template};
+use fspid_scenario::file::{self, Study, Template};
 use fspid_scenario::fuzzy_system;
 use fspid_study::certify::CheckedFile;
 use fspid_study::json::with_null_reasons;
+use fspid_tune::Source;
+
+/// Of cases that are wrong, each in its own way, so many are told.
+const MOST_CASES: usize = 10;
 
 /// Check a scenario or a fuzzy system and tell every problem in it.
+///
+/// Of a scenario the cases that it is tuned on and judged by are checked as well, each with its own changes.
 ///
 /// Where a certificate lies beside a scenario (`pitch.certificate.json` beside `pitch.toml`), it is verified, and compared
 /// with what the scenario flies.
@@ -52,6 +58,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if !study.dispersions.is_empty() {
         template.check_dispersions().map_err(Failure::input)?;
     }
+    check_cases(study, arguments)?;
     for gains in &study.derived_gains {
         note(format_args!("gains of {gains}"));
     }
@@ -84,6 +91,20 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     arguments.format.print(text, json)?;
     certificate.map_or(Ok(()), |(path, checked)| judge(&path, &checked, arguments))
+}
+
+/// The cases that a scenario is tuned on and judged by: each has to be a scenario.
+fn check_cases(study: &Study, arguments: &Arguments) -> Result<(), Failure> {
+    let (path, overrides) = (arguments.file.to_path_buf(), arguments.overrides.clone());
+    let wrong = Source { path, overrides }.wrong_cases(study);
+    if wrong.is_empty() {
+        return Ok(());
+    }
+    let mut told: Vec<String> = wrong.iter().take(MOST_CASES).map(ToString::to_string).collect();
+    if wrong.len() > MOST_CASES {
+        told.push(format!("and {} more", counted(wrong.len() - MOST_CASES, "wrong case")));
+    }
+    Err(Failure::input(told.join("\n")))
 }
 
 /// The certificate beside a scenario, verified and compared with what flies, if there is one.
