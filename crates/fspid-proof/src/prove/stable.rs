@@ -44,13 +44,7 @@ impl Prover<'_> {
 
     /// One form that falls at a rate under some loops.
     pub(crate) fn common_at(&self, matrices: &[Matrix], rate: f64) -> Option<Matrix> {
-        let conditions: Vec<Condition<'_>> =
-            matrices.iter().map(|matrix| Condition { matrix, cone: None }).collect();
-        let problem = LyapunovProblem { conditions: &conditions, cones: &[], rate };
-        match solve::common_lyapunov(&problem, &self.search()) {
-            solve::Verdict::Found(solution) => Some(solution.p),
-            solve::Verdict::NotFound { .. } => None,
-        }
+        solve::common_form(matrices, rate, &self.search())
     }
 
     /// Closed loops of several plants at the gains that span the set, if each of them is stable on its own.

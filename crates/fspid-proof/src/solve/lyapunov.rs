@@ -93,6 +93,18 @@ pub fn common_lyapunov(problem: &LyapunovProblem, effort: &Effort) -> Verdict {
     }
 }
 
+/// One form that decreases under every matrix at a rate, if one is found.
+#[must_use]
+pub fn common_form(matrices: &[Matrix], rate: f64, effort: &Effort) -> Option<Matrix> {
+    let conditions: Vec<Condition<'_>> =
+        matrices.iter().map(|matrix| Condition { matrix, cone: None }).collect();
+    let problem = LyapunovProblem { conditions: &conditions, cones: &[], rate };
+    match common_lyapunov(&problem, effort) {
+        Verdict::Found(solution) => Some(solution.p),
+        Verdict::NotFound { .. } => None,
+    }
+}
+
 /// Looks for the fastest decrease that one form can show, whatever rate the problem names.
 ///
 /// The rate may come out above 1: then no form was found that decreases at all. `None` for a problem that is

@@ -30,7 +30,8 @@ pub use gain_family::GainFamily;
 pub use growth::{Growth, growing_sequence};
 pub use instability::{InstabilityForm, instability_form};
 pub use lyapunov::{
-    BestRate, Condition, LyapunovProblem, Solution, Verdict, best_rate, common_lyapunov,
+    BestRate, Condition, LyapunovProblem, Solution, Verdict, best_rate, common_form,
+    common_lyapunov,
 };
 pub use parameter_dependent::{
     MovingForm, MovingProblem, MovingVerdict, fastest_moving_form, motions_from, moving_form,

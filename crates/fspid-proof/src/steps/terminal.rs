@@ -26,7 +26,7 @@ use crate::solve;
 
 use super::near::corners_within;
 use super::tuned::Tuner;
-use super::wide::wide;
+use super::wide::Wide;
 
 /// Part of the way from the slowest mode to 1 at which the form still decreases.
 const SLOWER: f64 = 0.5;
@@ -92,10 +92,11 @@ impl NearRest<'_> {
         let Some(tuner) = tuner else {
             return self.largest();
         };
+        let wide = Wide::of(self, &tuner, stops)?;
         // The larger the error, the more gains may still be off those at rest, and the earlier a flight is near.
         let errors = (0..ERRORS).map(|power| LARGEST_ERROR_RAD * libm::pow(SMALLER, power.into()));
         let found = errors.filter_map(|error_rad| {
-            let terminal = wide(self, &tuner, error_rad, stops)?;
+            let terminal = wide.within(error_rad)?;
             let within = limits::pitch_within(self.enclosed, &terminal.form, terminal.level)?;
             self.holds(&terminal).then_some((within, terminal))
         });
