@@ -9,6 +9,7 @@ use fspid_sim::{LinearPlant, Plant, Scenario, Steady, Surroundings, Weather};
 
 use crate::description::LoopDescription;
 use crate::scope::{Asked, LeftOut, Range};
+use crate::steps::Commands;
 
 impl Asked {
     /// What is asked of one of a scenario's loops: its set-points and loads, all that stand still at some time
@@ -21,7 +22,7 @@ impl Asked {
             setpoint_rad: steady.largest_setpoint_rad(),
             load_rad: steady.load_with_offsets_rad(plant, description.controller.config()),
         };
-        Self { range, left_out: left_out_of(scenario) }
+        Self { range, left_out: left_out_of(scenario), commands: Commands::of(scenario) }
     }
 }
 

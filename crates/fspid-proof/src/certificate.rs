@@ -9,7 +9,7 @@ use crate::limits;
 use crate::nonlinear::Nonlinear;
 use crate::recheck::Rechecked;
 use crate::scope::{LeftOut, Range, Scope};
-use crate::steps::Steps;
+use crate::steps::{Commanded, Steps};
 
 /// A claim about a loop and the matrices that carry it.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,6 +32,8 @@ pub struct Certificate {
     pub level: Option<f64>,
     /// Steps from rest whose flights may meet limits, where such are claimed.
     pub steps: Option<Steps>,
+    /// The flights that a scenario commands, which may meet limits, where such are claimed.
+    pub commanded: Option<Commanded>,
     /// Plants and actuators beside the one of the description, of which the return to rest is claimed.
     pub family: Option<Family>,
     /// What disturbances do at most, from rest.
@@ -132,6 +134,7 @@ impl Certificate {
             pitch_within_rad: rechecked.pitch_within_rad,
             limits_left_out: self.limits_left_out(rechecked),
             stepped: rechecked.stepped,
+            ended: rechecked.ended,
             disturbed: rechecked.disturbed.clone(),
             left_out,
         }

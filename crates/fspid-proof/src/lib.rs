@@ -50,4 +50,6 @@ pub use prove::{
 pub use recheck::{Kept, RecheckError, Rechecked, Remains};
 pub use rest::NoRest;
 pub use scope::{Asked, LeftOut, Range, Scope};
-pub use steps::{NearGains, Stepped, Steps, Terminal};
+pub use steps::{
+    Commanded, Commands, Ended, Group as LegGroup, Leg, NearGains, Shares, Stepped, Steps, Terminal,
+};

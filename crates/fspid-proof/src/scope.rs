@@ -3,7 +3,7 @@
 use core::fmt;
 
 use crate::disturbances::Disturbed;
-use crate::steps::Stepped;
+use crate::steps::{Commands, Ended, Stepped};
 
 /// The constant set-points and loads that a claim is made for: everything up to these, either way.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,6 +46,8 @@ pub struct Asked {
     pub range: Range,
     /// What is left out, in the order of [`LeftOut::ALL`].
     pub left_out: Vec<LeftOut>,
+    /// What the scenario commands; or what in it is not flown in sets.
+    pub commands: Result<Option<Commands>, &'static str>,
 }
 
 impl Asked {
@@ -59,7 +61,7 @@ impl Asked {
     #[must_use]
     pub fn within(range: Range) -> Self {
         let always = LeftOut::ALL.into_iter().filter(|one| one.always());
-        Self { range, left_out: always.collect() }
+        Self { range, left_out: always.collect(), commands: Ok(None) }
     }
 }
 
@@ -86,6 +88,8 @@ pub struct Scope {
     pub limits_left_out: Option<&'static str>,
     /// Steps from rest that are proved with the limits acting on the way.
     pub stepped: Option<Stepped>,
+    /// The flights that a scenario commands, proved likewise.
+    pub ended: Option<Ended>,
     /// What disturbances do at most, from rest.
     pub disturbed: Vec<Disturbed>,
     /// What the claim does not speak of.

@@ -16,6 +16,7 @@ use crate::description::LoopDescription;
 use crate::disturbances::MOST_BOUNDS;
 use crate::gain_set::MOST_CORNERS;
 use crate::scope::Range;
+use crate::steps::{Commanded, Commands};
 
 /// Most states of a loop.
 pub const MOST_STATES: usize = 128;
@@ -29,7 +30,7 @@ pub const MOST_DIVISIONS: usize = 96;
 pub const MOST_CONES: usize = 96;
 /// Longest sequence of gains that is multiplied out.
 pub const MOST_SAMPLES: usize = 20_000;
-pub use crate::steps::{MOST_LOADS, MOST_PIECES};
+pub use crate::steps::{MOST_CHANGES, MOST_LEG_PARTS, MOST_LEGS, MOST_LOADS, MOST_PIECES};
 
 /// Most work of a re-check: cubes of the number of states, one for each inequality. That is some minutes.
 pub const MOST_WORK: u64 = 4_000_000_000;
@@ -133,6 +134,9 @@ pub(crate) fn check(certificate: &Certificate) -> Result<(), WrongSizes> {
         wrong.within(("steps.ends", "ends of boxes"), steps.ends.len(), [2, MOST_PIECES + 1]);
         wrong.within(("steps.loads", "parts of the loads"), steps.loads, [1, MOST_LOADS]);
         wrong.of_form("steps.near_rest.form", &steps.terminal.form, states);
+    }
+    if let Some(commanded) = &certificate.commanded {
+        wrong.of_commanded(commanded, states);
     }
     let bounds = certificate.disturbances.len();
     wrong.within(("disturbances", "bounds"), bounds, [0, MOST_BOUNDS]);
@@ -245,6 +249,33 @@ impl Sizes {
                 self.within(("claim.inputs", "samples"), inputs.len(), [1, MOST_SAMPLES]);
             }
         }
+    }
+
+    fn of_commanded(&mut self, commanded: &Commanded, states: usize) {
+        let Commanded { commands, terminal, legs } = commanded;
+        let Commands { setpoint, at_servo, at_elevator, .. } = commands;
+        for (path, shares) in [
+            ("commanded.setpoint", setpoint),
+            ("commanded.at_servo", at_servo),
+            ("commanded.at_elevator", at_elevator),
+        ] {
+            self.within((path, "changes"), shares.0.len(), [0, MOST_CHANGES]);
+        }
+        self.within(("commanded.legs", "legs"), legs.len(), [1, MOST_LEGS]);
+        for leg in legs {
+            self.within(("commanded.legs.groups", "groups"), leg.groups.len(), [1, MOST_LEG_PARTS]);
+        }
+        for group in legs.iter().flat_map(|leg| &leg.groups) {
+            let most = MOST_LEG_PARTS + 1;
+            let ends = "ends of parts";
+            self.within(
+                ("commanded.legs.groups.setpoints", ends),
+                group.setpoints.len(),
+                [2, most],
+            );
+            self.within(("commanded.legs.groups.loads", ends), group.loads.len(), [2, most]);
+        }
+        self.of_form("commanded.near_rest.form", &terminal.form, states);
     }
 
     fn of_form(&mut self, path: &'static str, form: &Matrix, states: usize) {

@@ -238,6 +238,7 @@ fn a_certificate_that_asks_nothing_of_the_loop_does_not_hold() {
         range: Range::REST,
         left_out: Vec::new(),
         steps: None,
+        commanded: None,
         claim: Claim::SProcedure { form: Matrix::identity(size), rate: 1.0, multipliers },
         level: None,
         family: None,

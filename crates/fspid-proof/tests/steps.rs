@@ -2,7 +2,8 @@
 
 use fspid_core::{AntiWindup, ControllerSetting, Derivative, Gains, Limits, Pid, PidConfig};
 use fspid_proof::{
-    Asked, Certificate, Effort, LoopDescription, Range, Steps, Terminal, Verdict, certify,
+    Asked, Certificate, Commanded, Commands, Effort, Leg, LegGroup, LoopDescription, Range, Shares,
+    Steps, Terminal, Verdict, certify,
 };
 use fspid_sim::actuator::Actuator;
 use fspid_sim::loop_model::Sensing;
@@ -33,7 +34,16 @@ fn proved(rate_deg_s: f64, step_deg: f64) -> (Certificate, Option<fspid_proof::S
         rate: Sensing::DIRECT,
         controller: Controller::Fixed(Pid::new(gains, config).expect("allowed")),
     };
-    let asked = Asked::within(Range { setpoint_rad: step_deg * DEG, load_rad: 0.5 * DEG });
+    let range = Range { setpoint_rad: step_deg * DEG, load_rad: 0.5 * DEG };
+    // A load at 1 s, and after it a doublet.
+    let commands = Commands {
+        setpoint_rad: step_deg * DEG,
+        load_rad: 0.5 * DEG,
+        setpoint: Shares(vec![(500, 1.0), (700, -1.0), (900, 0.0)]),
+        at_servo: Shares(vec![(50, 1.0)]),
+        at_elevator: Shares::default(),
+    };
+    let asked = Asked { commands: Ok(Some(commands)), ..Asked::within(range) };
     let outcome = certify(&description, &asked, &Effort::default()).expect("an answer");
     let Verdict::Proved(certificate, rechecked) = outcome.verdict else { panic!("not proved") };
     (certificate, rechecked.stepped)
@@ -68,4 +78,48 @@ fn steps_are_not_believed_beyond_their_boxes_their_range_or_their_form() {
     let rate = 0.5 * steps.terminal.rate;
     let faster = Steps { terminal: Terminal { rate, ..steps.terminal.clone() }, ..steps };
     refused(faster);
+}
+
+#[test]
+fn what_a_scenario_commands_is_proved_with_its_limits_and_believed_as_far_as_its_sets_go() {
+    let (certificate, _) = proved(20.0, 2.0);
+    let commanded = certificate.commanded.clone().expect("flights are proved");
+    assert!((commanded.commands.setpoint_rad - 2.0 * DEG).abs() < 1e-12, "{commanded:?}");
+    let ended = certificate.check().expect("holds").ended.expect("flights are proved");
+    assert!(ended.settled_s > 18.0 && ended.settled_s < 60.0, "{ended:?}");
+
+    let refused = |changed: Commanded| {
+        let changed = Certificate { commanded: Some(changed), ..certificate.clone() };
+        changed.check().expect_err("refused").to_string()
+    };
+    let with = |change: &dyn Fn(&mut Commanded)| {
+        let mut changed = commanded.clone();
+        change(&mut changed);
+        refused(changed)
+    };
+    assert!(with(&|it| it.commands.setpoint_rad *= 1.5).contains("range"));
+    assert!(with(&|it| it.commands.load_rad *= 1.5).contains("range"));
+    assert!(with(&|it| it.commands.at_servo = Shares(vec![(50, 2.0)])).contains("range"));
+    assert!(with(&|it| it.legs.clear()).contains("legs"));
+    assert!(with(&|it| it.legs[0].from = 1).contains("follow"));
+    let shorter = |group: &mut LegGroup| {
+        group.setpoints.pop();
+    };
+    let fewer = with(&|it| it.legs.iter_mut().for_each(|leg| shorter(&mut leg.groups[0])));
+    assert!(fewer.contains("fill") || fewer.contains("ends of parts"), "{fewer}");
+    assert!(with(&|it| it.legs[0].groups[0].loads[0] *= 0.5).contains("fill"));
+    let last = |it: &mut Commanded, change: &dyn Fn(&mut Leg)| {
+        if let Some(leg) = it.legs.last_mut() {
+            change(leg);
+        }
+    };
+    assert!(with(&|it| last(it, &|leg| leg.groups[0].of = vec![999])).contains("is not"));
+    let missing = with(&|it| {
+        last(it, &|leg| {
+            leg.groups[0].of.pop();
+        });
+    });
+    assert!(missing.contains("no group") || missing.contains("no set"), "{missing}");
+    with(&|it| it.terminal.level *= 4.0);
+    with(&|it| it.terminal.rate *= 0.5);
 }

@@ -161,6 +161,28 @@ impl Scenario {
         pushes_s
     }
 
+    /// What disturbances add at a place at each sample, rad, noise left out; nothing where none enters there.
+    #[must_use]
+    pub fn loads_rad(&self, entry: Entry) -> Option<Vec<f64>> {
+        self.entering_rad(entry, |disturbance| !disturbance.is_noise())
+    }
+
+    /// The same of those that count.
+    fn entering_rad(
+        &self,
+        entry: Entry,
+        counts: impl Fn(&Disturbance) -> bool,
+    ) -> Option<Vec<f64>> {
+        let mut sum: Option<Vec<f64>> = None;
+        for (stream, disturbance) in (0_u64..).zip(&self.disturbances) {
+            if disturbance.entry() == entry && counts(disturbance) {
+                let values = sum.get_or_insert_with(|| vec![0.0; self.timing.rows()]);
+                disturbance.add_to(values, self.timing, stream);
+            }
+        }
+        sum
+    }
+
     /// Everything that does not depend on the controller, computed once.
     ///
     /// # Errors
@@ -168,16 +190,7 @@ impl Scenario {
     /// or where air moves around a plant that does not feel it.
     pub fn prepare(&self) -> Result<Prepared, SimError> {
         let (setpoint_rad, edges) = self.setpoint.sampled(self.timing);
-        let column = |entry: Entry| {
-            let mut sum: Option<Vec<f64>> = None;
-            for (stream, disturbance) in (0_u64..).zip(&self.disturbances) {
-                if disturbance.entry() == entry {
-                    let values = sum.get_or_insert_with(|| vec![0.0; self.timing.rows()]);
-                    disturbance.add_to(values, self.timing, stream);
-                }
-            }
-            sum
-        };
+        let column = |entry: Entry| self.entering_rad(entry, |_| true);
         for stack in self.externals.iter().filter_map(|it| it.external.source.flight_stack()) {
             let name = stack.protocol.name();
             stack

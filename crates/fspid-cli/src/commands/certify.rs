@@ -55,8 +55,8 @@ pub(crate) struct Arguments {
     /// each case, and in all of them together.
     #[arg(long, conflicts_with = "check")]
     disturbances: bool,
-    /// With `--cases`: fly in sets the steps of self-tuners that remember as well, as is done without `--cases`. It takes a
-    /// minute or two for each case.
+    /// With `--cases`: fly in sets what each case commands, and the steps of self-tuners that remember, as is done without
+    /// `--cases`. It takes a minute or two for each case.
     #[arg(long, requires = "cases")]
     steps: bool,
     /// Certify as well the nonlinear aircraft in a box around its trim, which the search makes as large as it can.
@@ -172,7 +172,7 @@ fn prove_cases(
         let changed = changed(path, &change, arguments)?;
         let only = arguments.controller.as_deref();
         let Arguments { disturbances, family, steps, .. } = *arguments;
-        let effort = Effort { remembered_steps: steps, ..Effort::default() };
+        let effort = Effort { long_flights: steps, ..Effort::default() };
         let question = Question { only, disturbances, family, effort: &effort };
         let added = certifying(telling, |tell| {
             let mut tell = |name: &str| tell(&format!("{name} at {}", change.name));

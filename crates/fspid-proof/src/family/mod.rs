@@ -119,6 +119,7 @@ impl Part {
             claim: self.claim.clone(),
             level: None,
             steps: None,
+            commanded: None,
             family: None,
             disturbances: Vec::new(),
             nonlinear: None,

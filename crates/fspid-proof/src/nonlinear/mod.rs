@@ -123,6 +123,7 @@ impl Nonlinear {
             claim: Claim::CommonQuadratic { form: self.form.clone(), rate: self.rate },
             level: Some(self.level),
             steps: None,
+            commanded: None,
             family: None,
             nonlinear: None,
             ..certificate.clone()

@@ -77,7 +77,8 @@ pub fn bound_disturbances(
     ways: &[Way],
     effort: &Effort,
 ) -> Result<(Certificate, Rechecked), Unbounded> {
-    let asked = Asked { range: certificate.range, left_out: certificate.left_out.clone() };
+    let (range, left_out) = (certificate.range, certificate.left_out.clone());
+    let asked = Asked { range, left_out, commands: Ok(None) };
     let prover = Prover::new(&certificate.description, &asked, effort)?;
     let set = prover.set(certificate.output_factor);
     let recheck = Recheck::with(certificate, prover.enclosed.clone(), set, &prover.slopes)?;

@@ -26,7 +26,7 @@ use crate::recheck::{Kept, Recheck, RecheckError, Rechecked};
 use crate::rest::{NoRest, Rest};
 use crate::scope::{Asked, Range};
 use crate::solve::{self, never};
-use crate::steps::{self, Steps};
+use crate::steps::{self, Commanded, Steps};
 
 /// How hard to try. Nothing depends on a clock.
 #[derive(Clone, Copy, Debug)]
@@ -44,8 +44,9 @@ pub struct Effort {
     /// Changes of gains in a sample, in half widths of their box, largest first: those that a proof for
     /// gains of bounded rate is tried with.
     pub changes: &'static [f64],
-    /// Whether steps with limits of gains that remember are flown in sets, which takes a minute or two.
-    pub remembered_steps: bool,
+    /// Whether the sets of flights that take long are flown, a minute or two: steps with limits of gains that remember, and
+    /// the flights that the scenario commands.
+    pub long_flights: bool,
     /// Asked between the steps of the work; once it says yes, [`certify`] gives up with [`NotProvable::Stopped`]. It may not
     /// say no again.
     pub stops: fn() -> bool,
@@ -60,7 +61,7 @@ impl Default for Effort {
             largest_factor: 64.0,
             frozen_points: 33,
             changes: &[0.1, 0.03, 0.01, 0.003, 0.001, 0.0003],
-            remembered_steps: true,
+            long_flights: true,
             stops: never,
         }
     }
@@ -247,23 +248,42 @@ impl<'a> Prover<'a> {
     /// The verdict with what is proved of steps from rest.
     fn with_steps(&self, verdict: Verdict, set: &GainSet) -> Verdict {
         let Verdict::Proved(certificate, rechecked) = verdict else { return verdict };
-        if steps::remembers(&certificate.description) && !self.effort.remembered_steps {
+        if steps::remembers(&certificate.description) && !self.effort.long_flights {
             return Verdict::Proved(certificate, rechecked);
         }
-        let held = self.rest(set).ok().and_then(|rest| self.held(set, 1.0, &rest).ok());
-        let steps = held.and_then(|held| {
-            Steps::found(&certificate, &self.enclosed, [set, &held], self.effort.stops)
-        });
-        let stepping = Certificate { steps, ..certificate.clone() };
-        let again = || {
+        let Some((steps, commanded)) = self.flights(&certificate, set) else {
+            return Verdict::Proved(certificate, rechecked);
+        };
+        let again = |certificate: &Certificate| {
             let recheck =
-                Recheck::with(&stepping, self.enclosed.clone(), set.clone(), &self.slopes);
+                Recheck::with(certificate, self.enclosed.clone(), set.clone(), &self.slopes);
             recheck.ok()?.until(self.effort.stops).run().ok()
         };
-        match stepping.steps.as_ref().and_then(|_| again()) {
-            Some(rechecked) => Verdict::Proved(stepping, rechecked),
-            None => Verdict::Proved(certificate, rechecked),
-        }
+        let with = |steps: &Option<Steps>, commanded: &Option<Commanded>| {
+            let (steps, commanded) = (steps.clone(), commanded.clone());
+            Certificate { steps, commanded, ..certificate.clone() }
+        };
+        // One that is not believed is not to take the other with it.
+        let tried = [(&steps, &commanded), (&steps, &None), (&None, &commanded)];
+        let all = tried.into_iter().map(|(steps, commanded)| with(steps, commanded));
+        let some = all.filter(|it| it.steps.is_some() || it.commanded.is_some());
+        let found = some.filter_map(|it| again(&it).map(|rechecked| (it, rechecked))).next();
+        let (certificate, rechecked) = found.unwrap_or((certificate, rechecked));
+        Verdict::Proved(certificate, rechecked)
+    }
+
+    /// Steps from rest and the flights that the scenario commands, as far as they are found.
+    fn flights(
+        &self,
+        certificate: &Certificate,
+        set: &GainSet,
+    ) -> Option<(Option<Steps>, Option<Commanded>)> {
+        let held = self.rest(set).ok().and_then(|rest| self.held(set, 1.0, &rest).ok())?;
+        let sets = [set, &held];
+        let search = steps::Search::of(certificate, &self.enclosed, sets, self.effort.stops)?;
+        let commands = self.asked.commands.as_ref().ok().and_then(Option::as_ref);
+        let commands = commands.filter(|_| self.effort.long_flights);
+        Some((search.steps(), commands.and_then(|commands| search.commanded(commands))))
     }
 
     /// A proof for the range, if there is one.
@@ -453,6 +473,7 @@ impl<'a> Prover<'a> {
             claim,
             level,
             steps: None,
+            commanded: None,
             family: None,
             disturbances: Vec::new(),
             nonlinear: None,

@@ -42,6 +42,7 @@ fn certificate(prover: &Prover<'_>, factor: f64, claim: &BoundedRate) -> Certifi
         left_out: prover.asked.left_out.clone(),
         claim: Claim::BoundedRate(claim.clone()),
         steps: None,
+        commanded: None,
         family: None,
         disturbances: Vec::new(),
         nonlinear: None,

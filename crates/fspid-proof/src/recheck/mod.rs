@@ -21,7 +21,7 @@ use crate::nonlinear::{CheckedNonlinear, NonlinearError};
 use crate::rest::{NoRest, Rest};
 use crate::sizes::{self, WrongSizes};
 use crate::solve::never;
-use crate::steps::{Stepped, Terminal, corners_within};
+use crate::steps::{Checked, Ended, Stepped, Terminal, corners_within};
 
 pub(crate) use disturbed::DrivenLoop;
 pub(crate) use moving::{Corner, moved_inputs, part_in};
@@ -52,6 +52,8 @@ pub struct Rechecked {
     pub remains_rad: f64,
     /// Steps from rest that were flown in sets; none where none are claimed.
     pub stepped: Option<Stepped>,
+    /// The flights that a scenario commands, flown in sets; none where none are claimed.
+    pub ended: Option<Ended>,
     /// Members of a family; none where none is claimed.
     pub family: Option<CheckedFamily>,
     /// What disturbances do at most, from rest, in the order of the certificate; what it has for limits alone is in each of
@@ -253,6 +255,7 @@ impl<'a> Recheck<'a> {
         }
         let Proved { inequalities, kept, pitch_within_rad, remains_rad } = self.proved()?;
         let stepped = self.stepped()?;
+        let ended = self.ended()?;
         let disturbed = self.disturbed(remains_rad)?;
         let family = self
             .certificate
@@ -278,6 +281,7 @@ impl<'a> Recheck<'a> {
             rest_error_rad: self.rest.error_rad,
             remains_rad,
             stepped,
+            ended,
             family,
             disturbed,
             nonlinear,
@@ -304,15 +308,31 @@ impl<'a> Recheck<'a> {
     /// Proves what is claimed of steps: the form near rest as any other, then the flights.
     fn stepped(&self) -> Result<Option<Stepped>, RecheckError> {
         let Some(steps) = &self.certificate.steps else { return Ok(None) };
+        self.ends_near_rest(&steps.terminal)?;
+        steps.proved(self.flights()).map(Some).map_err(malformed)
+    }
+
+    /// The same of the flights that a scenario commands.
+    fn ended(&self) -> Result<Option<Ended>, RecheckError> {
+        let Some(commanded) = &self.certificate.commanded else { return Ok(None) };
+        self.ends_near_rest(&commanded.terminal)?;
+        commanded.proved(self.flights()).map(Some).map_err(malformed)
+    }
+
+    fn flights(&self) -> Checked<'_> {
+        let Self { certificate, model, set, stops, .. } = self;
+        Checked { certificate, model, set, stops: *stops }
+    }
+
+    /// Proves the form of the end of flights.
+    fn ends_near_rest(&self, terminal: &Terminal) -> Result<(), RecheckError> {
         if !self.certificate.claim.is_of_stability() {
             return Err(malformed("steps: of a loop that is not claimed to be stable"));
         }
-        let near_rest = steps.near_rest(self.certificate);
+        let near_rest = terminal.near_rest(self.certificate);
         let known = KnownSlopes::default();
         let near = Recheck::with(&near_rest, self.model.clone(), self.set.clone(), &known)?;
-        near.until(self.stops).holds_near_rest(&steps.terminal)?;
-        let stepped = steps.proved(self.certificate, &self.model, &self.set, self.stops);
-        stepped.map(Some).map_err(malformed)
+        near.until(self.stops).holds_near_rest(terminal)
     }
 
     fn proved(&self) -> Result<Proved, RecheckError> {

@@ -1,5 +1,7 @@
 //! Sets of flights, from a step at rest to where no limit acts any more.
 
+use core::ops::Range;
+
 use fspid_core::Gains;
 use fspid_fuzzy::system::System;
 use fspid_lti::Matrix;
@@ -10,7 +12,9 @@ use fspid_sim::loop_model::LoopModel;
 
 use super::affine::{Affine, raised};
 use super::ball::{Growth, Norm};
+use super::commands::Commands;
 use super::gains::{Between, SeenGains};
+use super::joined::Joined;
 use super::sample::{
     FREE, Flight, Flown, Judge, LOAD, Layout, Moment, OWN, PLACES, Passage, Row, SETPOINT, Stop,
 };
@@ -26,8 +30,8 @@ const MOST_SYMBOLS: usize = 256;
 const KEPT_SYMBOLS: usize = 160;
 /// The same of gains that remember, where the smallest become one for each number. The fewer, the narrower a set has to be:
 /// steps of the small unmanned `uav-steps.toml` up to 5 deg took 98 sets with 256, 30 with 384, 22 with 512 and 16 with 768.
-const MOST_FOLLOWED: usize = 640;
-const KEPT_FOLLOWED: usize = 320;
+const MOST_FOLLOWED: usize = 1280;
+const KEPT_FOLLOWED: usize = 640;
 /// Every so many samples it is asked whether the flights are near enough to rest.
 const LOOKS: usize = 8;
 /// Shares of all gains, around those at rest, for each of which the growth of the ball is known.
@@ -67,10 +71,42 @@ pub(super) struct Patch {
     pub(super) load: [f64; 2],
 }
 
+impl Patch {
+    /// All of both.
+    pub(super) fn hull(self, other: &Self) -> Self {
+        let hull = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [a.min(c), b.max(d)];
+        Self { setpoint: hull(self.setpoint, other.setpoint), load: hull(self.load, other.load) }
+    }
+
+    /// Set-point and load, each as its own unknown.
+    pub(super) fn unknowns(&self) -> [Affine; 2] {
+        [Affine::unknown(self.setpoint, SETPOINT), Affine::unknown(self.load, LOAD)]
+    }
+}
+
+/// Where flights begin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Beginning {
+    /// At rest, at the controller's first sample.
+    Controller,
+    /// At rest, at any later one.
+    Rest,
+}
+
+/// What a set of flights is commanded, and from where on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Way<'a> {
+    pub(super) commands: &'a Commands,
+    pub(super) patch: Patch,
+    pub(super) from: Beginning,
+}
+
 /// What came of a set of flights that ended near enough to rest.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Landed {
-    /// Samples from the step to there.
+    /// Samples that were flown.
+    pub(super) flown: usize,
+    /// Samples from the beginning to there.
     pub(super) samples: usize,
     /// A limit may have acted.
     pub(super) limited: bool,
@@ -118,31 +154,88 @@ impl<'a> Ready<'a> {
         self.flown.tuner.as_ref().map(Tuner::rests_s)
     }
 
-    /// Flies a box of set-points and loads, beginning with a step at rest.
+    /// Flights at rest, before anything is commanded.
+    pub(super) fn begun(&mut self, from: Beginning) -> Flight {
+        self.flown.gains.forget();
+        begun(&self.flown, from)
+    }
+
+    /// Flies on until a sample.
     ///
     /// # Errors
     /// Why it was given up, and after how many samples.
-    pub(super) fn fly(
+    pub(super) fn until(
         &mut self,
-        patch: Patch,
-        first: Moment,
-        most: usize,
+        way: &Way<'_>,
+        mut flight: Flight,
+        samples: Range<usize>,
+    ) -> Result<Flight, (Stop, usize)> {
+        let from = samples.start;
+        for sample in samples {
+            flight = self.sample(way, flight, sample).map_err(|stop| (stop, sample - from))?;
+        }
+        Ok(flight)
+    }
+
+    /// Flies on until the flights have landed: not before all is commanded.
+    ///
+    /// # Errors
+    /// Why it was given up, and after how many samples.
+    pub(super) fn landed(
+        &mut self,
+        way: &Way<'_>,
+        mut flight: Flight,
+        samples: Range<usize>,
     ) -> Result<Landed, (Stop, usize)> {
-        self.flown.gains.forget();
-        let mut flight = begun(&self.flown, patch, first);
-        let size = |[least, most]: [f64; 2]| least.abs().max(most.abs());
-        let far = FAR * (size(patch.setpoint) + size(patch.load));
-        for sample in 0..most {
-            let moment = if sample == 0 { first } else { Moment::Later };
-            flight = self.after(&flight, moment).map_err(|stop| (stop, sample))?;
-            if !(flight.values[0].magnitude() <= far && flight.ball.is_finite()) {
-                return Err((Stop::Lost, sample));
-            }
-            if sample % LOOKS == LOOKS - 1 && self.is_near(&flight) {
-                return Ok(Landed { samples: sample + 1, limited: flight.limited });
+        let (from, most) = (samples.start, samples.len());
+        let last = way.commands.last_change();
+        for sample in samples {
+            flight = self.sample(way, flight, sample).map_err(|stop| (stop, sample - from))?;
+            let looks = sample >= last && (sample - last) % LOOKS == LOOKS - 1;
+            if looks && self.is_near(&flight) {
+                let Flight { limited, .. } = flight;
+                return Ok(Landed { flown: sample + 1 - from, samples: sample + 1, limited });
             }
         }
         Err((Stop::Lost, most))
+    }
+
+    /// What sets at the same sample have come to, as one.
+    pub(super) fn joined(&self, sets: &[(Patch, Flight)]) -> Option<Joined> {
+        Joined::of(&self.flown, sets)
+    }
+
+    /// How far the pitch angles of a set are apart, beside what set-point and load make of them, rad.
+    pub(super) fn apart_rad(&self, flight: &Flight) -> f64 {
+        let mut pitch = flight.values[0].clone();
+        pitch.of_ball += self.flown.reach[0] * flight.ball;
+        pitch.parts.iter_mut().take(OWN).for_each(|part| *part = 0.0);
+        pitch.radius()
+    }
+
+    /// The gains of a set, each as a share of what it can reach; where they do not remember, of none.
+    pub(super) fn gains_of_reach(&self, flight: &Flight) -> [Interval; 3] {
+        let reach = self.around.last().copied().unwrap_or([Interval::ENTIRE; 3]);
+        let ranges = self.flown.tuner.as_ref().zip(flight.tuned.as_ref());
+        let Some(ranges) = ranges.map(|(tuner, tuned)| tuner.ranges(tuned)) else {
+            return [Interval::ZERO; 3];
+        };
+        [0, 1, 2].map(|gain: usize| {
+            let width = reach[gain].width();
+            if width > 0.0 { ranges[gain] / Interval::point(width) } else { Interval::ZERO }
+        })
+    }
+
+    /// A sample of a set, with what is commanded there.
+    fn sample(&mut self, way: &Way<'_>, mut flight: Flight, sample: usize) -> Result<Flight, Stop> {
+        commanded(&self.flown, &mut flight, way, sample);
+        let begins = sample == 0 && way.from == Beginning::Controller;
+        let moment = if begins { Moment::First } else { Moment::Later };
+        let flight = self.after(&flight, moment)?;
+        let size = |[least, most]: [f64; 2]| least.abs().max(most.abs());
+        let far = FAR * (size(way.patch.setpoint) + size(way.patch.load));
+        let known = flight.values[0].magnitude() <= far && flight.ball.is_finite();
+        if known { Ok(flight) } else { Err(Stop::Lost) }
     }
 
     /// A set of flights a sample later, what rounding leaves in the ball.
@@ -261,11 +354,11 @@ impl<'a> Ready<'a> {
 
     /// True where every flight is within the level, and its last command within a slew limit.
     fn is_near(&self, flight: &Flight) -> bool {
+        // Rest is the same wherever a load enters.
+        let load = flight.load.plus(&flight.at_servo);
         let away = |value: &Affine, by: [f64; 2]| {
-            let terms = [
-                (Interval::point(-by[0]), &flight.setpoint),
-                (Interval::point(-by[1]), &flight.load),
-            ];
+            let terms =
+                [(Interval::point(-by[0]), &flight.setpoint), (Interval::point(-by[1]), &load)];
             Affine::sum(terms.into_iter().chain([(Interval::ONE, value)]))
         };
         let values: Vec<Affine> = flight
@@ -282,7 +375,7 @@ impl<'a> Ready<'a> {
         let mut size = self.near.size_of(&middle) + self.into_near * flight.ball;
         let off: Vec<f64> = values.iter().map(|value| value.off).collect();
         size += self.near.of_box(&off);
-        let sizes = [&flight.setpoint, &flight.load].map(Affine::magnitude);
+        let sizes = [&flight.setpoint, &load].map(Affine::magnitude);
         size += self.off_rest * raised(sizes[0] + sizes[1], 2);
         for symbol in 0..flight.symbols {
             if size > self.within {
@@ -308,7 +401,7 @@ impl<'a> Ready<'a> {
         let mut each =
             limits.flat_map(|limits| on_their_way.clone().map(move |place| (place, limits)));
         each.all(|(place, (least, most))| {
-            let mut command = flight.values[place].clone();
+            let mut command = flight.values[place].plus(&flight.at_servo);
             command.of_ball = raised(reach[place] * flight.ball, 2);
             command.range().lower() > *least && command.range().upper() < *most
         })
@@ -385,7 +478,9 @@ impl<'a> Ready<'a> {
             values: vec![Affine::default(); size],
             last: Affine::default(),
             setpoint: Affine::unknown([-1.0, 1.0], SETPOINT),
+            risen: Affine::default(),
             load: Affine::unknown([-1.0, 1.0], LOAD),
+            at_servo: Affine::default(),
             tuned: None,
             ball: 0.0,
             symbols: OWN,
@@ -400,19 +495,44 @@ impl<'a> Ready<'a> {
     }
 }
 
-/// At rest, when set-point and load have just stepped.
-pub(super) fn begun(flown: &Flown<'_>, patch: Patch, moment: Moment) -> Flight {
-    let setpoint = Affine::unknown(patch.setpoint, SETPOINT);
-    let load = Affine::unknown(patch.load, LOAD);
-    let mut values = vec![Affine::default(); flown.layout.size];
-    // Behind the deflection there is its rate where the lag is of second order.
-    let place = flown.layout.plant - if flown.lag_order == 2 { 2 } else { 1 };
-    values[place] = load.clone();
-    let last = Affine::default();
-    let begun = |tuner: &Tuner<'_>| tuner.begun(flown.rested, moment == Moment::First, OWN);
+/// At rest, before anything is commanded.
+pub(super) fn begun(flown: &Flown<'_>, from: Beginning) -> Flight {
+    let begun = |tuner: &Tuner<'_>| tuner.begun(flown.rested, from == Beginning::Controller, OWN);
     let tuned = flown.tuner.as_ref().map(begun);
     let symbols = OWN + tuned.as_ref().map_or(0, |tuned| tuned.gains.len());
-    Flight { values, last, setpoint, load, tuned, ball: 0.0, symbols, limited: false }
+    Flight {
+        values: vec![Affine::default(); flown.layout.size],
+        last: Affine::default(),
+        setpoint: Affine::default(),
+        risen: Affine::default(),
+        load: Affine::default(),
+        at_servo: Affine::default(),
+        tuned,
+        ball: 0.0,
+        symbols,
+        limited: false,
+    }
+}
+
+/// What is commanded from a sample on.
+pub(super) fn commanded(flown: &Flown<'_>, flight: &mut Flight, way: &Way<'_>, sample: usize) {
+    let Way { commands, patch, .. } = way;
+    let [setpoint, load] = patch.unknowns();
+    if let Some(to) = commands.setpoint.change(sample) {
+        let to = setpoint.times(to);
+        flight.risen = to.less(&flight.setpoint);
+        flight.setpoint = to;
+    }
+    if let Some(to) = commands.at_servo.change(sample) {
+        flight.at_servo = load.times(to);
+    }
+    if let Some(to) = commands.at_elevator.change(sample) {
+        let to = load.times(to);
+        // Behind the deflection there is its rate where the lag is of second order.
+        let place = flown.layout.plant - if flown.lag_order == 2 { 2 } else { 1 };
+        flight.values[place] = flight.values[place].plus(&to.less(&flight.load));
+        flight.load = to;
+    }
 }
 
 fn unknown(size: usize) -> IntervalMatrix {
@@ -427,7 +547,9 @@ fn forced(flown: &Flown<'_>, shares: [f64; PLACES], gains: Between) -> Option<In
         values: vec![Affine::default(); size],
         last: Affine::default(),
         setpoint: Affine::default(),
+        risen: Affine::default(),
         load: Affine::default(),
+        at_servo: Affine::default(),
         tuned: None,
         ball: 0.0,
         symbols: size,

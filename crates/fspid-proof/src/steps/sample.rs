@@ -1,7 +1,7 @@
 //! One sample of the loop with its limits, for every flight of a set at once.
 //!
-//! The order is that of the simulator. The elevator is counted with its load, so that a load d moves the limits of servo and
-//! controller and nothing else: the deflection $\delta + d$ follows $v + d$ as δ follows v.
+//! The order is that of the simulator. The elevator is counted with the load that enters behind the servo, so that such a load
+//! d moves the limits of servo and controller and nothing else: the deflection $\delta + d$ follows $v + d$ as δ follows v.
 
 use fspid_core::{AntiWindup, PidConfig};
 use fspid_numeric::scalar::Interval;
@@ -77,7 +77,12 @@ pub(super) struct Flight {
     /// The command before.
     pub(super) last: Affine,
     pub(super) setpoint: Affine,
+    /// What the set-point has just changed by.
+    pub(super) risen: Affine,
+    /// At the elevator, behind the servo.
     pub(super) load: Affine,
+    /// At the servo, added to what arrives.
+    pub(super) at_servo: Affine,
     /// What a tuner remembers.
     pub(super) tuned: Option<Tuned>,
     /// Radius, in the norm of the form, of what is beside the values.
@@ -93,8 +98,6 @@ pub(super) struct Flight {
 pub(super) enum Moment {
     /// The first of a controller, and the set-point is there already.
     First,
-    /// The set-point has just stepped.
-    Stepped,
     /// Any other.
     Later,
 }
@@ -201,7 +204,9 @@ impl Pass<'_, '_> {
             values,
             last: command,
             setpoint: self.now.setpoint.clone(),
+            risen: Affine::default(),
             load: self.now.load.clone(),
+            at_servo: self.now.at_servo.clone(),
             tuned: seen.tuned,
             ball: self.now.ball,
             symbols: self.symbols,
@@ -261,16 +266,13 @@ impl Pass<'_, '_> {
         let nothing = Affine::default();
         let (of_error, of_derivative) = match (moment, layout.previous) {
             (Moment::First, _) | (_, None) => (nothing.clone(), nothing),
-            (Moment::Stepped, Some(_)) => {
-                let weight = point(config.setpoint_weights.derivative);
-                (
-                    error.clone(),
-                    Affine::sum([(weight, &self.now.setpoint), (-Interval::ONE, &pitch)]),
-                )
-            }
             (Moment::Later, Some(place)) => {
-                let change = self.state(place).plus(&pitch).times(-Interval::ONE);
-                (change.clone(), change)
+                let fallen = self.state(place).plus(&pitch);
+                let change = |weight: Interval| {
+                    Affine::sum([(weight, &self.now.risen), (-Interval::ONE, &fallen)])
+                };
+                let weight = point(config.setpoint_weights.derivative);
+                (change(Interval::ONE), change(weight))
             }
         };
         let shown =
@@ -445,9 +447,9 @@ impl Pass<'_, '_> {
     /// The plant a sample later.
     fn driven(&mut self, arrived: &Affine) -> Result<Vec<Affine>, Stop> {
         let flown = self.flown;
-        let mut target = arrived.clone();
+        let mut target = arrived.plus(&self.now.at_servo);
         if let Some((least, most)) = flown.arriving {
-            target = self.cut(ARRIVAL, arrived, |range| Line::clamped(range, least, most));
+            target = self.cut(ARRIVAL, &target, |range| Line::clamped(range, least, most));
         }
         let loaded = target.plus(&self.now.load);
         let states = flown.layout.plant;

@@ -8,7 +8,9 @@ use fspid_sim::{Scenario, Timing, fly};
 use super::*;
 use crate::gain_set::IncrementMap;
 use crate::rest::drawn;
-use crate::steps::sample::Judge;
+use crate::steps::flights::{Beginning, Patch, Way};
+use crate::steps::joined::Joined;
+use crate::steps::sample::{Judge, Moment};
 
 /// Samples of a flight, and what rounding of the simulator's own may be off, rad.
 const SAMPLES: usize = 160;
@@ -38,7 +40,7 @@ fn held(
     loop_: &sample::Flown<'_>,
     scenario: &Scenario,
     patch: Patch,
-    (first, at): (Moment, usize),
+    (from, at): (Beginning, usize),
 ) -> (usize, sample::Flight) {
     let flights: Vec<Vec<f64>> = [0.0, 0.4, 1.0]
         .map(|share: f64| {
@@ -46,16 +48,20 @@ fn held(
             flown(scenario, [between(patch.setpoint), between(patch.load)], at)
         })
         .to_vec();
-    let mut set = flights::begun(loop_, patch, first);
+    let commands = Commands::step();
+    let way = Way { commands: &commands, patch, from };
+    let mut set = flights::begun(loop_, from);
     for sample in 0..SAMPLES {
+        flights::commanded(loop_, &mut set, &way, sample);
         let range = set.values[0].range();
         for flight in &flights {
             let theta = flight[sample];
             let inside = theta >= range.lower() - ROUNDING && theta <= range.upper() + ROUNDING;
             let name = &scenario.name;
-            assert!(inside, "{name} {first:?}, sample {sample}: {theta:e} {range:?}");
+            assert!(inside, "{name} {from:?}, sample {sample}: {theta:e} {range:?}");
         }
-        let moment = if sample == 0 { first } else { Moment::Later };
+        let begins = sample == 0 && from == Beginning::Controller;
+        let moment = if begins { Moment::First } else { Moment::Later };
         let Ok(passage) = loop_.pass(&set, moment, Judge::Measured) else { return (sample, set) };
         set = passage.flight;
         // Sets so wide say nothing any more.
@@ -93,8 +99,8 @@ fn a_set_of_flights_holds_every_flight_of_a_self_tuner_that_remembers() {
         let rest = (tuner.rests_s() / scenario.timing.dt_s()).ceil() as usize;
         let most = 0.02 + 0.1 * (seed % 7) as f64;
         let patch = Patch { setpoint: [most, most * 1.001], load: [0.0, 0.0] };
-        for (first, at) in [(Moment::First, 0), (Moment::Stepped, rest)] {
-            let begun = flights::begun(&loop_, patch, first);
+        for (first, at) in [(Beginning::Controller, 0), (Beginning::Rest, rest)] {
+            let begun = flights::begun(&loop_, first);
             let tuned = begun.tuned.as_ref().expect("remembers");
             // What is left of one gain's way says nothing of another's.
             let own = |gain: usize, symbol: usize| {
@@ -146,11 +152,125 @@ fn a_set_of_flights_holds_every_flight_of_the_simulator() {
         let loop_ = flights::flown(&description, &model, &set, rules.as_ref()).expect("enclosed");
         let most = 0.02 + 0.1 * (seed % 7) as f64;
         let patch = Patch { setpoint: [most, most * 1.001], load: [-0.01, -0.0099] };
-        for moment in [(Moment::First, 0), (Moment::Stepped, 3)] {
+        for moment in [(Beginning::Controller, 0), (Beginning::Rest, 3)] {
             let (samples, ended) = held(&loop_, &scenario, patch, moment);
             compared += samples;
             limited += usize::from(ended.limited);
         }
     }
     assert!(compared > 1000 && limited > 15, "{compared} samples, {limited} sets at limits");
+}
+
+/// When the load steps, and the set-point goes up, samples; and how long each half of its doublet is.
+const LOADED: usize = 3;
+const UP: usize = 40;
+const HALF: usize = 30;
+
+/// A load at servo or elevator, and then a doublet of the set-point.
+fn with_commands(scenario: &mut Scenario, entry: Entry, [setpoint_rad, load_rad]: [f64; 2]) {
+    let dt_s = scenario.timing.dt_s();
+    let at = |sample: usize| sample as f64 * dt_s;
+    scenario.timing = Timing::new(dt_s, at(SAMPLES)).expect("allowed");
+    let doublet = Shape::Doublet { at_s: at(UP), width_s: at(HALF) };
+    scenario.setpoint = Profile::new(setpoint_rad, doublet).expect("allowed");
+    let load = Disturbance::new(entry, load_rad, Shape::Step { at_s: at(LOADED) });
+    scenario.disturbances = vec![load.expect("allowed")];
+}
+
+fn pitch_angles(scenario: &Scenario) -> Vec<f64> {
+    let prepared = scenario.prepare().expect("prepared");
+    let mut theta = Vec::new();
+    fly(&prepared, &scenario.controllers[0].controller, |instant| {
+        theta.push(instant.theta_rad);
+        ControlFlow::Continue(())
+    })
+    .expect("flies");
+    theta
+}
+
+/// A sample of a set; nothing where it says nothing any more.
+fn later(
+    loop_: &sample::Flown<'_>,
+    way: &Way<'_>,
+    mut set: sample::Flight,
+    sample: usize,
+) -> Option<sample::Flight> {
+    flights::commanded(loop_, &mut set, way, sample);
+    let moment = if sample == 0 { Moment::First } else { Moment::Later };
+    let set = loop_.pass(&set, moment, Judge::Measured).ok()?.flight;
+    (set.symbols <= 3000 && set.values[0].range().width() < 1.0).then_some(set)
+}
+
+/// Drawn loops with every limit there is, under a load of either sign that enters before or behind the servo, two sets joined
+/// to one, and then with a doublet of the set-point: at every sample the joined set holds the flights of the simulator.
+#[test]
+fn joined_sets_hold_every_flight_of_what_is_commanded() {
+    let (mut compared, mut limited, mut tuned) = (0, 0, 0);
+    for seed in 0..90 {
+        let dice = &mut drawn::Dice::new(seed);
+        let mut scenario = match seed % 3 {
+            0 => drawn::scenario(dice),
+            1 => drawn::with_limits(dice),
+            _ => drawn::remembering_with_limits(dice),
+        };
+        scenario.name = format!("seed {seed}");
+        scenario.surroundings.pitch_sensor = None;
+        let plant = scenario.plant.linear().expect("linear").clone();
+        let controller = scenario.controllers[0].controller;
+        let Ok(description) = LoopDescription::of(&scenario, &plant, &controller) else { continue };
+        if not_covered(&description).is_some() || description.limits().is_empty() {
+            continue;
+        }
+        let Ok(model) = description.enclosed() else { continue };
+        let entry = if seed % 2 == 0 { Entry::Servo } else { Entry::Elevator };
+        let load_rad = 0.003 + 0.001 * (seed % 5) as f64;
+        if entry == Entry::Elevator && sees_loads_at_once(&model, load_rad) {
+            continue;
+        }
+        let set = match &controller {
+            Controller::Fixed(pid) => GainSet::fixed(pid.gains()),
+            Controller::SelfTuning(fspid) => {
+                IncrementMap::of(fspid.tuner(), 12).expect("bounded").gains(1.0)
+            }
+        };
+        let rules = system(&description);
+        let loop_ = flights::flown(&description, &model, &set, rules.as_ref()).expect("enclosed");
+        let most = 0.02 + 0.05 * (seed % 7) as f64;
+        with_commands(&mut scenario, entry, [most, load_rad]);
+        let commands = Commands::of(&scenario).expect("flown").expect("something");
+        let setpoint = [0.9995 * most, most];
+        let whole = Patch { setpoint, load: [-load_rad, load_rad] };
+        let from = Beginning::Controller;
+        let sets = [[-load_rad, 0.0], [0.0, load_rad]].map(|load| {
+            let way = Way { commands: &commands, patch: Patch { setpoint, load }, from };
+            let begun = flights::begun(&loop_, from);
+            let flown = (0..UP).try_fold(begun, |set, sample| later(&loop_, &way, set, sample));
+            flown.map(|flown| (way.patch, flown))
+        });
+        let [Some(one), Some(other)] = sets else { continue };
+        let joined = Joined::of(&loop_, &[one.clone(), other]).expect("two");
+        let mut joint = joined.flight(&one.1, &commands, whole, UP);
+        let flown: Vec<Vec<f64>> = [(1.0, 1.0), (0.9997, -1.0), (0.9995, 0.3), (1.0, -0.01)]
+            .map(|(setpoint, load)| {
+                let mut scenario = scenario.clone();
+                with_commands(&mut scenario, entry, [setpoint * most, load * load_rad]);
+                pitch_angles(&scenario)
+            })
+            .to_vec();
+        let way = Way { commands: &commands, patch: whole, from };
+        for sample in UP..SAMPLES {
+            let range = joint.values[0].range();
+            for flight in &flown {
+                let theta = flight[sample];
+                let inside = theta >= range.lower() - ROUNDING && theta <= range.upper() + ROUNDING;
+                assert!(inside, "seed {seed}, {entry:?}, sample {sample}: {theta:e} {range:?}");
+            }
+            compared += 1;
+            let Some(next) = later(&loop_, &way, joint.clone(), sample) else { break };
+            joint = next;
+        }
+        limited += usize::from(joint.limited);
+        tuned += usize::from(joint.tuned.is_some());
+    }
+    assert!(compared > 1500 && limited > 10 && tuned > 8, "{compared} {limited} {tuned}");
 }

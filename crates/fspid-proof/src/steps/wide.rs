@@ -14,10 +14,10 @@ use crate::gain_set::HeldGains;
 use crate::limits;
 use crate::solve::{self, WidestProblem};
 
-use super::MOST_SAMPLES;
 use super::near::boxed;
 use super::terminal::{NearGains, NearRest, Terminal};
 use super::tuned::Tuner;
+use super::work::MOST_SAMPLES;
 
 /// A sample takes from the form this share of what it takes from the slowest mode of all corners.
 const SLOWER: f64 = 0.25;

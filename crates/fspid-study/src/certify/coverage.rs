@@ -52,10 +52,10 @@ const NOISE: &str = "the claim is about sensors without noise";
 const DRIFT: &str = "a bias stands still in the claim";
 const LINEAR_AT_TRIM: &str =
     "the linear model at the trim; that the aircraft is nonlinear is said beside the verdict";
-const TERMS: &str = "the constant set-points and loads of the range are those that it reaches; the time while it moves is left out";
-const LOADS: &str = "the constant set-points and loads of the range are those that it reaches; what it does at most while it moves, from rest, is bounded where `--disturbances` asks for it and it enters at the elevator, or at a servo without a lag of second order, and left out otherwise";
-const AT_LIMITS: &str = "steps from rest up to a stated size are flown in sets with the limit acting; other motions within an ellipsoid in which none acts, or said to be left out; where rest itself is at a limit nothing is proved";
-const AT_STOPS: &str = "no step of the stated size meets an end; other motions within an ellipsoid in which none acts, or said to be left out; where rest itself is at a limit nothing is proved";
+const TERMS: &str = "the constant set-points and loads of the range are those that it reaches; with limits in the loop it is flown in sets as it moves, times any number up to its size, where that is proved, and the time while it moves is left out otherwise";
+const LOADS: &str = "the constant set-points and loads of the range are those that it reaches; what it does at most while it moves, from rest, is bounded where `--disturbances` asks for it and it enters at the elevator, or at a servo without a lag of second order; with limits in the loop it is flown in sets together with the set-point, where that is proved; and left out otherwise";
+const AT_LIMITS: &str = "steps from rest up to a stated size, and what the scenario commands, are flown in sets with the limit acting; other motions within an ellipsoid in which none acts, or said to be left out; where rest itself is at a limit nothing is proved";
+const AT_STOPS: &str = "no step of the stated size meets an end, and nothing that is proved of what the scenario commands; other motions within an ellipsoid in which none acts, or said to be left out; where rest itself is at a limit nothing is proved";
 const STEPS: &str = "a disturbance of half a step; what it leaves is stated, and nothing is proved where that is more than a tenth of the set-points and than ten steps";
 const AROUND: &str = "the claim is about the pitch loop alone, not about the loops around it";
 const AIM: &str = "asked of flights, not of the loop";

@@ -165,6 +165,10 @@ pub(super) fn left_out(one: LeftOut, scope: Option<&Scope>) -> String {
             "Disturbances that move count by the bounds above, from rest, where they enter at {}; elsewhere they count while they stand still, as loads.",
             if one.at_servo { "the servo or the elevator" } else { "the elevator" }
         ),
+        (LeftOut::MovingSetpoint, _) if scope.is_some_and(|it| it.ended.is_some()) => {
+            "Set-points and loads that move otherwise than in the lines above are left out."
+                .to_owned()
+        }
         _ => one.to_string(),
     }
 }

@@ -8,6 +8,7 @@ use fspid_proof::{BoundedRate, Certificate, Claim, LeftOut, Range};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
+use super::commanded_file::CommandedFile;
 use super::controller_file::ControllerFile;
 use super::digest::digest;
 use super::disturbances_file::DisturbanceFile;
@@ -61,6 +62,8 @@ struct CertificateFile {
     level: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     steps: Option<StepsFile>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    commanded: Option<CommandedFile>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     family: Option<FamilyFile>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -180,6 +183,7 @@ pub fn to_text(certificate: &Certificate, origin: &Origin) -> String {
         claim: ClaimFile::of(&certificate.claim),
         level: certificate.level,
         steps: certificate.steps.as_ref().map(StepsFile::of),
+        commanded: certificate.commanded.as_ref().map(CommandedFile::of),
         family: certificate.family.as_ref().map(FamilyFile::of),
         disturbances: certificate.disturbances.iter().map(DisturbanceFile::of).collect(),
         nonlinear: certificate.nonlinear.as_ref().map(NonlinearFile::of),
@@ -265,16 +269,20 @@ impl CertificateFile {
         let left_out = kept(&mut problems, "not_in_this_claim", left_out);
         let steps = self.steps.as_ref().map(StepsFile::build).transpose();
         let steps = kept(&mut problems, "steps", steps);
+        let commanded = self.commanded.as_ref().map(CommandedFile::build).transpose();
+        let commanded = kept(&mut problems, "commanded", commanded);
         let family = kept(&mut problems, "family", self.family.map(FamilyFile::build).transpose());
         let disturbances = self.disturbances.iter().map(DisturbanceFile::build);
         let disturbances = disturbances.collect::<Result<Vec<_>, _>>();
         let disturbances = kept(&mut problems, "disturbances", disturbances);
         let nonlinear = self.nonlinear.map(NonlinearFile::build).transpose();
         let nonlinear = kept(&mut problems, "nonlinear", nonlinear);
-        let more = steps.zip(family).zip(disturbances.zip(nonlinear));
+        let more = steps.zip(commanded).zip(family).zip(disturbances.zip(nonlinear));
         let parts = description.zip(claim).zip(left_out).zip(more);
-        let Some((((description, claim), left_out), ((steps, family), (disturbances, nonlinear)))) =
-            parts
+        let Some((
+            ((description, claim), left_out),
+            (((steps, commanded), family), (disturbances, nonlinear)),
+        )) = parts
         else {
             return Err(NoCertificate { problems });
         };
@@ -287,6 +295,7 @@ impl CertificateFile {
             claim,
             level: self.level,
             steps,
+            commanded,
             family,
             disturbances,
             nonlinear,

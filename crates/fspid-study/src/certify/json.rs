@@ -18,8 +18,11 @@ const SCHEMA: u32 = 2;
 /// Why nothing is said of steps.
 const NO_STEPS: &str = "no step from rest is proved with limits acting; of gains that remember it is asked in cases with --steps alone";
 
+/// Why nothing is said of the flights that a scenario commands.
+const NO_FLIGHTS: &str = "the flights that the scenario commands are not proved with limits acting; in cases they are asked for with --steps alone";
+
 /// Why keys of these answers are null.
-const NULLS: [(&str, &str); 18] = [
+const NULLS: [(&str, &str); 21] = [
     ("decay_per_sample", "the claim is one of growth, or no rate is proved"),
     (
         "law_keeps_to_the_rate",
@@ -31,6 +34,9 @@ const NULLS: [(&str, &str); 18] = [
     ("steps_load_within_deg", NO_STEPS),
     ("steps_limited_until_s", NO_STEPS),
     ("steps_after_rest_s", "no such step is proved, or no gains remember"),
+    ("flights_setpoint_within_deg", NO_FLIGHTS),
+    ("flights_load_within_deg", NO_FLIGHTS),
+    ("flights_limited_until_s", NO_FLIGHTS),
     ("no_limit_acts_up_to", "there are no limits, or they are not covered"),
     ("open_because", "there is an answer, or nothing more is known of why there is none"),
     ("at", "no question can be asked of the family, or the loop as it is is not proved"),

@@ -8,6 +8,7 @@ mod around;
 mod cases;
 mod checked;
 mod checked_text;
+mod commanded_file;
 mod comparison;
 mod controller_file;
 mod coverage;

@@ -1,7 +1,7 @@
 //! What is said beside a verdict: where the claim holds and what it does not speak of, the same in every
 //! answer, in text and JSON, from a proof and from a certificate that is checked.
 
-use fspid_proof::{Certificate, Claim, LeftOut, Range, Rechecked, Scope, Stepped};
+use fspid_proof::{Certificate, Claim, Ended, LeftOut, Range, Rechecked, Scope, Stepped};
 use serde_json::{Value, json};
 
 use super::text::is_fixed;
@@ -65,6 +65,7 @@ impl Told {
             sentences.push(("remains", remains(scope)));
             sentences.push(("limits", limits(scope)));
             sentences.extend(scope.stepped.map(|stepped| ("steps", steps(&stepped))));
+            sentences.extend(scope.ended.map(|ended| ("flights", flights(&ended))));
             let disturbed = disturbances::sentences(scope, self.moving);
             sentences.extend(disturbed.into_iter().map(|it| ("disturbances", it)));
         }
@@ -100,6 +101,7 @@ impl Told {
                 pitch_within_rad,
                 limits_left_out,
                 stepped,
+                ended,
                 disturbed,
                 left_out: _,
             } = scope;
@@ -121,6 +123,9 @@ impl Told {
                 "steps_load_within_deg": stepped.map(|it| told_deg(it.load_rad)),
                 "steps_limited_until_s": stepped.map(|it| it.settled_s),
                 "steps_after_rest_s": stepped.and_then(|it| it.rested_s),
+                "flights_setpoint_within_deg": ended.map(|it| told_deg(it.setpoint_rad)),
+                "flights_load_within_deg": ended.map(|it| told_deg(it.load_rad)),
+                "flights_limited_until_s": ended.map(|it| it.settled_s),
             });
             merged([told, bounds])
         };
@@ -208,11 +213,7 @@ fn steps(stepped: &Stepped) -> String {
         0.0 => String::new(),
         most => format!(" and of a load by up to {} deg of elevator at once", short(most)),
     };
-    let acting = if stepped.limited {
-        "with its limits acting on the way"
-    } else {
-        "without meeting one on the way"
-    };
+    let acting = acting(stepped.limited);
     let rest = match stepped.rested_s {
         None => "from rest at the trim".to_owned(),
         Some(rested_s) => format!(
@@ -224,6 +225,35 @@ fn steps(stepped: &Stepped) -> String {
         "{rest}, sensors without bias, any step of the set-point by up to {} deg{loaded} ends where the loop without limits does, {acting}; {} s later none acts any more",
         short(setpoint),
         short(stepped.settled_s)
+    )
+}
+
+fn acting(limited: bool) -> &'static str {
+    if limited { "with its limits acting on the way" } else { "without meeting one on the way" }
+}
+
+/// The flights that a scenario commands, limits acting on the way.
+fn flights(ended: &Ended) -> String {
+    let [setpoint, load] = [ended.setpoint_rad, ended.load_rad].map(degrees);
+    let commanded = match (setpoint > 0.0, load > 0.0) {
+        (true, true) => format!(
+            "the set-point over time as commanded, times any number up to {} deg either way, and the loads likewise up to {} deg of elevator",
+            short(setpoint),
+            short(load)
+        ),
+        (true, false) => format!(
+            "the set-point over time as commanded, times any number up to {} deg either way",
+            short(setpoint)
+        ),
+        (false, _) => format!(
+            "the loads over time as commanded, times any number up to {} deg of elevator either way",
+            short(load)
+        ),
+    };
+    format!(
+        "from rest at the trim at the controller's first sample, sensors without bias, {commanded}: each flight ends where the loop without limits does, {}; from {} s on none acts any more",
+        acting(ended.limited),
+        short(ended.settled_s)
     )
 }
 

@@ -16,9 +16,10 @@ pub(super) struct StepsFile {
     near_rest: NearRest,
 }
 
+/// The form near rest, in which flights end.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct NearRest {
+pub(super) struct NearRest {
     rate: f64,
     form: Rows,
     level: f64,
@@ -47,37 +48,36 @@ impl RememberedFile {
     }
 }
 
+impl NearRest {
+    pub(super) fn of(terminal: &Terminal) -> Self {
+        let Terminal { form, rate, level, gains } = terminal;
+        let gains = gains.map(RememberedFile::of);
+        Self { rate: *rate, form: rows(form), level: *level, gains }
+    }
+
+    pub(super) fn build(&self) -> Result<Terminal, String> {
+        let Self { form, rate, level, gains } = self;
+        let gains = gains.map(RememberedFile::build);
+        Ok(Terminal { form: matrix(form)?, rate: *rate, level: *level, gains })
+    }
+}
+
 impl StepsFile {
     pub(super) fn of(steps: &Steps) -> Self {
         let Steps { setpoint_rad, load_rad, terminal, ends, loads } = steps;
-        let Terminal { form, rate, level, gains } = terminal;
         Self {
             setpoint_rad: *setpoint_rad,
             load_rad: *load_rad,
             ends: ends.clone(),
             loads: *loads,
-            near_rest: NearRest {
-                rate: *rate,
-                form: rows(form),
-                level: *level,
-                gains: gains.map(RememberedFile::of),
-            },
+            near_rest: NearRest::of(terminal),
         }
     }
 
     pub(super) fn build(&self) -> Result<Steps, String> {
-        let NearRest { rate, form, level, gains } = &self.near_rest;
-        Ok(Steps {
-            setpoint_rad: self.setpoint_rad,
-            load_rad: self.load_rad,
-            terminal: Terminal {
-                form: matrix(form)?,
-                rate: *rate,
-                level: *level,
-                gains: gains.map(RememberedFile::build),
-            },
-            ends: self.ends.clone(),
-            loads: self.loads,
-        })
+        let Self { setpoint_rad, load_rad, ends, loads, near_rest } = self;
+        let (setpoint_rad, load_rad, ends, loads) =
+            (*setpoint_rad, *load_rad, ends.clone(), *loads);
+        Ok(Steps { setpoint_rad, load_rad, terminal: near_rest.build()?, ends, loads })
     }
 }

@@ -566,6 +566,29 @@ fn steps_of_a_learned_self_tuner_that_remembers_are_proved_with_its_limits() {
     assert!((rested_s - libm::log(1024.0) / 0.2529).abs() < 0.1, "{rested_s}");
     assert!(found.text().contains("after a rest of"), "{}", found.text());
 
+    // And what the scenario commands: a load at the servo from 1 s on, a step at 11 s.
+    let ended = rechecked.ended.expect("flights are proved");
+    let sizes = [ended.setpoint_rad, ended.load_rad].map(f64::to_degrees);
+    assert!((sizes[0] - 5.0).abs() < 1e-12 && (sizes[1] - 1.0).abs() < 1e-12, "{ended:?}");
+    assert!(ended.settled_s > 11.0 && ended.settled_s < 25.0, "{ended:?}");
+    assert!(found.text().contains("the set-point over time as commanded"), "{}", found.text());
+    let against = |more: &str| {
+        let mut file = checked(&text);
+        let study =
+            load("data/designs/learned/uav-steps.toml", &[&condition[..], &[more]].concat());
+        file.compare(&study).expect("compared");
+        let differences = file.against.expect("compared").differences.into_iter();
+        differences.map(|it| format!("{} {}", it.path, it.flown)).collect::<Vec<_>>().join("; ")
+    };
+    assert_eq!(against("setpoint.amplitude_deg=-4"), "");
+    assert_eq!(against("disturbance[0].amplitude_deg=-0.5"), "");
+    let later = against("setpoint.at_s=12");
+    assert_eq!(
+        later,
+        "commanded set-point of 5 deg times 1 from 12 s; load at the servo of 1 deg times 1 from 1 s"
+    );
+    assert!(against("disturbance[0].enters_at=elevator").contains("load at the elevator"));
+
     // Gains that are said to stay in less than they do, and a model that is said to be nearer than it is.
     let changed = |change: &dyn Fn(&mut Value)| {
         let mut value: Value = serde_json::from_str(&text).expect("JSON");

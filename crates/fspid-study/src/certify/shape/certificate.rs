@@ -4,7 +4,8 @@
 //! could refuse it. What a number may be beyond that is asked where the loop is built.
 
 use fspid_proof::sizes::{
-    MOST_CONES, MOST_DIVISIONS, MOST_LOADS, MOST_PIECES, MOST_SAMPLES, MOST_STATES,
+    MOST_CHANGES, MOST_CONES, MOST_DIVISIONS, MOST_LEG_PARTS, MOST_LEGS, MOST_LOADS, MOST_PIECES,
+    MOST_SAMPLES, MOST_STATES,
 };
 
 use fspid_proof::{MOST_BOUNDS, MOST_PARAMETERS, MOST_PARTS};
@@ -28,6 +29,7 @@ pub(in super::super) const CERTIFICATE: Shape = Object(&[
     key("claim", CLAIM),
     optional("level", Positive(LARGE)),
     optional("steps", STEPS),
+    optional("commanded", COMMANDED),
     optional("family", FAMILY),
     optional("disturbances", List(&DISTURBANCE, [1, MOST_BOUNDS])),
     optional("nonlinear", NONLINEAR),
@@ -51,15 +53,45 @@ const STEPS: Shape = Object(&[
     key("load_rad", Number(0.0, ANGLE)),
     key("ends", List(&END, [2, MOST_PIECES + 1])),
     key("loads", Whole(1, MOST_LOADS as u64)),
+    key("near_rest", NEAR_REST),
+]);
+
+/// Set-point and loads over time, and the parts that they are flown in.
+const COMMANDED: Shape = Object(&[
+    key("setpoint_rad", Number(0.0, ANGLE)),
+    key("load_rad", Number(0.0, ANGLE)),
+    key("setpoint", CHANGES),
+    key("at_servo", CHANGES),
+    key("at_elevator", CHANGES),
     key(
-        "near_rest",
-        Object(&[
-            key("rate", RATE),
-            key("form", FORM),
-            key("level", Positive(LARGE)),
-            optional("gains", REMEMBERED),
-        ]),
+        "legs",
+        List(
+            &Object(&[
+                key("from_sample", Whole(0, u32::MAX as u64)),
+                key("groups", List(&GROUP, [1, MOST_LEG_PARTS])),
+            ]),
+            [1, MOST_LEGS],
+        ),
     ),
+    key("near_rest", NEAR_REST),
+]);
+
+const GROUP: Shape = Object(&[
+    key("of", List(&Whole(0, u32::MAX as u64), [0, MOST_LEG_PARTS])),
+    key("setpoints", List(&END, [2, MOST_LEG_PARTS + 1])),
+    key("loads", List(&END, [2, MOST_LEG_PARTS + 1])),
+]);
+
+const CHANGES: Shape = List(
+    &Object(&[key("from_sample", Whole(0, u32::MAX as u64)), key("share", Number(-1.0, 1.0))]),
+    [0, MOST_CHANGES],
+);
+
+const NEAR_REST: Shape = Object(&[
+    key("rate", RATE),
+    key("form", FORM),
+    key("level", Positive(LARGE)),
+    optional("gains", REMEMBERED),
 ]);
 
 /// Gains that remember, and how far their reference model may be off.

@@ -1,0 +1,438 @@
+//! The flights of a scenario: its set-point and loads over time, each times any number up to its size.
+//!
+//! They are flown in legs: a new one where, after a pause, something else changes than before. A leg begins with what the flights
+//! before have come to, sets with like gains joined to one ([`super::joined`]), each divided along what changes: a step under a
+//! load takes as many sets as load and step each for itself, times the groups of gains that loads leave, not their product.
+
+use fspid_numeric::scalar::Interval;
+
+use super::commands::{Along, Commands};
+use super::flights::{Beginning, Landed, Patch, Way};
+use super::joined::Joined;
+use super::sample::{Flight, Stop};
+use super::terminal::Terminal;
+use super::work::{Flights, most_checked};
+use super::{Checked, Search, given_up, is_odd, sees_loads_at_once};
+use crate::certificate::Certificate;
+use crate::scope::Range;
+
+/// Most legs.
+pub const MOST_LEGS: usize = 64;
+/// Most parts along set-points or loads in each group, and most groups of a leg.
+pub const MOST_LEG_PARTS: usize = 1024;
+/// The narrowest part, as a share of the whole.
+const NARROWEST: f64 = 1.0 / 512.0;
+/// Where a search begins: with the whole in so many parts.
+const BEGINS: f64 = 8.0;
+/// A part that was flown is followed by one so many times as wide.
+const WIDER: f64 = 1.5;
+/// Parts of the loads where both change in a leg.
+const BOTH: u8 = 8;
+/// Shares of what is commanded that are tried.
+const TRIED: [f64; 3] = [1.0, 0.5, 0.25];
+/// How finely, one after the other: wide parts and groups are few, and narrow ones leave the next leg more.
+const FINENESS: [Fineness; 3] = [
+    Fineness { apart: 0.01, gains: 0.1 },
+    Fineness { apart: 0.003, gains: 0.04 },
+    Fineness { apart: 0.0005, gains: 0.012 },
+];
+/// The gains of a part of a group may be apart so much of what those of the group may.
+const OF_GROUP: f64 = 0.5;
+
+/// Flights from rest at the trim, at the controller's first sample, that end at the last set-point that is commanded, limits
+/// acting on the way.
+///
+/// Set-point and loads are those of [`Commands`] times a number each, either way, up to their sizes; after the last change
+/// they stay.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Commanded {
+    /// What is commanded.
+    pub commands: Commands,
+    /// Near rest.
+    pub terminal: Terminal,
+    /// One after the other; the first from the first sample.
+    pub legs: Vec<Leg>,
+}
+
+/// From a sample to the next leg, the last one to where the flights have landed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Leg {
+    /// The first sample.
+    pub from: usize,
+    /// What it is flown in; of the first leg one group of everything.
+    pub groups: Vec<Group>,
+}
+
+/// Sets that are joined, and what they are divided into.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Group {
+    /// Which sets of the leg before, counted in the order of its groups, and in each set-point by set-point all loads.
+    pub of: Vec<usize>,
+    /// Where parts of the set-points end, rad, from the least to the largest.
+    pub setpoints: Vec<f64>,
+    /// Where parts of the loads end, likewise; each is flown with each of the others.
+    pub loads: Vec<f64>,
+}
+
+/// What was proved of the flights that a scenario commands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ended {
+    /// Largest set-point, rad.
+    pub setpoint_rad: f64,
+    /// Largest load, rad of elevator.
+    pub load_rad: f64,
+    /// Sets of flights.
+    pub sets: usize,
+    /// No limit acts any more after so long, s from the beginning.
+    pub settled_s: f64,
+    /// In some flight a limit may act.
+    pub limited: bool,
+}
+
+/// All set-points and loads of what is commanded, each from its least to its largest. Of flights that mirror each other one is flown.
+fn whole(commands: &Commands, odd: bool) -> Patch {
+    let Commands { setpoint_rad, load_rad, .. } = commands;
+    let both = |most: f64| [-most, most];
+    match (odd, *setpoint_rad > 0.0) {
+        (false, _) => Patch { setpoint: both(*setpoint_rad), load: both(*load_rad) },
+        (true, true) => Patch { setpoint: [0.0, *setpoint_rad], load: both(*load_rad) },
+        (true, false) => Patch { setpoint: [0.0; 2], load: [0.0, *load_rad] },
+    }
+}
+
+impl Group {
+    fn patches(&self) -> Vec<Patch> {
+        let loads = || self.loads.windows(2).map(|pair| [pair[0], pair[1]]);
+        let setpoints = self.setpoints.windows(2).map(|pair| [pair[0], pair[1]]);
+        setpoints.flat_map(|setpoint| loads().map(move |load| Patch { setpoint, load })).collect()
+    }
+}
+
+/// A set of flights with the box that it is of.
+type Set = (Patch, Flight);
+
+/// What a group begins with: everything that its sets have come to, `like` one of their flights.
+struct Start {
+    joined: Option<Joined>,
+    like: Flight,
+    from: usize,
+    /// The sets, and all set-points and loads of theirs.
+    of: Vec<usize>,
+    whole: Patch,
+}
+
+/// Sets of flights of what is commanded.
+struct Course<'a> {
+    flights: Flights<'a>,
+    commands: &'a Commands,
+}
+
+impl Course<'_> {
+    fn start(&mut self, whole: Patch) -> Start {
+        let like = self.flights.begun(Beginning::Controller);
+        Start { joined: None, like, from: 0, of: Vec::new(), whole }
+    }
+
+    fn begun(&self, start: &Start, patch: Patch) -> Flight {
+        let Start { joined, like, from, .. } = start;
+        let of = |joined: &Joined| joined.flight(like, self.commands, patch, *from);
+        joined.as_ref().map_or_else(|| like.clone(), of)
+    }
+
+    /// A part of a leg, up to the next.
+    fn through(&mut self, start: &Start, patch: Patch, to: usize) -> Result<Flight, Stop> {
+        let way = Way { commands: self.commands, patch, from: Beginning::Controller };
+        let begun = self.begun(start, patch);
+        self.flights.until(&way, begun, [start.from, to])
+    }
+
+    /// A part of the last leg, to where it has landed.
+    fn until_rest(&mut self, start: &Start, patch: Patch) -> Result<Landed, Stop> {
+        let way = Way { commands: self.commands, patch, from: Beginning::Controller };
+        let begun = self.begun(start, patch);
+        self.flights.landed(&way, begun, start.from)
+    }
+
+    /// What a group of the next leg begins with.
+    fn next(&self, sets: &[Set], of: Vec<usize>, from: usize) -> Option<Start> {
+        let joined = of.iter().map(|place| sets.get(*place).cloned()).collect::<Option<Vec<Set>>>();
+        let joined = joined?;
+        let (first, like) = joined.first()?;
+        let whole = joined.iter().fold(*first, |whole, (patch, _)| whole.hull(patch));
+        let like = like.clone();
+        Some(Start { joined: Some(self.flights.joined(&joined)?), like, from, of, whole })
+    }
+
+    /// Groups of sets whose gains are all within a share of what they can reach.
+    fn groups(&self, sets: &[Set], share: f64) -> Vec<Vec<usize>> {
+        let gains = sets.iter().map(|(_, flight)| self.flights.gains_of_reach(flight));
+        let gains: Vec<[Interval; 3]> = gains.collect();
+        let middle = |place: &usize| gains[*place].iter().map(|it| it.midpoint()).sum::<f64>();
+        let mut order: Vec<usize> = (0..sets.len()).collect();
+        order.sort_by(|one, other| middle(one).total_cmp(&middle(other)).then(one.cmp(other)));
+        let mut groups: Vec<(Vec<usize>, [Interval; 3])> = Vec::new();
+        for place in order {
+            let own = gains[place];
+            let joined = groups
+                .last()
+                .map(|(_, all)| [0, 1, 2].map(|gain: usize| all[gain].hull(own[gain])));
+            match (groups.last_mut(), joined) {
+                (Some((group, all)), Some(joined))
+                    if joined.iter().all(|it| it.width() <= share) =>
+                {
+                    group.push(place);
+                    *all = joined;
+                }
+                _ => groups.push((vec![place], own)),
+            }
+        }
+        groups.into_iter().map(|(group, _)| group).collect()
+    }
+}
+
+/// How a search divides.
+#[derive(Clone, Copy, Debug)]
+struct Fineness {
+    /// How far the flights of a part may be apart at the end of a leg, beside what set-point and load make of them, as a
+    /// share of these.
+    apart: f64,
+    /// How far gains of a group, as a share of what they can reach.
+    gains: f64,
+}
+
+/// A search for legs.
+struct Legs<'a> {
+    course: Course<'a>,
+    fineness: Fineness,
+    /// Work of a check so far, and the most.
+    of_check: usize,
+    most_checked: usize,
+}
+
+impl Legs<'_> {
+    fn found(mut self, whole: Patch) -> Option<Vec<Leg>> {
+        let planned = self.course.commands.legs();
+        let mut starts = vec![self.course.start(whole)];
+        let mut legs = Vec::new();
+        for (place, &(_, along)) in planned.iter().enumerate() {
+            let to = planned.get(place + 1).map(|(from, _)| *from);
+            let (mut groups, mut sets) = (Vec::new(), Vec::new());
+            for start in &starts {
+                let (group, own) = self.divided(start, along, to).ok()?;
+                groups.push(group);
+                sets.extend(own);
+            }
+            legs.push(Leg { from: starts.first()?.from, groups });
+            if let Some(to) = to {
+                let groups = self.course.groups(&sets, self.fineness.gains).into_iter();
+                let next = groups.map(|of| self.course.next(&sets, of, to));
+                starts = next.collect::<Option<_>>()?;
+            }
+        }
+        Some(legs)
+    }
+
+    /// Parts of a group, each of which is flown, with the sets that they come to before the next leg.
+    fn divided(
+        &mut self,
+        start: &Start,
+        along: Along,
+        to: Option<usize>,
+    ) -> Result<(Group, Vec<Set>), Stop> {
+        let Patch { setpoint, load } = start.whole;
+        let mut sets = Vec::new();
+        let of_load = along == Along::Load;
+        let others = match along {
+            Along::Load => setpoint.to_vec(),
+            Along::Setpoint => load.to_vec(),
+            Along::Both => {
+                let at =
+                    |part: u8| load[0] + (load[1] - load[0]) * f64::from(part) / f64::from(BOTH);
+                (0..BOTH).map(at).chain([load[1]]).collect()
+            }
+        };
+        let ends = swept(if of_load { load } else { setpoint }, &mut |piece| {
+            let before = self.course.flights.flown;
+            let mut own = Vec::new();
+            for pair in others.windows(2) {
+                let other = [pair[0], pair[1]];
+                let patch = match of_load {
+                    true => Patch { setpoint: other, load: piece },
+                    false => Patch { setpoint: piece, load: other },
+                };
+                own.extend(self.part(start, patch, to)?);
+            }
+            self.of_check += self.course.flights.flown - before;
+            sets.extend(own);
+            if self.of_check > self.most_checked { Err(Stop::Lost) } else { Ok(()) }
+        })?;
+        let (setpoints, loads) = if of_load { (others, ends) } else { (ends, others) };
+        Ok((Group { of: start.of.clone(), setpoints, loads }, sets))
+    }
+
+    /// A part of a leg; of one before the last what it comes to, where its flights are near each other.
+    fn part(
+        &mut self,
+        start: &Start,
+        patch: Patch,
+        to: Option<usize>,
+    ) -> Result<Option<Set>, Stop> {
+        let Some(to) = to else {
+            return self.course.until_rest(start, patch).map(|_| None);
+        };
+        let flight = self.course.through(start, patch, to)?;
+        let Commands { setpoint_rad, load_rad, .. } = self.course.commands;
+        let apart_rad = self.fineness.apart * (setpoint_rad + load_rad);
+        let gains = self.course.flights.gains_of_reach(&flight).map(Interval::width);
+        let near = self.course.flights.apart_rad(&flight) <= apart_rad
+            && gains.iter().all(|width| *width <= OF_GROUP * self.fineness.gains);
+        if near { Ok(Some((patch, flight))) } else { Err(Stop::Lost) }
+    }
+}
+
+/// Ends of parts from the least to the largest, each of which flies.
+fn swept(
+    [least, most]: [f64; 2],
+    fly: &mut dyn FnMut([f64; 2]) -> Result<(), Stop>,
+) -> Result<Vec<f64>, Stop> {
+    let whole = most - least;
+    let (mut ends, mut at, mut width) = (vec![least], least, whole / BEGINS);
+    while at < most || ends.len() < 2 {
+        let next = if at + width >= most { most } else { at + width };
+        match fly([at, next]) {
+            Ok(()) if ends.len() <= MOST_LEG_PARTS => {
+                width = WIDER * (next - at);
+                at = next;
+                ends.push(next);
+            }
+            Ok(()) => return Err(Stop::Lost),
+            Err(stop) => {
+                width = 0.5 * (next - at);
+                if !(width >= NARROWEST * whole && width > 0.0) {
+                    return Err(stop);
+                }
+            }
+        }
+    }
+    Ok(ends)
+}
+
+/// Loads at the elevator, which a pitch rate may show at once.
+fn at_elevator_rad(commands: &Commands) -> f64 {
+    if commands.at_elevator.0.is_empty() { 0.0 } else { commands.load_rad }
+}
+
+impl Search<'_> {
+    /// The flights that are commanded, as large as they are found to end at their set-point.
+    pub(crate) fn commanded(&self, commands: &Commands) -> Option<Commanded> {
+        let Self { certificate, model, set, terminal, system, stops } = self;
+        if sees_loads_at_once(model, at_elevator_rad(commands)) {
+            return None;
+        }
+        let odd = is_odd(&certificate.description);
+        let most_checked = most_checked(&certificate.description);
+        let searches = TRIED.into_iter().flat_map(|size| FINENESS.map(|it| (size, it)));
+        let part = 1.0 / (TRIED.len() * FINENESS.len()) as f64;
+        searches.into_iter().find_map(|(size, fineness)| {
+            let commands = commands.scaled(size);
+            let flights = Flights::of(certificate, model, set, terminal, system.as_ref())?;
+            let flights = flights.searching(part, *stops);
+            let course = Course { flights, commands: &commands };
+            let legs = Legs { course, fineness, of_check: 0, most_checked };
+            let legs = legs.found(whole(&commands, odd))?;
+            Some(Commanded { commands, terminal: terminal.clone(), legs })
+        })
+    }
+}
+
+impl Commanded {
+    /// Proves the claim anew.
+    pub(crate) fn proved(&self, checked: Checked<'_>) -> Result<Ended, &'static str> {
+        let Checked { certificate, model, set, stops } = checked;
+        let Self { commands, terminal, legs } = self;
+        checked.allowed(at_elevator_rad(commands))?;
+        self.fits(certificate)?;
+        let system = super::system(&certificate.description);
+        let mut flights = Flights::of(certificate, model, set, terminal, system.as_ref())
+            .ok_or("flights: the loop near rest is not enclosed")?;
+        flights.stops = stops;
+        let mut course = Course { flights, commands };
+        let whole = whole(commands, is_odd(&certificate.description));
+        let mut starts = vec![course.start(whole)];
+        let (mut worst, mut count) = (Landed::default(), 0);
+        for (place, leg) in legs.iter().enumerate() {
+            let next = legs.get(place + 1);
+            let mut sets = Vec::new();
+            for (start, group) in starts.iter().zip(&leg.groups) {
+                group.fills(start.whole)?;
+                let patches = group.patches();
+                count += patches.len();
+                for patch in patches {
+                    match next {
+                        Some(next) => {
+                            let flight = course.through(start, patch, next.from);
+                            sets.push((patch, flight.map_err(given_up)?));
+                        }
+                        None => {
+                            let landed = course.until_rest(start, patch).map_err(given_up)?;
+                            worst = worst.worse(landed);
+                        }
+                    }
+                }
+            }
+            if let Some(next) = next {
+                starts = next.starts(&course, &sets)?;
+            }
+        }
+        Ok(Ended {
+            setpoint_rad: commands.setpoint_rad,
+            load_rad: commands.load_rad,
+            sets: count,
+            settled_s: worst.samples as f64 * certificate.description.controller.config().dt_s,
+            limited: worst.limited,
+        })
+    }
+
+    /// Whether what is commanded lies in the range that the claim near rest is made for, and legs follow each other.
+    fn fits(&self, certificate: &Certificate) -> Result<(), &'static str> {
+        let Self { commands, legs, .. } = self;
+        let (setpoint_rad, load_rad) = (commands.setpoint_rad, commands.whole_load_rad());
+        let range = Range { setpoint_rad, load_rad };
+        if !commands.is_allowed() || !certificate.range.covers(range) {
+            return Err("flights: beyond the range of the claim");
+        }
+        let follow = legs.windows(2).all(|pair| pair[0].from < pair[1].from);
+        let first = legs.first().is_some_and(|leg| leg.from == 0 && leg.groups.len() == 1);
+        if follow && first { Ok(()) } else { Err("flights: the legs do not follow each other") }
+    }
+}
+
+impl Leg {
+    /// What its groups begin with, each set of the leg before in one of them at least.
+    fn starts(&self, course: &Course<'_>, sets: &[Set]) -> Result<Vec<Start>, &'static str> {
+        let mut missing = vec![true; sets.len()];
+        let places = self.groups.iter().flat_map(|group| &group.of);
+        for place in places {
+            *missing.get_mut(*place).ok_or("flights: a group of a set that there is not")? = false;
+        }
+        if missing.contains(&true) {
+            return Err("flights: a set is in no group");
+        }
+        let starts = self.groups.iter().map(|group| course.next(sets, group.of.clone(), self.from));
+        starts.collect::<Option<_>>().ok_or("flights: a group of no set")
+    }
+}
+
+impl Group {
+    /// Whether its parts fill all that its sets are of.
+    fn fills(&self, whole: Patch) -> Result<(), &'static str> {
+        let fills = |ends: &[f64], [least, most]: [f64; 2]| {
+            let follow = ends.windows(2).all(|pair| pair[0] <= pair[1]);
+            let all = ends.first().is_some_and(|end| *end <= least)
+                && ends.last().is_some_and(|end| *end >= most);
+            follow && all && ends.len() >= 2
+        };
+        let filled = fills(&self.setpoints, whole.setpoint) && fills(&self.loads, whole.load);
+        filled.then_some(()).ok_or("flights: the parts do not fill what is commanded")
+    }
+}

@@ -1,0 +1,199 @@
+//! A step from rest, at any time.
+
+use super::commands::Commands;
+use super::flights::{Beginning, Landed, Patch, Way};
+use super::sample::Stop;
+use super::terminal::Terminal;
+use super::work::{Flights, most_checked};
+use super::{Checked, Search, given_up, is_odd, remembers, sees_loads_at_once};
+use crate::certificate::Certificate;
+use crate::scope::Range;
+
+/// Most boxes along the set-points.
+pub const MOST_PIECES: usize = 4096;
+/// Most parts of the loads.
+pub const MOST_LOADS: usize = 64;
+/// The narrowest box that is flown, as a share of the set-points that are asked for.
+const NARROWEST: f64 = 1.0 / 2048.0;
+
+/// Steps from rest that end at their set-point, limits acting on the way.
+///
+/// From rest at the trim without a load, a step of the set-point by up to `setpoint_rad` and at the same sample one of a load
+/// at the elevator by up to `load_rad`, either way, both of which then stay. Gains that remember begin at the nominal ones, or
+/// at those that a long rest has brought them to, from wherever they were ([`Stepped::rested_s`]).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Steps {
+    /// Largest step, rad.
+    pub setpoint_rad: f64,
+    /// Largest load, rad of elevator.
+    pub load_rad: f64,
+    /// Near rest.
+    pub terminal: Terminal,
+    /// Where boxes end along the set-points, rad; from the first to the last.
+    pub ends: Vec<f64>,
+    /// Parts that the loads are flown in.
+    pub loads: usize,
+}
+
+/// What was proved of steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stepped {
+    /// Largest step, rad.
+    pub setpoint_rad: f64,
+    /// Largest load, rad of elevator.
+    pub load_rad: f64,
+    /// Sets of flights.
+    pub sets: usize,
+    /// No limit acts any more after so long, s.
+    pub settled_s: f64,
+    /// In some flight a limit may act.
+    pub limited: bool,
+    /// Of gains that remember, how long a rest has to last before a step that is not at the controller's first sample, s: they
+    /// are then at those of rest, but for a thousandth of the way.
+    pub rested_s: Option<f64>,
+}
+
+/// Boxes of set-points, each flown with all loads.
+struct Boxes<'a> {
+    flights: Flights<'a>,
+    /// Where steps begin.
+    beginnings: &'static [Beginning],
+    load_rad: f64,
+    loads: usize,
+}
+
+impl Boxes<'_> {
+    /// Flies all loads of a piece of set-points, the first sample being the controller's own or not.
+    fn piece(&mut self, setpoint: [f64; 2]) -> Result<Landed, Stop> {
+        let mut worst = Landed::default();
+        let commands = Commands::step();
+        for part in 0..self.loads {
+            let at = |part: usize| self.load_rad * (2.0 * part as f64 / self.loads as f64 - 1.0);
+            let patch = Patch { setpoint, load: [at(part), at(part + 1)] };
+            for &from in self.beginnings {
+                let way = Way { commands: &commands, patch, from };
+                let begun = self.flights.begun(from);
+                worst = worst.worse(self.flights.landed(&way, begun, 0)?);
+            }
+        }
+        Ok(worst)
+    }
+
+    /// Boxes from zero outwards to one side, as far as they are flown within the work of a re-check.
+    fn side(&mut self, to: f64, allowed: usize) -> Vec<f64> {
+        let mut ends = vec![0.0];
+        let (mut at, mut width, mut of_check) = (0.0_f64, 0.25 * to, 0);
+        while at.abs() < to.abs() && ends.len() < MOST_PIECES / 2 {
+            let next = if (at + width).abs() >= to.abs() { to } else { at + width };
+            let piece = if to < 0.0 { [next, at] } else { [at, next] };
+            let before = self.flights.flown;
+            let landed = self.piece(piece);
+            if landed.is_ok() {
+                of_check += self.flights.flown - before;
+                if of_check > allowed {
+                    break;
+                }
+                ends.push(next);
+                at = next;
+                width *= 1.5;
+            } else {
+                width *= 0.5;
+                if width.abs() < NARROWEST * to.abs() || self.flights.flown > self.flights.most {
+                    break;
+                }
+            }
+        }
+        ends
+    }
+}
+
+/// Where steps are flown from: a controller that remembers nothing does not know its first sample.
+fn beginnings(certificate: &Certificate) -> &'static [Beginning] {
+    let remembers = certificate.description.settings().memory.previous;
+    let both = &[Beginning::Rest, Beginning::Controller];
+    if remembers { both } else { &both[..1] }
+}
+
+impl Search<'_> {
+    /// The largest steps of a proved loop, up to those of its range, that are found to end at their set-point.
+    pub(crate) fn steps(&self) -> Option<Steps> {
+        let Self { certificate, model, set, terminal, system, stops } = self;
+        let description = &certificate.description;
+        let Range { setpoint_rad, load_rad } = certificate.range;
+        // Sets of both are as many as those of one times those of the other; gains that remember need narrow ones.
+        let load_rad = if remembers(description) { 0.0 } else { load_rad };
+        if !(setpoint_rad > 0.0) || sees_loads_at_once(model, load_rad) {
+            return None;
+        }
+        let flights = Flights::of(certificate, model, set, terminal, system.as_ref())?;
+        let flights = flights.searching(0.5, *stops);
+        let loads = if load_rad > 0.0 { 2 } else { 1 };
+        let odd = is_odd(description);
+        let most_checked = most_checked(description);
+        let allowed = if odd { most_checked } else { most_checked / 2 };
+        let mut boxes = Boxes { flights, beginnings: beginnings(certificate), load_rad, loads };
+        let up = boxes.side(setpoint_rad, allowed);
+        let reached = up.last().copied().unwrap_or(0.0);
+        boxes.flights.most += boxes.flights.flown;
+        let down = match odd {
+            true => vec![0.0],
+            false => boxes.side(-reached, allowed),
+        };
+        let most = match odd {
+            true => reached,
+            false => reached.min(-down.last().copied().unwrap_or(0.0)),
+        };
+        if !(most > 0.0) || stops() {
+            return None;
+        }
+        let below = down.into_iter().rev().map(|end| end.max(-most));
+        let mut ends: Vec<f64> =
+            below.chain(up.into_iter().skip(1).map(|end| end.min(most))).collect();
+        ends.dedup_by(|one, other| one.to_bits() == other.to_bits());
+        Some(Steps { setpoint_rad: most, load_rad, terminal: terminal.clone(), ends, loads })
+    }
+}
+
+impl Steps {
+    /// Proves the claim anew.
+    pub(crate) fn proved(&self, checked: Checked<'_>) -> Result<Stepped, &'static str> {
+        let Checked { certificate, model, set, stops } = checked;
+        checked.allowed(self.load_rad)?;
+        self.fits(certificate)?;
+        let system = super::system(&certificate.description);
+        let mut flights = Flights::of(certificate, model, set, &self.terminal, system.as_ref())
+            .ok_or("steps: the loop near rest is not enclosed")?;
+        flights.stops = stops;
+        let rested_s = flights.rests_s();
+        let (load_rad, loads) = (self.load_rad, self.loads);
+        let mut boxes = Boxes { flights, beginnings: beginnings(certificate), load_rad, loads };
+        let mut worst = Landed::default();
+        for pair in self.ends.windows(2) {
+            worst = worst.worse(boxes.piece([pair[0], pair[1]]).map_err(given_up)?);
+        }
+        Ok(Stepped {
+            setpoint_rad: self.setpoint_rad,
+            load_rad: self.load_rad,
+            sets: self.loads * (self.ends.len() - 1),
+            settled_s: worst.samples as f64 * certificate.description.controller.config().dt_s,
+            limited: worst.limited,
+            rested_s,
+        })
+    }
+
+    /// Whether the boxes fill the steps, and the steps lie in the range that the claim near rest is made for.
+    fn fits(&self, certificate: &Certificate) -> Result<(), &'static str> {
+        let range = Range { setpoint_rad: self.setpoint_rad, load_rad: self.load_rad };
+        if !range.is_allowed() || !certificate.range.covers(range) {
+            return Err("steps: beyond the range of the claim");
+        }
+        let rising = self.ends.windows(2).all(|pair| pair[0] < pair[1]);
+        let first = if is_odd(&certificate.description) { 0.0 } else { -self.setpoint_rad };
+        let filled = self.ends.first().is_some_and(|end| *end <= first)
+            && self.ends.last().is_some_and(|end| *end >= self.setpoint_rad);
+        if !rising || !filled {
+            return Err("steps: the boxes do not fill the steps");
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,158 @@
+//! Sets of flights with an account of their work, which a search and a check may not exceed.
+
+use fspid_fuzzy::system::System;
+use fspid_numeric::scalar::Interval;
+use fspid_sim::Controller;
+use fspid_sim::loop_model::LoopModel;
+
+use super::flights::{Beginning, Landed, Patch, Ready, Way};
+use super::joined::Joined;
+use super::remembers;
+use super::sample::{Flight, Stop};
+use super::terminal::Terminal;
+use crate::certificate::{Certificate, Claim};
+use crate::description::LoopDescription;
+use crate::gain_set::GainSet;
+
+/// Longest flight of a set, s, and in samples.
+const LONGEST_S: f64 = 400.0;
+pub(super) const MOST_SAMPLES: usize = 40_000;
+/// Most work of a re-check, in samples of gains that stand still, and how many of these one of gains that move takes: some
+/// seconds. A search may take so many times as much.
+const MOST_CHECKED: usize = 280_000;
+const MOVING: usize = 6;
+/// The same where they remember: some dozens of sets of half a minute, each of them flown with hundreds of unknowns.
+const MOST_CHECKED_REMEMBERED: usize = 16 * MOST_CHECKED;
+const SEARCHED: usize = 6;
+
+/// Sets of flights of a loop with its forms near rest.
+pub(super) struct Flights<'a> {
+    ready: Ready<'a>,
+    longest: usize,
+    /// Work of a sample.
+    each: usize,
+    /// Work so far, and the most.
+    pub(super) flown: usize,
+    pub(super) most: usize,
+    pub(super) stops: fn() -> bool,
+}
+
+impl<'a> Flights<'a> {
+    /// For a check.
+    pub(super) fn of(
+        certificate: &'a Certificate,
+        model: &LoopModel<Interval>,
+        set: &GainSet,
+        terminal: &Terminal,
+        system: Option<&'a System>,
+    ) -> Option<Self> {
+        let description = &certificate.description;
+        let forms = [terminal, &common(certificate, terminal)];
+        let ready = Ready::of(description, model, set, forms, system).ok()??;
+        let dt_s = description.controller.config().dt_s;
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
+        let longest = ((LONGEST_S / dt_s) as usize).min(MOST_SAMPLES);
+        let (flown, most) = (0, most_checked(description));
+        let each = match &description.controller {
+            Controller::Fixed(_) => 1,
+            Controller::SelfTuning(_) => MOVING,
+        };
+        Some(Self { ready, longest, each, flown, most, stops: crate::solve::never })
+    }
+
+    /// For a search, which may take a part of all that searches may.
+    pub(super) fn searching(self, part: f64, stops: fn() -> bool) -> Self {
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "below the most"
+        )]
+        let most = (part * (SEARCHED * self.most) as f64) as usize;
+        Self { most, stops, ..self }
+    }
+
+    /// Of gains that remember, how long a rest has to last, s.
+    pub(super) fn rests_s(&self) -> Option<f64> {
+        self.ready.rests_s()
+    }
+
+    /// At rest, before anything is commanded.
+    pub(super) fn begun(&mut self, from: Beginning) -> Flight {
+        self.ready.begun(from)
+    }
+
+    /// Flies on from a sample to another.
+    pub(super) fn until(
+        &mut self,
+        way: &Way<'_>,
+        flight: Flight,
+        [from, to]: [usize; 2],
+    ) -> Result<Flight, Stop> {
+        self.allowed()?;
+        let flown = self.ready.until(way, flight, from..to);
+        self.flown +=
+            flown.as_ref().map_or_else(|(_, samples)| *samples, |_| to - from) * self.each;
+        flown.map_err(|(stop, _)| stop)
+    }
+
+    /// Flies on from a sample to where it has landed.
+    pub(super) fn landed(
+        &mut self,
+        way: &Way<'_>,
+        flight: Flight,
+        from: usize,
+    ) -> Result<Landed, Stop> {
+        self.allowed()?;
+        let most = from.max(way.commands.last_change()).saturating_add(self.longest);
+        let landed = self.ready.landed(way, flight, from..most);
+        self.flown +=
+            landed.as_ref().map_or_else(|(_, samples)| *samples, |it| it.flown) * self.each;
+        landed.map_err(|(stop, _)| stop)
+    }
+
+    /// What sets at the same sample have come to, as one.
+    pub(super) fn joined(&self, sets: &[(Patch, Flight)]) -> Option<Joined> {
+        self.ready.joined(sets)
+    }
+
+    /// How far the pitch angles of a set are apart, beside what set-point and load make of them, rad.
+    pub(super) fn apart_rad(&self, flight: &Flight) -> f64 {
+        self.ready.apart_rad(flight)
+    }
+
+    /// The gains of a set, each as a share of what it can reach.
+    pub(super) fn gains_of_reach(&self, flight: &Flight) -> [Interval; 3] {
+        self.ready.gains_of_reach(flight)
+    }
+
+    fn allowed(&self) -> Result<(), Stop> {
+        if (self.stops)() || self.flown > self.most { Err(Stop::Lost) } else { Ok(()) }
+    }
+}
+
+impl Landed {
+    /// The later, and whatever acted in one of them.
+    pub(super) fn worse(self, other: Self) -> Self {
+        Self {
+            flown: self.flown + other.flown,
+            samples: self.samples.max(other.samples),
+            limited: self.limited || other.limited,
+        }
+    }
+}
+
+/// Most work of a re-check.
+pub(super) fn most_checked(description: &LoopDescription) -> usize {
+    if remembers(description) { MOST_CHECKED_REMEMBERED } else { MOST_CHECKED }
+}
+
+/// A form that falls for all gains, for the ball around what is told apart: that of the claim, where it is one for all gains
+/// and has a rate. Gains that stand still are those near rest.
+fn common(certificate: &Certificate, terminal: &Terminal) -> Terminal {
+    match (&certificate.claim, &certificate.description.controller) {
+        (Claim::CommonQuadratic { form, rate }, Controller::SelfTuning(_)) if *rate < 1.0 => {
+            Terminal { form: form.clone(), rate: *rate, ..terminal.clone() }
+        }
+        _ => terminal.clone(),
+    }
+}
