@@ -30,7 +30,9 @@ pub const MOST_DIVISIONS: usize = 96;
 pub const MOST_CONES: usize = 96;
 /// Longest sequence of gains that is multiplied out.
 pub const MOST_SAMPLES: usize = 20_000;
-pub use crate::steps::{MOST_CHANGES, MOST_LEG_PARTS, MOST_LEGS, MOST_LOADS, MOST_PIECES};
+pub use crate::steps::{
+    MOST_CHANGES, MOST_LEG_PARTS, MOST_LEG_SETS, MOST_LEGS, MOST_LOADS, MOST_PIECES,
+};
 
 /// Most work of a re-check: cubes of the number of states, one for each inequality. That is some minutes.
 pub const MOST_WORK: u64 = 4_000_000_000;
@@ -264,6 +266,7 @@ impl Sizes {
         self.within(("commanded.legs", "legs"), legs.len(), [1, MOST_LEGS]);
         for leg in legs {
             self.within(("commanded.legs.groups", "groups"), leg.groups.len(), [1, MOST_LEG_PARTS]);
+            self.within(("commanded.legs", "sets of a leg"), leg.sets(), [1, MOST_LEG_SETS]);
         }
         for group in legs.iter().flat_map(|leg| &leg.groups) {
             let most = MOST_LEG_PARTS + 1;

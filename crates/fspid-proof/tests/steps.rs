@@ -100,6 +100,8 @@ fn what_a_scenario_commands_is_proved_with_its_limits_and_believed_as_far_as_its
     assert!(with(&|it| it.commands.setpoint_rad *= 1.5).contains("range"));
     assert!(with(&|it| it.commands.load_rad *= 1.5).contains("range"));
     assert!(with(&|it| it.commands.at_servo = Shares(vec![(50, 2.0)])).contains("range"));
+    assert!(with(&|it| it.commands.at_servo = Shares(vec![(50, 0.5)])).contains("range"));
+    assert!(with(&|it| it.commands.setpoint = Shares::default()).contains("range"));
     assert!(with(&|it| it.legs.clear()).contains("legs"));
     assert!(with(&|it| it.legs[0].from = 1).contains("follow"));
     let shorter = |group: &mut LegGroup| {
@@ -119,7 +121,33 @@ fn what_a_scenario_commands_is_proved_with_its_limits_and_believed_as_far_as_its
             leg.groups[0].of.pop();
         });
     });
-    assert!(missing.contains("no group") || missing.contains("no set"), "{missing}");
+    assert!(missing.contains("no group"), "{missing}");
     with(&|it| it.terminal.level *= 4.0);
     with(&|it| it.terminal.rate *= 0.5);
+}
+
+#[test]
+fn a_leg_that_would_be_flown_for_a_year_or_in_a_million_sets_is_refused() {
+    let (certificate, _) = proved(20.0, 2.0);
+    let commanded = certificate.commanded.clone().expect("flights are proved");
+    let refused = |change: &dyn Fn(&mut Commanded)| {
+        let mut changed = commanded.clone();
+        change(&mut changed);
+        let changed = Certificate { commanded: Some(changed), ..certificate.clone() };
+        changed.check().expect_err("refused").to_string()
+    };
+    let late = refused(&|it| {
+        let last = it.legs[0].clone();
+        it.legs.push(Leg { from: 4_000_000_000, ..last });
+    });
+    assert!(late.contains("not shown to end") || late.contains("no group"), "{late}");
+    let later = refused(&|it| it.commands.setpoint.0[2].0 = 4_000_000_000);
+    assert!(later.contains("not shown to end"), "{later}");
+    let many = refused(&|it| {
+        let [least, most] = [it.legs[0].groups[0].loads[0], 0.01];
+        let at = |part: usize| least + (most - least) * part as f64 / 900.0;
+        it.legs[0].groups[0].loads = (0..=900).map(at).collect();
+        it.legs[0].groups[0].setpoints = (0..=900).map(at).collect();
+    });
+    assert!(many.contains("sets of a leg"), "{many}");
 }

@@ -18,6 +18,8 @@ use crate::scope::Range;
 
 /// Most legs.
 pub const MOST_LEGS: usize = 64;
+/// Most sets of a leg, which are kept until they are joined.
+pub const MOST_LEG_SETS: usize = 1024;
 /// Most parts along set-points or loads in each group, and most groups of a leg.
 pub const MOST_LEG_PARTS: usize = 1024;
 /// The narrowest part, as a share of the whole.
@@ -100,6 +102,15 @@ fn whole(commands: &Commands, odd: bool) -> Patch {
     }
 }
 
+impl Leg {
+    /// Sets that it is flown in.
+    pub(crate) fn sets(&self) -> usize {
+        let parts = |ends: &[f64]| ends.len().saturating_sub(1);
+        let of_group = |it: &Group| parts(&it.setpoints).saturating_mul(parts(&it.loads));
+        self.groups.iter().map(of_group).fold(0, usize::saturating_add)
+    }
+}
+
 impl Group {
     fn patches(&self) -> Vec<Patch> {
         let loads = || self.loads.windows(2).map(|pair| [pair[0], pair[1]]);
@@ -133,7 +144,9 @@ impl Course<'_> {
         Start { joined: None, like, from: 0, of: Vec::new(), whole }
     }
 
-    fn begun(&self, start: &Start, patch: Patch) -> Flight {
+    fn begun(&mut self, start: &Start, patch: Patch) -> Flight {
+        // Nothing is known from other sets, so that a check has the same numbers as the search.
+        self.flights.begun(Beginning::Controller);
         let Start { joined, like, from, .. } = start;
         let of = |joined: &Joined| joined.flight(like, self.commands, patch, *from);
         joined.as_ref().map_or_else(|| like.clone(), of)
@@ -155,8 +168,7 @@ impl Course<'_> {
 
     /// What a group of the next leg begins with.
     fn next(&self, sets: &[Set], of: Vec<usize>, from: usize) -> Option<Start> {
-        let joined = of.iter().map(|place| sets.get(*place).cloned()).collect::<Option<Vec<Set>>>();
-        let joined = joined?;
+        let joined = of.iter().map(|place| sets.get(*place)).collect::<Option<Vec<&Set>>>()?;
         let (first, like) = joined.first()?;
         let whole = joined.iter().fold(*first, |whole, (patch, _)| whole.hull(patch));
         let like = like.clone();
@@ -210,8 +222,8 @@ struct Legs<'a> {
 }
 
 impl Legs<'_> {
-    fn found(mut self, whole: Patch) -> Option<Vec<Leg>> {
-        let planned = self.course.commands.legs();
+    fn found(mut self, whole: Patch, dt_s: f64) -> Option<Vec<Leg>> {
+        let planned = self.course.commands.legs(dt_s);
         let mut starts = vec![self.course.start(whole)];
         let mut legs = Vec::new();
         for (place, &(_, along)) in planned.iter().enumerate() {
@@ -222,7 +234,11 @@ impl Legs<'_> {
                 groups.push(group);
                 sets.extend(own);
             }
-            legs.push(Leg { from: starts.first()?.from, groups });
+            let leg = Leg { from: starts.first()?.from, groups };
+            if leg.sets() > MOST_LEG_SETS {
+                return None;
+            }
+            legs.push(leg);
             if let Some(to) = to {
                 let groups = self.course.groups(&sets, self.fineness.gains).into_iter();
                 let next = groups.map(|of| self.course.next(&sets, of, to));
@@ -326,9 +342,11 @@ impl Search<'_> {
     /// The flights that are commanded, as large as they are found to end at their set-point.
     pub(crate) fn commanded(&self, commands: &Commands) -> Option<Commanded> {
         let Self { certificate, model, set, terminal, system, stops } = self;
-        if sees_loads_at_once(model, at_elevator_rad(commands)) {
+        let beyond = Commanded::fits_range(commands, certificate).is_err();
+        if beyond || sees_loads_at_once(model, at_elevator_rad(commands)) {
             return None;
         }
+        let dt_s = certificate.description.controller.config().dt_s;
         let odd = is_odd(&certificate.description);
         let most_checked = most_checked(&certificate.description);
         let searches = TRIED.into_iter().flat_map(|size| FINENESS.map(|it| (size, it)));
@@ -339,7 +357,7 @@ impl Search<'_> {
             let flights = flights.searching(part, *stops);
             let course = Course { flights, commands: &commands };
             let legs = Legs { course, fineness, of_check: 0, most_checked };
-            let legs = legs.found(whole(&commands, odd))?;
+            let legs = legs.found(whole(&commands, odd), dt_s)?;
             Some(Commanded { commands, terminal: terminal.clone(), legs })
         })
     }
@@ -393,14 +411,18 @@ impl Commanded {
         })
     }
 
-    /// Whether what is commanded lies in the range that the claim near rest is made for, and legs follow each other.
+    /// Whether what is commanded lies in the range that the claim near rest is made for.
+    fn fits_range(commands: &Commands, certificate: &Certificate) -> Result<(), &'static str> {
+        let (setpoint_rad, load_rad) = (commands.setpoint_rad, commands.whole_load_rad());
+        let fits =
+            commands.is_allowed() && certificate.range.covers(Range { setpoint_rad, load_rad });
+        fits.then_some(()).ok_or("flights: beyond the range of the claim")
+    }
+
+    /// Whether that does, and legs follow each other.
     fn fits(&self, certificate: &Certificate) -> Result<(), &'static str> {
         let Self { commands, legs, .. } = self;
-        let (setpoint_rad, load_rad) = (commands.setpoint_rad, commands.whole_load_rad());
-        let range = Range { setpoint_rad, load_rad };
-        if !commands.is_allowed() || !certificate.range.covers(range) {
-            return Err("flights: beyond the range of the claim");
-        }
+        Self::fits_range(commands, certificate)?;
         let follow = legs.windows(2).all(|pair| pair[0].from < pair[1].from);
         let first = legs.first().is_some_and(|leg| leg.from == 0 && leg.groups.len() == 1);
         if follow && first { Ok(()) } else { Err("flights: the legs do not follow each other") }
@@ -410,13 +432,10 @@ impl Commanded {
 impl Leg {
     /// What its groups begin with, each set of the leg before in one of them at least.
     fn starts(&self, course: &Course<'_>, sets: &[Set]) -> Result<Vec<Start>, &'static str> {
-        let mut missing = vec![true; sets.len()];
-        let places = self.groups.iter().flat_map(|group| &group.of);
-        for place in places {
-            *missing.get_mut(*place).ok_or("flights: a group of a set that there is not")? = false;
-        }
-        if missing.contains(&true) {
-            return Err("flights: a set is in no group");
+        let mut places: Vec<usize> = self.groups.iter().flat_map(|it| it.of.clone()).collect();
+        places.sort_unstable();
+        if !places.into_iter().eq(0..sets.len()) {
+            return Err("flights: a set is in no group, or in two, or is not there");
         }
         let starts = self.groups.iter().map(|group| course.next(sets, group.of.clone(), self.from));
         starts.collect::<Option<_>>().ok_or("flights: a group of no set")

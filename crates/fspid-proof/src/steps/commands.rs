@@ -6,8 +6,10 @@ use fspid_sim::{Scenario, Surroundings};
 
 /// Most changes of a signal.
 pub const MOST_CHANGES: usize = 4096;
-/// What changes again within so many samples has not paused.
-const PAUSE_SAMPLES: usize = 50;
+/// What changes again within so long, s, has not paused.
+const PAUSE_S: f64 = 0.5;
+/// Shares that are not further apart, as a part of themselves, are the same: what a quotient of another size is rounded to.
+const SAME: f64 = 2.0 * f64::EPSILON;
 
 /// What changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,9 +55,10 @@ impl Shares {
     /// A share with what the quotient has been rounded by.
     fn enclosed(&self, place: usize) -> Interval {
         let share = self.0.get(place).map_or(0.0, |(_, share)| *share);
+        let off = SAME * share.abs();
         match share.abs() {
             0.0 | 1.0 => Interval::point(share),
-            _ => Interval::between(share.next_down(), share.next_up()),
+            _ => Interval::between((share - off).next_down(), (share + off).next_up()),
         }
     }
 
@@ -64,10 +67,20 @@ impl Shares {
         self.0.iter().map(|(_, share)| share.abs()).fold(0.0, f64::max)
     }
 
+    /// True for the same changes, but for what shares are rounded by.
+    fn is_same(&self, other: &Self) -> bool {
+        let near = |one: f64, other: f64| (one - other).abs() <= SAME * one.abs();
+        let mut pairs = self.0.iter().zip(&other.0);
+        self.0.len() == other.0.len()
+            && pairs
+                .all(|((from, share), (other, of_other))| from == other && near(*share, *of_other))
+    }
+
     /// Samples that rise, and shares of at most 1.
     fn is_allowed(&self) -> bool {
         let rising = self.0.windows(2).all(|pair| pair[0].0 < pair[1].0);
-        rising && self.0.len() <= MOST_CHANGES && self.largest() <= 1.0
+        let within = self.0.iter().all(|(_, share)| share.abs() <= 1.0);
+        rising && within && self.0.len() <= MOST_CHANGES
     }
 }
 
@@ -148,14 +161,26 @@ impl Commands {
     pub(super) fn is_allowed(&self) -> bool {
         let Self { setpoint_rad, load_rad, setpoint, at_servo, at_elevator } = self;
         let sizes = [*setpoint_rad, *load_rad].into_iter();
+        // A size is one that is reached.
+        let reached = |size: f64, most: f64| size > 0.0 && (1.0 - most).abs() <= 0.0;
+        let none =
+            |size: f64, all: &[&Shares]| !(size > 0.0) && all.iter().all(|it| it.0.is_empty());
+        let is_size = |size: f64, all: &[&Shares]| {
+            let most = all.iter().map(|it| it.largest()).fold(0.0, f64::max);
+            reached(size, most) || none(size, all)
+        };
         sizes.clone().all(|size| size >= 0.0 && size.is_finite())
             && sizes.sum::<f64>() > 0.0
             && [setpoint, at_servo, at_elevator].into_iter().all(Shares::is_allowed)
+            && is_size(*setpoint_rad, &[setpoint])
+            && is_size(*load_rad, &[at_servo, at_elevator])
     }
 
     /// The largest load that enters at servo and elevator together, rad.
     pub(super) fn whole_load_rad(&self) -> f64 {
-        (self.at_servo.largest() + self.at_elevator.largest()) * self.load_rad
+        let [at_servo, at_elevator] =
+            [&self.at_servo, &self.at_elevator].map(|it| Interval::point(it.largest()));
+        ((at_servo + at_elevator) * Interval::point(self.load_rad)).upper()
     }
 
     /// The same, each up to a part of its size.
@@ -171,7 +196,7 @@ impl Commands {
     /// True where everything that `other` commands is one of these.
     #[must_use]
     pub fn covers(&self, other: &Self) -> bool {
-        let same = |own: &Shares, other: &Shares, size: f64| !(size > 0.0) || own == other;
+        let same = |own: &Shares, other: &Shares, size: f64| !(size > 0.0) || own.is_same(other);
         self.setpoint_rad >= other.setpoint_rad
             && self.load_rad >= other.load_rad
             && same(&self.setpoint, &other.setpoint, other.setpoint_rad)
@@ -196,13 +221,14 @@ impl Commands {
     }
 
     /// Where legs begin, and what changes in each: a new one where after a pause something else changes than before.
-    pub(super) fn legs(&self) -> Vec<(usize, Along)> {
+    pub(super) fn legs(&self, dt_s: f64) -> Vec<(usize, Along)> {
         let mut changes: Vec<(usize, Along)> = self.changes().collect();
         changes.sort_by_key(|(from, _)| *from);
         let mut legs: Vec<(usize, Along)> = Vec::new();
         let mut before = None;
         for (from, along) in changes {
-            let goes_on = before.is_some_and(|before: usize| from - before < PAUSE_SAMPLES);
+            let goes_on =
+                before.is_some_and(|before: usize| ((from - before) as f64) * dt_s < PAUSE_S);
             before = Some(from);
             match legs.last_mut() {
                 Some((_, of_leg)) if *of_leg == along => {}

@@ -13,14 +13,14 @@ use fspid_sim::loop_model::LoopModel;
 use super::affine::{Affine, raised};
 use super::ball::{Growth, Norm};
 use super::commands::Commands;
-use super::gains::{Between, SeenGains};
+use super::flown::{around, flown};
+use super::gains::Between;
 use super::joined::Joined;
 use super::sample::{
-    FREE, Flight, Flown, Judge, LOAD, Layout, Moment, OWN, PLACES, Passage, Row, SETPOINT, Stop,
+    FREE, Flight, Flown, Judge, LOAD, Moment, OWN, PLACES, Passage, SETPOINT, Stop,
 };
-use super::servo::Curve;
 use super::terminal::{NearGains, Terminal};
-use super::tuned::{LEFT, Tuned, Tuner};
+use super::tuned::{Tuned, Tuner};
 use crate::check::{IntervalMatrix, NotProved};
 use crate::description::LoopDescription;
 use crate::gain_set::GainSet;
@@ -29,7 +29,7 @@ use crate::gain_set::GainSet;
 const MOST_SYMBOLS: usize = 256;
 const KEPT_SYMBOLS: usize = 160;
 /// The same of gains that remember, where the smallest become one for each number. The fewer, the narrower a set has to be:
-/// steps of the small unmanned `uav-steps.toml` up to 5 deg took 98 sets with 256, 30 with 384, 22 with 512 and 16 with 768.
+/// steps of the small unmanned `uav-steps.toml` up to 5 deg take 6 sets with 640 and 4 with 1280.
 const MOST_FOLLOWED: usize = 1280;
 const KEPT_FOLLOWED: usize = 640;
 /// Every so many samples it is asked whether the flights are near enough to rest.
@@ -201,7 +201,7 @@ impl<'a> Ready<'a> {
     }
 
     /// What sets at the same sample have come to, as one.
-    pub(super) fn joined(&self, sets: &[(Patch, Flight)]) -> Option<Joined> {
+    pub(super) fn joined(&self, sets: &[&(Patch, Flight)]) -> Option<Joined> {
         Joined::of(&self.flown, sets)
     }
 
@@ -570,22 +570,6 @@ fn forced(flown: &Flown<'_>, shares: [f64; PLACES], gains: Between) -> Option<In
     IntervalMatrix::from_rows(&rows).ok()
 }
 
-/// A box around the gains at rest with a share of all gains.
-pub(super) fn around(set: &GainSet, share: f64) -> [Interval; 3] {
-    let bounds = set.bounds();
-    [0, 1, 2].map(|gain: usize| {
-        let (rest, whole) = (set.rest[gain], bounds[gain]);
-        if share >= 1.0 {
-            return whole.hull(rest);
-        }
-        let between = |end: f64, rest: f64| rest + share * (end - rest);
-        rest.hull(Interval::between(
-            between(whole.lower(), rest.lower()),
-            between(whole.upper(), rest.upper()),
-        ))
-    })
-}
-
 /// Corners of a box of gains.
 fn corners(bounds: [Interval; 3]) -> Vec<Between> {
     let ends = |corner: usize| {
@@ -602,67 +586,4 @@ fn corners(bounds: [Interval; 3]) -> Vec<Between> {
         }
     }
     found
-}
-
-/// The loop as its samples are flown.
-pub(super) fn flown<'a>(
-    description: &'a LoopDescription,
-    model: &LoopModel<Interval>,
-    set: &GainSet,
-    system: Option<&'a System>,
-) -> Result<Flown<'a>, NotProved> {
-    let settings = model.settings();
-    let config = settings.config;
-    let uses_rate = config.rate_gain_s != 0.0;
-    let plant = model.plant();
-    let remembered = |sensing: &fspid_sim::loop_model::Sensing| {
-        sensing.samples + usize::from(sensing.part > 0.0)
-    };
-    let queue = settings.delay_samples;
-    let pitch = remembered(&settings.pitch);
-    let rate = if uses_rate { remembered(&settings.rate) } else { 0 };
-    let mut size = plant.states + queue + pitch + rate;
-    let mut place = |there: bool| {
-        there.then(|| {
-            size += 1;
-            size - 1
-        })
-    };
-    let memory = settings.memory;
-    let [integral, derivative, previous] =
-        [memory.integral, memory.derivative, memory.previous].map(&mut place);
-    let layout =
-        Layout { plant: plant.states, queue, pitch, rate, integral, derivative, previous, size };
-    let sparse = |row: &[Interval]| -> Row {
-        let entries = row.iter().copied().enumerate();
-        entries.filter(|(_, entry)| entry.magnitude() > 0.0).collect()
-    };
-    let [seen_pitch, seen_rate] = model.seen_rows();
-    let actuator = &description.actuator;
-    let lag_order = actuator.lag().order();
-    let arriving = match (actuator.command_limits_rad(), actuator.travel_rad()) {
-        (Some((a, b)), Some((c, d))) if lag_order == 0 => Some((a.max(c), b.min(d))),
-        (None, travel) if lag_order == 0 => travel,
-        (limits, _) => limits,
-    };
-    let fspid = match &description.controller {
-        Controller::Fixed(_) => None,
-        Controller::SelfTuning(fspid) => Some(fspid),
-    };
-    Ok(Flown {
-        plant: plant.rows.chunks(plant.states + 1).map(<[Interval]>::to_vec).collect(),
-        seen: [sparse(&seen_pitch), sparse(&seen_rate)],
-        rate: sparse(&plant.rate),
-        config,
-        gains: SeenGains::of(set, fspid, system),
-        tuner: fspid.and_then(Tuner::of),
-        rested: around(set, LEFT),
-        followers: settings.followers,
-        curve: Curve::of(description)?,
-        arriving,
-        travel: actuator.travel_rad(),
-        lag_order,
-        reach: vec![0.0; size],
-        layout,
-    })
 }

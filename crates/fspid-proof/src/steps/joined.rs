@@ -49,7 +49,7 @@ fn slope(of: &Affine, by: &Affine, symbol: usize) -> Option<f64> {
 
 impl Joined {
     /// Sets with the boxes that they are of; nothing where there are none.
-    pub(super) fn of(flown: &Flown<'_>, sets: &[(Patch, Flight)]) -> Option<Self> {
+    pub(super) fn of(flown: &Flown<'_>, sets: &[&(Patch, Flight)]) -> Option<Self> {
         let (_, one) = sets.first()?;
         let count = numbers(flown, one).count();
         let slopes = slopes(flown, sets, count);
@@ -122,7 +122,7 @@ impl Joined {
 }
 
 /// Of each number what it moves by with set-point and load: between sets, where they are of several boxes, and within them.
-fn slopes(flown: &Flown<'_>, sets: &[(Patch, Flight)], count: usize) -> Vec<[f64; 2]> {
+fn slopes(flown: &Flown<'_>, sets: &[&(Patch, Flight)], count: usize) -> Vec<[f64; 2]> {
     let mut sums = vec![[[0.0_f64; 2]; 2]; count];
     for (patch, flight) in sets {
         let unknowns = patch.unknowns();

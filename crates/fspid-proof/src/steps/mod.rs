@@ -14,6 +14,7 @@ mod commanded;
 mod commands;
 mod cut;
 mod flights;
+mod flown;
 mod from_rest;
 mod gains;
 mod joined;
@@ -46,7 +47,7 @@ use tuned::Tuner;
 
 pub(crate) use near::corners_within;
 
-pub use commanded::{Commanded, Ended, Group, Leg, MOST_LEG_PARTS, MOST_LEGS};
+pub use commanded::{Commanded, Ended, Group, Leg, MOST_LEG_PARTS, MOST_LEG_SETS, MOST_LEGS};
 pub use commands::{Commands, MOST_CHANGES, Shares};
 pub use from_rest::{MOST_LOADS, MOST_PIECES, Stepped, Steps};
 pub use terminal::{NearGains, Terminal};

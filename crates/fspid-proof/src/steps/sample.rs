@@ -245,10 +245,11 @@ impl Pass<'_, '_> {
                 Line { slope: shares[place], offset: Interval::ZERO, half: 0.0 }
             }
         };
-        self.shares[place] *= line.slope;
         if line == Line::SAME {
             return value.clone();
         }
+        // A slope may be rounded to 1 where something is cut.
+        self.shares[place] *= line.slope.min(1.0_f64.next_down());
         let symbol = if line.half > 0.0 { self.symbol() } else { 0 };
         line.of(value, symbol)
     }

@@ -94,7 +94,7 @@ fn a_set_of_flights_holds_every_flight_of_a_self_tuner_that_remembers() {
         }
         let Ok(model) = description.enclosed() else { continue };
         let set = IncrementMap::of(fspid.tuner(), 12).expect("bounded").gains(1.0);
-        let loop_ = flights::flown(&description, &model, &set, None).expect("enclosed");
+        let loop_ = flown::flown(&description, &model, &set, None).expect("enclosed");
         let tuner = loop_.tuner.as_ref().expect("remembers");
         let rest = (tuner.rests_s() / scenario.timing.dt_s()).ceil() as usize;
         let most = 0.02 + 0.1 * (seed % 7) as f64;
@@ -149,7 +149,7 @@ fn a_set_of_flights_holds_every_flight_of_the_simulator() {
             }
         };
         let rules = system(&description);
-        let loop_ = flights::flown(&description, &model, &set, rules.as_ref()).expect("enclosed");
+        let loop_ = flown::flown(&description, &model, &set, rules.as_ref()).expect("enclosed");
         let most = 0.02 + 0.1 * (seed % 7) as f64;
         let patch = Patch { setpoint: [most, most * 1.001], load: [-0.01, -0.0099] };
         for moment in [(Beginning::Controller, 0), (Beginning::Rest, 3)] {
@@ -234,7 +234,7 @@ fn joined_sets_hold_every_flight_of_what_is_commanded() {
             }
         };
         let rules = system(&description);
-        let loop_ = flights::flown(&description, &model, &set, rules.as_ref()).expect("enclosed");
+        let loop_ = flown::flown(&description, &model, &set, rules.as_ref()).expect("enclosed");
         let most = 0.02 + 0.05 * (seed % 7) as f64;
         with_commands(&mut scenario, entry, [most, load_rad]);
         let commands = Commands::of(&scenario).expect("flown").expect("something");
@@ -248,7 +248,7 @@ fn joined_sets_hold_every_flight_of_what_is_commanded() {
             flown.map(|flown| (way.patch, flown))
         });
         let [Some(one), Some(other)] = sets else { continue };
-        let joined = Joined::of(&loop_, &[one.clone(), other]).expect("two");
+        let joined = Joined::of(&loop_, &[&one, &other]).expect("two");
         let mut joint = joined.flight(&one.1, &commands, whole, UP);
         let flown: Vec<Vec<f64>> = [(1.0, 1.0), (0.9997, -1.0), (0.9995, 0.3), (1.0, -0.01)]
             .map(|(setpoint, load)| {

@@ -88,7 +88,10 @@ impl<'a> Flights<'a> {
         flight: Flight,
         [from, to]: [usize; 2],
     ) -> Result<Flight, Stop> {
-        self.allowed()?;
+        let left = self.left()?;
+        if to.saturating_sub(from) > left {
+            return Err(Stop::Lost);
+        }
         let flown = self.ready.until(way, flight, from..to);
         self.flown +=
             flown.as_ref().map_or_else(|(_, samples)| *samples, |_| to - from) * self.each;
@@ -102,8 +105,9 @@ impl<'a> Flights<'a> {
         flight: Flight,
         from: usize,
     ) -> Result<Landed, Stop> {
-        self.allowed()?;
+        let left = self.left()?;
         let most = from.max(way.commands.last_change()).saturating_add(self.longest);
+        let most = most.min(from.saturating_add(left));
         let landed = self.ready.landed(way, flight, from..most);
         self.flown +=
             landed.as_ref().map_or_else(|(_, samples)| *samples, |it| it.flown) * self.each;
@@ -111,7 +115,7 @@ impl<'a> Flights<'a> {
     }
 
     /// What sets at the same sample have come to, as one.
-    pub(super) fn joined(&self, sets: &[(Patch, Flight)]) -> Option<Joined> {
+    pub(super) fn joined(&self, sets: &[&(Patch, Flight)]) -> Option<Joined> {
         self.ready.joined(sets)
     }
 
@@ -125,8 +129,12 @@ impl<'a> Flights<'a> {
         self.ready.gains_of_reach(flight)
     }
 
-    fn allowed(&self) -> Result<(), Stop> {
-        if (self.stops)() || self.flown > self.most { Err(Stop::Lost) } else { Ok(()) }
+    /// Samples that may still be flown: one flight may go beyond the most work by its own length, and no further.
+    fn left(&self) -> Result<usize, Stop> {
+        if (self.stops)() || self.flown > self.most {
+            return Err(Stop::Lost);
+        }
+        Ok(((self.most - self.flown) / self.each).max(self.longest))
     }
 }
 

@@ -1,7 +1,7 @@
 //! What is certified beside what a scenario flies, field by field.
 
 use super::comparison::{Comparison, Difference};
-use fspid_proof::{Asked, Commands, LeftOut, LoopDescription, Shares, Way, ways_of};
+use fspid_proof::{Asked, LeftOut, LoopDescription, Way, ways_of};
 use fspid_sim::SimError;
 use serde_json::{Value, json};
 
@@ -9,9 +9,9 @@ use super::checked::CheckedFile;
 use super::controller_file::ControllerFile;
 use super::loop_file::LoopFile;
 use super::nonlinear_file::AircraftFile;
+use super::scope::commands_in_words;
 use super::{asked, cases, family, nonlinear};
 use crate::analysis::lasting_plants;
-use crate::metrics::short;
 use fspid_scenario::file::{Study, Template};
 
 /// What stands in for something that is not there.
@@ -283,32 +283,6 @@ fn said(value: &Value) -> String {
         Value::Null => NOTHING.to_owned(),
         _ => value.to_string(),
     }
-}
-
-/// Changes of a signal that are told one by one.
-const TOLD: usize = 4;
-
-/// Set-point and loads over time.
-fn commands_in_words(commands: &Commands, dt_s: f64) -> String {
-    let Commands { setpoint_rad, load_rad, setpoint, at_servo, at_elevator } = commands;
-    let parts = [
-        ("set-point", setpoint_rad, setpoint),
-        ("load at the servo", load_rad, at_servo),
-        ("load at the elevator", load_rad, at_elevator),
-    ];
-    let parts = parts.into_iter().filter(|(_, size, shares)| **size > 0.0 && !shares.0.is_empty());
-    let said = parts.map(|(what, size, Shares(changes))| {
-        let change = |(sample, share): &(usize, f64)| {
-            format!("{} from {} s", short(*share), short(*sample as f64 * dt_s))
-        };
-        let told: Vec<String> = changes.iter().take(TOLD).map(change).collect();
-        let more = match changes.len().saturating_sub(TOLD) {
-            0 => String::new(),
-            more => format!(" and {more} changes more"),
-        };
-        format!("{what} of {} deg times {}{more}", short(size.to_degrees()), told.join(", "))
-    });
-    said.collect::<Vec<_>>().join("; ")
 }
 
 #[cfg(test)]

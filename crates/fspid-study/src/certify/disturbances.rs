@@ -169,6 +169,10 @@ pub(super) fn left_out(one: LeftOut, scope: Option<&Scope>) -> String {
             "Set-points and loads that move otherwise than in the lines above are left out."
                 .to_owned()
         }
+        (LeftOut::Disturbances, None) if scope.is_some_and(|it| it.ended.is_some()) => {
+            "Disturbances that move otherwise than in the lines above count while they stand still, as loads."
+                .to_owned()
+        }
         _ => one.to_string(),
     }
 }

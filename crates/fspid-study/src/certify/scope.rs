@@ -1,7 +1,9 @@
 //! What is said beside a verdict: where the claim holds and what it does not speak of, the same in every
 //! answer, in text and JSON, from a proof and from a certificate that is checked.
 
-use fspid_proof::{Certificate, Claim, Ended, LeftOut, Range, Rechecked, Scope, Stepped};
+use fspid_proof::{
+    Certificate, Claim, Commands, Ended, LeftOut, Range, Rechecked, Scope, Shares, Stepped,
+};
 use serde_json::{Value, json};
 
 use super::text::is_fixed;
@@ -19,6 +21,8 @@ pub(super) struct Told {
     /// How gains move, after a bound of disturbances.
     moving: &'static str,
     nonlinear: Option<String>,
+    /// What is commanded, where flights are claimed.
+    commanded: String,
 }
 
 impl Told {
@@ -35,7 +39,11 @@ impl Told {
             Claim::BoundedRate(_) => ", with gains moving no faster than the law lets them",
             _ => ", with gains moving as they like",
         };
-        Self { stable, left_out, family, moving, nonlinear }
+        let dt_s = certificate.description.controller.config().dt_s;
+        let commanded = certificate.commanded.as_ref();
+        let commanded =
+            commanded.map(|it| commands_in_words(&it.commands, dt_s)).unwrap_or_default();
+        Self { stable, left_out, family, moving, nonlinear, commanded }
     }
 
     /// As [`of`](Self::of) of a certificate that was read and held against no scenario: what its words make of its plants
@@ -65,7 +73,8 @@ impl Told {
             sentences.push(("remains", remains(scope)));
             sentences.push(("limits", limits(scope)));
             sentences.extend(scope.stepped.map(|stepped| ("steps", steps(&stepped))));
-            sentences.extend(scope.ended.map(|ended| ("flights", flights(&ended))));
+            sentences
+                .extend(scope.ended.map(|ended| ("flights", flights(&ended, &self.commanded))));
             let disturbed = disturbances::sentences(scope, self.moving);
             sentences.extend(disturbed.into_iter().map(|it| ("disturbances", it)));
         }
@@ -233,7 +242,7 @@ fn acting(limited: bool) -> &'static str {
 }
 
 /// The flights that a scenario commands, limits acting on the way.
-fn flights(ended: &Ended) -> String {
+fn flights(ended: &Ended, commanded_over_time: &str) -> String {
     let [setpoint, load] = [ended.setpoint_rad, ended.load_rad].map(degrees);
     let commanded = match (setpoint > 0.0, load > 0.0) {
         (true, true) => format!(
@@ -251,10 +260,36 @@ fn flights(ended: &Ended) -> String {
         ),
     };
     format!(
-        "from rest at the trim at the controller's first sample, sensors without bias, {commanded}: each flight ends where the loop without limits does, {}; from {} s on none acts any more",
+        "from rest at the trim at the controller's first sample, sensors without bias, {commanded} ({commanded_over_time}): each flight ends where the loop without limits does, {}; from {} s on none acts any more",
         acting(ended.limited),
         short(ended.settled_s)
     )
+}
+
+/// Changes of a signal that are told one by one.
+const TOLD: usize = 4;
+
+/// Set-point and loads over time.
+pub(super) fn commands_in_words(commands: &Commands, dt_s: f64) -> String {
+    let Commands { setpoint_rad, load_rad, setpoint, at_servo, at_elevator } = commands;
+    let parts = [
+        ("set-point", setpoint_rad, setpoint),
+        ("load at the servo", load_rad, at_servo),
+        ("load at the elevator", load_rad, at_elevator),
+    ];
+    let parts = parts.into_iter().filter(|(_, size, shares)| **size > 0.0 && !shares.0.is_empty());
+    let said = parts.map(|(what, size, Shares(changes))| {
+        let change = |(sample, share): &(usize, f64)| {
+            format!("{} from {} s", short(*share), short(*sample as f64 * dt_s))
+        };
+        let told: Vec<String> = changes.iter().take(TOLD).map(change).collect();
+        let more = match changes.len().saturating_sub(TOLD) {
+            0 => String::new(),
+            more => format!(" and {more} changes more"),
+        };
+        format!("{what} of {} deg times {}{more}", short(size.to_degrees()), told.join(", "))
+    });
+    said.collect::<Vec<_>>().join("; ")
 }
 
 /// The set-points and loads that limits are covered for, which may be fewer than those of the claim itself.

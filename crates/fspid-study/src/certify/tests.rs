@@ -589,6 +589,24 @@ fn steps_of_a_learned_self_tuner_that_remembers_are_proved_with_its_limits() {
     );
     assert!(against("disturbance[0].enters_at=elevator").contains("load at the elevator"));
 
+    // Flights of any size within come to their set-point in the simulator.
+    for (step, push) in [(5.0, 1.0), (-5.0, 1.0), (0.03, -1.0), (2.9, 0.4), (-4.1, -0.02)] {
+        let sizes = [
+            format!("setpoint.amplitude_deg={step}"),
+            format!("disturbance[0].amplitude_deg={push}"),
+        ];
+        let sizes: Vec<&str> = sizes.iter().map(String::as_str).collect();
+        let mut scenario =
+            load("data/designs/learned/uav-steps.toml", &[&condition[..], &sizes].concat())
+                .scenario;
+        scenario.surroundings.pitch_sensor = None;
+        scenario.surroundings.rate_sensor = None;
+        let flight = fspid_sim::simulate(&scenario).expect("flies");
+        let named = scenario.controllers.iter().position(|it| it.name == "FSPID").expect("there");
+        let theta_rad = flight.traces[named].theta_rad.last().expect("a sample");
+        assert!((theta_rad.to_degrees() - step).abs() < 0.05, "{step} {push}: {theta_rad}");
+    }
+
     // Gains that are said to stay in less than they do, and a model that is said to be nearer than it is.
     let changed = |change: &dyn Fn(&mut Value)| {
         let mut value: Value = serde_json::from_str(&text).expect("JSON");
