@@ -40,6 +40,15 @@ fn tails_of_students_distribution_are_those_of_another_tool() {
 }
 
 #[test]
+fn without_a_degree_of_freedom_nothing_is_known_and_one_in_a_trillion_is_far_away() {
+    assert_eq!([0.0, -1.0].map(|freedom| two_sided(1.0, freedom)), [1.0, 1.0]);
+    // Of one degree of freedom, Cauchy's distribution, the chance is 2/π arctan(1/t).
+    let chance = 1e-12;
+    let expected = 1.0 / (0.5 * std::f64::consts::PI * chance).tan();
+    assert!(near(beyond(chance, 1.0), expected), "{}", beyond(chance, 1.0));
+}
+
+#[test]
 fn signed_ranks_are_those_of_every_combination_of_signs() {
     for row in rows(include_str!("../../tests/data/signed_rank.csv")) {
         let differences = numbers(row[1]);

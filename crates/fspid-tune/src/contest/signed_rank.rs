@@ -178,4 +178,46 @@ mod tests {
         assert_eq!(found.upper, f64::INFINITY);
         assert!(found.estimate.is_finite());
     }
+
+    /// Rank of the lower end, counted out.
+    fn counted(count: usize, doubt: f64) -> usize {
+        let ranks: Vec<usize> = (1..=count).collect();
+        let sums = chances(&ranks).into_iter().scan(0.0, |below, chance| {
+            *below += chance;
+            Some(*below)
+        });
+        sums.take_while(|below| *below <= doubt / 2.0).count()
+    }
+
+    #[test]
+    fn where_counting_would_be_long_the_interval_ends_where_the_counted_one_does_or_a_little_wider()
+    {
+        for (count, doubt, most) in [(201, 0.05, 2), (250, 0.05, 2), (400, 0.2, 2), (250, 0.01, 8)]
+        {
+            let [found, expected] = [outermost(count, doubt), counted(count, doubt)];
+            assert!(found.abs_diff(expected) <= most, "{count} {doubt}: {found} {expected}");
+        }
+        // Of a small doubt it is the wider one.
+        assert!(outermost(250, 0.01) < counted(250, 0.01));
+        // Up to there it is counted.
+        assert_eq!(outermost(MOST_EXACT, 0.05), counted(MOST_EXACT, 0.05));
+    }
+
+    #[test]
+    fn a_tail_of_just_what_is_allowed_belongs_to_the_doubt() {
+        // Five differences: the one sum of no ranks has a chance of 1/32.
+        assert_eq!((outermost(5, 1.0 / 16.0), outermost(5, 0.9 / 16.0)), (1, 0));
+    }
+
+    #[test]
+    fn two_hundred_differences_are_still_counted() {
+        let differences: Vec<f64> = (1..=200)
+            .map(|size: i32| f64::from(if size % 3 == 0 { -size } else { size }))
+            .collect();
+        let negative: usize = (1..=200).filter(|size| size % 3 == 0).sum();
+        let ranks: Vec<usize> = (1..=200).collect();
+        let tail: f64 = chances(&ranks).iter().take(negative + 1).sum();
+        let p = p_value(&differences);
+        assert!((p - 2.0 * tail).abs() < 1e-12 * p, "{p} {tail}");
+    }
 }

@@ -146,4 +146,14 @@ mod tests {
         assert!((sure.estimate - unsure.estimate).abs() < 1e-12);
         assert!(sure.p() < 0.05 && unsure.p() > 0.05, "{} {}", sure.p(), unsure.p());
     }
+
+    #[test]
+    fn designs_that_differ_nowhere_and_designs_that_differ_everywhere_alike() {
+        let mine = vec![vec![1.0, 2.0, 3.0, 4.0]; 2];
+        let alike = TwoWay::of(&mine, &mine).expect("a difference");
+        assert_eq!((alike.p(), alike.freedom, alike.error), (1.0, 3.0, Some(0.0)));
+        assert_eq!(alike.interval(0.95), Some([0.0, 0.0]));
+        let apart = TwoWay { estimate: 0.5, ..alike };
+        assert_eq!((apart.p(), apart.interval(0.95)), (0.0, Some([0.5, 0.5])));
+    }
 }
