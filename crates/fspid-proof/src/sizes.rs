@@ -272,11 +272,15 @@ impl Sizes {
             let most = MOST_LEG_PARTS + 1;
             let ends = "ends of parts";
             self.within(
-                ("commanded.legs.groups.setpoints", ends),
-                group.setpoints.len(),
+                ("commanded.legs.groups.setpoints_rad", ends),
+                group.setpoints_rad.len(),
                 [2, most],
             );
-            self.within(("commanded.legs.groups.loads", ends), group.loads.len(), [2, most]);
+            self.within(
+                ("commanded.legs.groups.loads_rad", ends),
+                group.loads_rad.len(),
+                [2, most],
+            );
         }
         self.of_form("commanded.near_rest.form", &terminal.form, states);
     }

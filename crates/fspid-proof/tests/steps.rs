@@ -103,13 +103,13 @@ fn what_a_scenario_commands_is_proved_with_its_limits_and_believed_as_far_as_its
     assert!(with(&|it| it.commands.at_servo = Shares(vec![(50, 0.5)])).contains("range"));
     assert!(with(&|it| it.commands.setpoint = Shares::default()).contains("range"));
     assert!(with(&|it| it.legs.clear()).contains("legs"));
-    assert!(with(&|it| it.legs[0].from = 1).contains("follow"));
+    assert!(with(&|it| it.legs[0].from_sample = 1).contains("follow"));
     let shorter = |group: &mut LegGroup| {
-        group.setpoints.pop();
+        group.setpoints_rad.pop();
     };
     let fewer = with(&|it| it.legs.iter_mut().for_each(|leg| shorter(&mut leg.groups[0])));
     assert!(fewer.contains("fill") || fewer.contains("ends of parts"), "{fewer}");
-    assert!(with(&|it| it.legs[0].groups[0].loads[0] *= 0.5).contains("fill"));
+    assert!(with(&|it| it.legs[0].groups[0].loads_rad[0] *= 0.5).contains("fill"));
     let last = |it: &mut Commanded, change: &dyn Fn(&mut Leg)| {
         if let Some(leg) = it.legs.last_mut() {
             change(leg);
@@ -138,16 +138,16 @@ fn a_leg_that_would_be_flown_for_a_year_or_in_a_million_sets_is_refused() {
     };
     let late = refused(&|it| {
         let last = it.legs[0].clone();
-        it.legs.push(Leg { from: 4_000_000_000, ..last });
+        it.legs.push(Leg { from_sample: 4_000_000_000, ..last });
     });
     assert!(late.contains("not shown to end") || late.contains("no group"), "{late}");
     let later = refused(&|it| it.commands.setpoint.0[2].0 = 4_000_000_000);
     assert!(later.contains("not shown to end"), "{later}");
     let many = refused(&|it| {
-        let [least, most] = [it.legs[0].groups[0].loads[0], 0.01];
+        let [least, most] = [it.legs[0].groups[0].loads_rad[0], 0.01];
         let at = |part: usize| least + (most - least) * part as f64 / 900.0;
-        it.legs[0].groups[0].loads = (0..=900).map(at).collect();
-        it.legs[0].groups[0].setpoints = (0..=900).map(at).collect();
+        it.legs[0].groups[0].loads_rad = (0..=900).map(at).collect();
+        it.legs[0].groups[0].setpoints_rad = (0..=900).map(at).collect();
     });
     assert!(many.contains("sets of a leg"), "{many}");
 }

@@ -297,7 +297,7 @@ impl<'a> Recheck<'a> {
         }
         self.form(form, *rate)?;
         if !(*rate < 1.0) || self.off_rad > 0.0 || self.is_blurred() {
-            return Err(malformed("steps: near rest something remains"));
+            return Err(malformed("flights in sets: near rest something remains"));
         }
         for corner in corners_within(description, &self.model, &self.held, terminal)? {
             self.holds(corner, form, *rate, None)?;
@@ -327,7 +327,7 @@ impl<'a> Recheck<'a> {
     /// Proves the form of the end of flights.
     fn ends_near_rest(&self, terminal: &Terminal) -> Result<(), RecheckError> {
         if !self.certificate.claim.is_of_stability() {
-            return Err(malformed("steps: of a loop that is not claimed to be stable"));
+            return Err(malformed("flights in sets: of a loop that is not claimed to be stable"));
         }
         let near_rest = terminal.near_rest(self.certificate);
         let known = KnownSlopes::default();

@@ -7,7 +7,7 @@
 use fspid_numeric::scalar::Interval;
 
 use super::commands::{Along, Commands};
-use super::flights::{Beginning, Landed, Patch, Way};
+use super::flights::{Beginning, Landed, Patch, Set, Way};
 use super::joined::Joined;
 use super::sample::{Flight, Stop};
 use super::terminal::Terminal;
@@ -41,8 +41,8 @@ const FINENESS: [Fineness; 3] = [
 /// The gains of a part of a group may be apart so much of what those of the group may.
 const OF_GROUP: f64 = 0.5;
 
-/// Flights from rest at the trim, at the controller's first sample, that end at the last set-point that is commanded, limits
-/// acting on the way.
+/// Flights from rest at the trim, at the controller's first sample, that end where the loop without limits does, limits acting
+/// on the way.
 ///
 /// Set-point and loads are those of [`Commands`] times a number each, either way, up to their sizes; after the last change
 /// they stay.
@@ -60,7 +60,7 @@ pub struct Commanded {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Leg {
     /// The first sample.
-    pub from: usize,
+    pub from_sample: usize,
     /// What it is flown in; of the first leg one group of everything.
     pub groups: Vec<Group>,
 }
@@ -70,10 +70,10 @@ pub struct Leg {
 pub struct Group {
     /// Which sets of the leg before, counted in the order of its groups, and in each set-point by set-point all loads.
     pub of: Vec<usize>,
-    /// Where parts of the set-points end, rad, from the least to the largest.
-    pub setpoints: Vec<f64>,
+    /// Where parts of the set-points end, from the least to the largest.
+    pub setpoints_rad: Vec<f64>,
     /// Where parts of the loads end, likewise; each is flown with each of the others.
-    pub loads: Vec<f64>,
+    pub loads_rad: Vec<f64>,
 }
 
 /// What was proved of the flights that a scenario commands.
@@ -106,21 +106,18 @@ impl Leg {
     /// Sets that it is flown in.
     pub(crate) fn sets(&self) -> usize {
         let parts = |ends: &[f64]| ends.len().saturating_sub(1);
-        let of_group = |it: &Group| parts(&it.setpoints).saturating_mul(parts(&it.loads));
+        let of_group = |it: &Group| parts(&it.setpoints_rad).saturating_mul(parts(&it.loads_rad));
         self.groups.iter().map(of_group).fold(0, usize::saturating_add)
     }
 }
 
 impl Group {
     fn patches(&self) -> Vec<Patch> {
-        let loads = || self.loads.windows(2).map(|pair| [pair[0], pair[1]]);
-        let setpoints = self.setpoints.windows(2).map(|pair| [pair[0], pair[1]]);
+        let loads = || self.loads_rad.windows(2).map(|pair| [pair[0], pair[1]]);
+        let setpoints = self.setpoints_rad.windows(2).map(|pair| [pair[0], pair[1]]);
         setpoints.flat_map(|setpoint| loads().map(move |load| Patch { setpoint, load })).collect()
     }
 }
-
-/// A set of flights with the box that it is of.
-type Set = (Patch, Flight);
 
 /// What a group begins with: everything that its sets have come to, `like` one of their flights.
 struct Start {
@@ -145,8 +142,7 @@ impl Course<'_> {
     }
 
     fn begun(&mut self, start: &Start, patch: Patch) -> Flight {
-        // Nothing is known from other sets, so that a check has the same numbers as the search.
-        self.flights.begun(Beginning::Controller);
+        self.flights.forget();
         let Start { joined, like, from, .. } = start;
         let of = |joined: &Joined| joined.flight(like, self.commands, patch, *from);
         joined.as_ref().map_or_else(|| like.clone(), of)
@@ -234,7 +230,7 @@ impl Legs<'_> {
                 groups.push(group);
                 sets.extend(own);
             }
-            let leg = Leg { from: starts.first()?.from, groups };
+            let leg = Leg { from_sample: starts.first()?.from, groups };
             if leg.sets() > MOST_LEG_SETS {
                 return None;
             }
@@ -282,8 +278,8 @@ impl Legs<'_> {
             sets.extend(own);
             if self.of_check > self.most_checked { Err(Stop::Lost) } else { Ok(()) }
         })?;
-        let (setpoints, loads) = if of_load { (others, ends) } else { (ends, others) };
-        Ok((Group { of: start.of.clone(), setpoints, loads }, sets))
+        let (setpoints_rad, loads_rad) = if of_load { (others, ends) } else { (ends, others) };
+        Ok((Group { of: start.of.clone(), setpoints_rad, loads_rad }, sets))
     }
 
     /// A part of a leg; of one before the last what it comes to, where its flights are near each other.
@@ -339,7 +335,7 @@ fn at_elevator_rad(commands: &Commands) -> f64 {
 }
 
 impl Search<'_> {
-    /// The flights that are commanded, as large as they are found to end at their set-point.
+    /// The flights that are commanded, as large as they are found to end near their rest.
     pub(crate) fn commanded(&self, commands: &Commands) -> Option<Commanded> {
         let Self { certificate, model, set, terminal, system, stops } = self;
         let beyond = Commanded::fits_range(commands, certificate).is_err();
@@ -388,7 +384,7 @@ impl Commanded {
                 for patch in patches {
                     match next {
                         Some(next) => {
-                            let flight = course.through(start, patch, next.from);
+                            let flight = course.through(start, patch, next.from_sample);
                             sets.push((patch, flight.map_err(given_up)?));
                         }
                         None => {
@@ -423,21 +419,22 @@ impl Commanded {
     fn fits(&self, certificate: &Certificate) -> Result<(), &'static str> {
         let Self { commands, legs, .. } = self;
         Self::fits_range(commands, certificate)?;
-        let follow = legs.windows(2).all(|pair| pair[0].from < pair[1].from);
-        let first = legs.first().is_some_and(|leg| leg.from == 0 && leg.groups.len() == 1);
+        let follow = legs.windows(2).all(|pair| pair[0].from_sample < pair[1].from_sample);
+        let first = legs.first().is_some_and(|leg| leg.from_sample == 0 && leg.groups.len() == 1);
         if follow && first { Ok(()) } else { Err("flights: the legs do not follow each other") }
     }
 }
 
 impl Leg {
-    /// What its groups begin with, each set of the leg before in one of them at least.
+    /// What its groups begin with, each set of the leg before in one of them.
     fn starts(&self, course: &Course<'_>, sets: &[Set]) -> Result<Vec<Start>, &'static str> {
         let mut places: Vec<usize> = self.groups.iter().flat_map(|it| it.of.clone()).collect();
         places.sort_unstable();
         if !places.into_iter().eq(0..sets.len()) {
             return Err("flights: a set is in no group, or in two, or is not there");
         }
-        let starts = self.groups.iter().map(|group| course.next(sets, group.of.clone(), self.from));
+        let starts =
+            self.groups.iter().map(|group| course.next(sets, group.of.clone(), self.from_sample));
         starts.collect::<Option<_>>().ok_or("flights: a group of no set")
     }
 }
@@ -451,7 +448,8 @@ impl Group {
                 && ends.last().is_some_and(|end| *end >= most);
             follow && all && ends.len() >= 2
         };
-        let filled = fills(&self.setpoints, whole.setpoint) && fills(&self.loads, whole.load);
+        let filled =
+            fills(&self.setpoints_rad, whole.setpoint) && fills(&self.loads_rad, whole.load);
         filled.then_some(()).ok_or("flights: the parts do not fill what is commanded")
     }
 }

@@ -1,8 +1,8 @@
 //! What a flight is commanded: its set-point and its loads over time, each as a share of the largest.
 
 use fspid_numeric::scalar::Interval;
+use fspid_sim::Scenario;
 use fspid_sim::signal::Entry;
-use fspid_sim::{Scenario, Surroundings};
 
 /// Most changes of a signal.
 pub const MOST_CHANGES: usize = 4096;
@@ -106,8 +106,7 @@ impl Commands {
     /// What in it is not flown in sets.
     pub fn of(scenario: &Scenario) -> Result<Option<Self>, &'static str> {
         // Noise, air that moves and what wanders are left out by their own names.
-        let Scenario { plant_changes, autopilot, surroundings, timing, .. } = scenario;
-        let Surroundings { weather: _, pitch_sensor: _, rate_sensor: _ } = surroundings;
+        let Scenario { plant_changes, autopilot, timing, .. } = scenario;
         if autopilot.is_some() {
             return Err("a set-point that an outer loop moves is not flown in sets");
         }
@@ -161,13 +160,10 @@ impl Commands {
     pub(super) fn is_allowed(&self) -> bool {
         let Self { setpoint_rad, load_rad, setpoint, at_servo, at_elevator } = self;
         let sizes = [*setpoint_rad, *load_rad].into_iter();
-        // A size is one that is reached.
-        let reached = |size: f64, most: f64| size > 0.0 && (1.0 - most).abs() <= 0.0;
-        let none =
-            |size: f64, all: &[&Shares]| !(size > 0.0) && all.iter().all(|it| it.0.is_empty());
-        let is_size = |size: f64, all: &[&Shares]| {
-            let most = all.iter().map(|it| it.largest()).fold(0.0, f64::max);
-            reached(size, most) || none(size, all)
+        // A size is one that is reached, and without one nothing changes.
+        let is_size = |size: f64, all: &[&Shares]| match size > 0.0 {
+            true => all.iter().any(|it| it.largest() >= 1.0),
+            false => all.iter().all(|it| it.0.is_empty()),
         };
         sizes.clone().all(|size| size >= 0.0 && size.is_finite())
             && sizes.sum::<f64>() > 0.0

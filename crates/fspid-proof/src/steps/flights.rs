@@ -71,6 +71,9 @@ pub(super) struct Patch {
     pub(super) load: [f64; 2],
 }
 
+/// A set of flights with the box that it is of.
+pub(super) type Set = (Patch, Flight);
+
 impl Patch {
     /// All of both.
     pub(super) fn hull(self, other: &Self) -> Self {
@@ -156,8 +159,13 @@ impl<'a> Ready<'a> {
 
     /// Flights at rest, before anything is commanded.
     pub(super) fn begun(&mut self, from: Beginning) -> Flight {
-        self.flown.gains.forget();
+        self.forget();
         begun(&self.flown, from)
+    }
+
+    /// Forgets what gains of other sets were, so that a check has the numbers of the search.
+    pub(super) fn forget(&mut self) {
+        self.flown.gains.forget();
     }
 
     /// Flies on until a sample.
@@ -201,7 +209,7 @@ impl<'a> Ready<'a> {
     }
 
     /// What sets at the same sample have come to, as one.
-    pub(super) fn joined(&self, sets: &[&(Patch, Flight)]) -> Option<Joined> {
+    pub(super) fn joined(&self, sets: &[&Set]) -> Option<Joined> {
         Joined::of(&self.flown, sets)
     }
 

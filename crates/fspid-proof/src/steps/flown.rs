@@ -2,8 +2,8 @@
 
 use fspid_fuzzy::system::System;
 use fspid_numeric::scalar::Interval;
-use fspid_sim::Controller;
 use fspid_sim::loop_model::LoopModel;
+use fspid_sim::{Actuator, Controller};
 
 use super::gains::SeenGains;
 use super::sample::{Flown, Layout, Row};
@@ -48,12 +48,6 @@ pub(super) fn flown<'a>(
     };
     let [seen_pitch, seen_rate] = model.seen_rows();
     let actuator = &description.actuator;
-    let lag_order = actuator.lag().order();
-    let arriving = match (actuator.command_limits_rad(), actuator.travel_rad()) {
-        (Some((a, b)), Some((c, d))) if lag_order == 0 => Some((a.max(c), b.min(d))),
-        (None, travel) if lag_order == 0 => travel,
-        (limits, _) => limits,
-    };
     let fspid = match &description.controller {
         Controller::Fixed(_) => None,
         Controller::SelfTuning(fspid) => Some(fspid),
@@ -68,12 +62,22 @@ pub(super) fn flown<'a>(
         rested: around(set, LEFT),
         followers: settings.followers,
         curve: Curve::of(description)?,
-        arriving,
+        arriving: arriving(actuator),
         travel: actuator.travel_rad(),
-        lag_order,
+        lag_order: actuator.lag().order(),
         reach: vec![0.0; size],
         layout,
     })
+}
+
+/// Limits of what arrives; without a lag an end of the travel is one of them.
+fn arriving(actuator: &Actuator) -> Option<(f64, f64)> {
+    let lag_order = actuator.lag().order();
+    match (actuator.command_limits_rad(), actuator.travel_rad()) {
+        (Some((a, b)), Some((c, d))) if lag_order == 0 => Some((a.max(c), b.min(d))),
+        (None, travel) if lag_order == 0 => travel,
+        (limits, _) => limits,
+    }
 }
 
 /// A box around the gains at rest with a share of all gains.

@@ -9,7 +9,7 @@ use fspid_numeric::scalar::Interval;
 
 use super::affine::{Affine, raised};
 use super::commands::Commands;
-use super::flights::Patch;
+use super::flights::{Patch, Set};
 use super::sample::{Flight, Flown, LOAD, OWN, SETPOINT};
 use super::tuned::Tuned;
 
@@ -49,7 +49,7 @@ fn slope(of: &Affine, by: &Affine, symbol: usize) -> Option<f64> {
 
 impl Joined {
     /// Sets with the boxes that they are of; nothing where there are none.
-    pub(super) fn of(flown: &Flown<'_>, sets: &[&(Patch, Flight)]) -> Option<Self> {
+    pub(super) fn of(flown: &Flown<'_>, sets: &[&Set]) -> Option<Self> {
         let (_, one) = sets.first()?;
         let count = numbers(flown, one).count();
         let slopes = slopes(flown, sets, count);
@@ -105,14 +105,13 @@ impl Joined {
             }
             tuned
         });
-        let share = |share: Interval, of: &Affine| of.times(share);
         Flight {
             values,
             last,
-            setpoint: share(commands.setpoint.before(sample), &setpoint),
+            setpoint: setpoint.times(commands.setpoint.before(sample)),
             risen: Affine::default(),
-            load: share(commands.at_elevator.before(sample), &load),
-            at_servo: share(commands.at_servo.before(sample), &load),
+            load: load.times(commands.at_elevator.before(sample)),
+            at_servo: load.times(commands.at_servo.before(sample)),
             tuned,
             ball: 0.0,
             symbols,
@@ -121,15 +120,14 @@ impl Joined {
     }
 }
 
-/// Of each number what it moves by with set-point and load: between sets, where they are of several boxes, and within them.
-fn slopes(flown: &Flown<'_>, sets: &[&(Patch, Flight)], count: usize) -> Vec<[f64; 2]> {
+/// Of each number what it moves by with set-point and load: the mean of the sets, by the widths of their boxes.
+fn slopes(flown: &Flown<'_>, sets: &[&Set], count: usize) -> Vec<[f64; 2]> {
     let mut sums = vec![[[0.0_f64; 2]; 2]; count];
     for (patch, flight) in sets {
         let unknowns = patch.unknowns();
         for (number, sums) in numbers(flown, flight).zip(&mut sums) {
             for (axis, symbol) in [(0, SETPOINT), (1, LOAD)] {
                 let Some(within) = slope(&number, &unknowns[axis], symbol) else { continue };
-                // By the width of the box that it is of.
                 let weight = unknowns[axis].radius();
                 sums[axis][0] += weight * within;
                 sums[axis][1] += weight;

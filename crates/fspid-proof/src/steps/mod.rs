@@ -103,14 +103,16 @@ impl Checked<'_> {
             return Err(what);
         }
         if certificate.output_factor.to_bits() != 1.0_f64.to_bits() {
-            return Err("steps: of a loop at another output scale");
+            return Err("flights in sets: of a loop at another output scale");
         }
         if sees_loads_at_once(model, at_elevator_rad) {
-            return Err("steps: the pitch rate shows a load at once");
+            return Err("flights in sets: the pitch rate shows a load at once");
         }
         let rest = Rest::of(description, set, certificate.range);
         if !rest.is_ok_and(|rest| !is_elsewhere(description, &rest)) {
-            return Err("steps: where the gains move and an error stays, rest is not known");
+            return Err(
+                "flights in sets: where the gains move and an error stays, rest is not known",
+            );
         }
         Ok(())
     }
@@ -119,9 +121,9 @@ impl Checked<'_> {
 /// What a set that was given up means for a claim.
 fn given_up(stop: Stop) -> &'static str {
     match stop {
-        Stop::Guard => "steps: a flight may meet the sample guard",
-        Stop::Travel => "steps: a flight may meet an end of the actuator's travel",
-        Stop::Lost => "steps: a set of flights is not shown to end near its rest",
+        Stop::Guard => "flights in sets: a flight may meet the sample guard",
+        Stop::Travel => "flights in sets: a flight may meet an end of the actuator's travel",
+        Stop::Lost => "flights in sets: a set of flights is not shown to end near its rest",
     }
 }
 

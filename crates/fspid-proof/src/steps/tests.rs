@@ -25,14 +25,17 @@ fn flown(scenario: &Scenario, [setpoint_rad, load_rad]: [f64; 2], at: usize) -> 
     scenario.setpoint = Profile::new(setpoint_rad, Shape::Step { at_s }).expect("allowed");
     let load = Disturbance::new(Entry::Elevator, load_rad, Shape::Step { at_s });
     scenario.disturbances = vec![load.expect("allowed")];
-    let prepared = scenario.prepare().expect("prepared");
-    let mut theta = Vec::new();
-    fly(&prepared, &scenario.controllers[0].controller, |instant| {
-        theta.push(instant.theta_rad);
-        ControlFlow::Continue(())
-    })
-    .expect("flies");
-    theta.split_off(at)
+    pitch_angles(&scenario).split_off(at)
+}
+
+/// All gains of a controller.
+fn all_gains(controller: &Controller) -> GainSet {
+    match controller {
+        Controller::Fixed(pid) => GainSet::fixed(pid.gains()),
+        Controller::SelfTuning(fspid) => {
+            IncrementMap::of(fspid.tuner(), 12).expect("bounded").gains(1.0)
+        }
+    }
 }
 
 /// How many samples of a set hold those of three flights in it, as long as it says something, and what it has come to.
@@ -142,12 +145,7 @@ fn a_set_of_flights_holds_every_flight_of_the_simulator() {
             continue;
         }
         let Ok(model) = description.enclosed() else { continue };
-        let set = match controller {
-            Controller::Fixed(pid) => GainSet::fixed(pid.gains()),
-            Controller::SelfTuning(fspid) => {
-                IncrementMap::of(fspid.tuner(), 12).expect("bounded").gains(1.0)
-            }
-        };
+        let set = all_gains(controller);
         let rules = system(&description);
         let loop_ = flown::flown(&description, &model, &set, rules.as_ref()).expect("enclosed");
         let most = 0.02 + 0.1 * (seed % 7) as f64;
@@ -201,6 +199,49 @@ fn later(
     (set.symbols <= 3000 && set.values[0].range().width() < 1.0).then_some(set)
 }
 
+/// Two sets under loads of either sign, joined where the set-point goes up, and held against four flights from there on: how
+/// many samples, and what the set has come to. Nothing where the two say nothing any more.
+fn joined_and_held(
+    loop_: &sample::Flown<'_>,
+    scenario: &Scenario,
+    entry: Entry,
+    [most, load_rad]: [f64; 2],
+) -> Option<(usize, sample::Flight)> {
+    let commanding = |sizes: [f64; 2]| {
+        let mut scenario = scenario.clone();
+        with_commands(&mut scenario, entry, sizes);
+        scenario
+    };
+    let commands = Commands::of(&commanding([most, load_rad])).expect("flown").expect("something");
+    let (setpoint, from) = ([0.9995 * most, most], Beginning::Controller);
+    let part = |load: [f64; 2]| {
+        let way = Way { commands: &commands, patch: Patch { setpoint, load }, from };
+        let begun = flights::begun(loop_, from);
+        let flown = (0..UP).try_fold(begun, |set, sample| later(loop_, &way, set, sample))?;
+        Some((way.patch, flown))
+    };
+    let [one, other] = [part([-load_rad, 0.0])?, part([0.0, load_rad])?];
+    let patch = Patch { setpoint, load: [-load_rad, load_rad] };
+    let joined = Joined::of(loop_, &[&one, &other]).expect("two");
+    let mut joint = joined.flight(&one.1, &commands, patch, UP);
+    let flown = [(1.0, 1.0), (0.9997, -1.0), (0.9995, 0.3), (1.0, -0.01)]
+        .map(|(step, load)| pitch_angles(&commanding([step * most, load * load_rad])));
+    let way = Way { commands: &commands, patch, from };
+    for sample in UP..SAMPLES {
+        let range = joint.values[0].range();
+        for theta in flown.each_ref().map(|flight| flight[sample]) {
+            let inside = theta >= range.lower() - ROUNDING && theta <= range.upper() + ROUNDING;
+            let name = &scenario.name;
+            assert!(inside, "{name}, {entry:?}, sample {sample}: {theta:e} {range:?}");
+        }
+        let Some(next) = later(loop_, &way, joint.clone(), sample) else {
+            return Some((sample + 1 - UP, joint));
+        };
+        joint = next;
+    }
+    Some((SAMPLES - UP, joint))
+}
+
 /// Drawn loops with every limit there is, under a load of either sign that enters before or behind the servo, two sets joined
 /// to one, and then with a doublet of the set-point: at every sample the joined set holds the flights of the simulator.
 #[test]
@@ -227,48 +268,15 @@ fn joined_sets_hold_every_flight_of_what_is_commanded() {
         if entry == Entry::Elevator && sees_loads_at_once(&model, load_rad) {
             continue;
         }
-        let set = match &controller {
-            Controller::Fixed(pid) => GainSet::fixed(pid.gains()),
-            Controller::SelfTuning(fspid) => {
-                IncrementMap::of(fspid.tuner(), 12).expect("bounded").gains(1.0)
-            }
-        };
+        let set = all_gains(&controller);
         let rules = system(&description);
         let loop_ = flown::flown(&description, &model, &set, rules.as_ref()).expect("enclosed");
         let most = 0.02 + 0.05 * (seed % 7) as f64;
-        with_commands(&mut scenario, entry, [most, load_rad]);
-        let commands = Commands::of(&scenario).expect("flown").expect("something");
-        let setpoint = [0.9995 * most, most];
-        let whole = Patch { setpoint, load: [-load_rad, load_rad] };
-        let from = Beginning::Controller;
-        let sets = [[-load_rad, 0.0], [0.0, load_rad]].map(|load| {
-            let way = Way { commands: &commands, patch: Patch { setpoint, load }, from };
-            let begun = flights::begun(&loop_, from);
-            let flown = (0..UP).try_fold(begun, |set, sample| later(&loop_, &way, set, sample));
-            flown.map(|flown| (way.patch, flown))
-        });
-        let [Some(one), Some(other)] = sets else { continue };
-        let joined = Joined::of(&loop_, &[&one, &other]).expect("two");
-        let mut joint = joined.flight(&one.1, &commands, whole, UP);
-        let flown: Vec<Vec<f64>> = [(1.0, 1.0), (0.9997, -1.0), (0.9995, 0.3), (1.0, -0.01)]
-            .map(|(setpoint, load)| {
-                let mut scenario = scenario.clone();
-                with_commands(&mut scenario, entry, [setpoint * most, load * load_rad]);
-                pitch_angles(&scenario)
-            })
-            .to_vec();
-        let way = Way { commands: &commands, patch: whole, from };
-        for sample in UP..SAMPLES {
-            let range = joint.values[0].range();
-            for flight in &flown {
-                let theta = flight[sample];
-                let inside = theta >= range.lower() - ROUNDING && theta <= range.upper() + ROUNDING;
-                assert!(inside, "seed {seed}, {entry:?}, sample {sample}: {theta:e} {range:?}");
-            }
-            compared += 1;
-            let Some(next) = later(&loop_, &way, joint.clone(), sample) else { break };
-            joint = next;
-        }
+        let Some((samples, joint)) = joined_and_held(&loop_, &scenario, entry, [most, load_rad])
+        else {
+            continue;
+        };
+        compared += samples;
         limited += usize::from(joint.limited);
         tuned += usize::from(joint.tuned.is_some());
     }

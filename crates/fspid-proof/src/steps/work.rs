@@ -5,7 +5,7 @@ use fspid_numeric::scalar::Interval;
 use fspid_sim::Controller;
 use fspid_sim::loop_model::LoopModel;
 
-use super::flights::{Beginning, Landed, Patch, Ready, Way};
+use super::flights::{Beginning, Landed, Ready, Set, Way};
 use super::joined::Joined;
 use super::remembers;
 use super::sample::{Flight, Stop};
@@ -81,6 +81,11 @@ impl<'a> Flights<'a> {
         self.ready.begun(from)
     }
 
+    /// Forgets what gains of other sets were, so that a check has the numbers of the search.
+    pub(super) fn forget(&mut self) {
+        self.ready.forget();
+    }
+
     /// Flies on from a sample to another.
     pub(super) fn until(
         &mut self,
@@ -115,7 +120,7 @@ impl<'a> Flights<'a> {
     }
 
     /// What sets at the same sample have come to, as one.
-    pub(super) fn joined(&self, sets: &[&(Patch, Flight)]) -> Option<Joined> {
+    pub(super) fn joined(&self, sets: &[&Set]) -> Option<Joined> {
         self.ready.joined(sets)
     }
 

@@ -41,23 +41,23 @@ struct LegFile {
     groups: Vec<GroupFile>,
 }
 
-#[derive(Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct GroupFile {
     of: Vec<usize>,
-    setpoints: Vec<f64>,
-    loads: Vec<f64>,
+    setpoints_rad: Vec<f64>,
+    loads_rad: Vec<f64>,
 }
 
 impl GroupFile {
     fn of(group: &LegGroup) -> Self {
-        let LegGroup { of, setpoints, loads } = group.clone();
-        Self { of, setpoints, loads }
+        let LegGroup { of, setpoints_rad, loads_rad } = group.clone();
+        Self { of, setpoints_rad, loads_rad }
     }
 
     fn build(&self) -> LegGroup {
-        let Self { of, setpoints, loads } = self;
-        LegGroup { of: of.clone(), setpoints: setpoints.clone(), loads: loads.clone() }
+        let Self { of, setpoints_rad, loads_rad } = self.clone();
+        LegGroup { of, setpoints_rad, loads_rad }
     }
 }
 
@@ -65,8 +65,8 @@ impl CommandedFile {
     pub(super) fn of(commanded: &Commanded) -> Self {
         let Commanded { commands, terminal, legs } = commanded;
         let Commands { setpoint_rad, load_rad, setpoint, at_servo, at_elevator } = commands;
-        let leg = |Leg { from, groups }: &Leg| LegFile {
-            from_sample: *from,
+        let leg = |Leg { from_sample, groups }: &Leg| LegFile {
+            from_sample: *from_sample,
             groups: groups.iter().map(GroupFile::of).collect(),
         };
         Self {
@@ -84,7 +84,7 @@ impl CommandedFile {
         let Self { setpoint_rad, load_rad, setpoint, at_servo, at_elevator, legs, near_rest } =
             self;
         let leg = |LegFile { from_sample, groups }: &LegFile| Leg {
-            from: *from_sample,
+            from_sample: *from_sample,
             groups: groups.iter().map(GroupFile::build).collect(),
         };
         let [setpoint, at_servo, at_elevator] =

@@ -20,6 +20,8 @@ mod disturbances_file;
 mod family;
 mod family_file;
 mod file;
+#[cfg(test)]
+mod flight_tests;
 mod json;
 mod json_text;
 mod loop_file;

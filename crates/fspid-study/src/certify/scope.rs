@@ -73,8 +73,9 @@ impl Told {
             sentences.push(("remains", remains(scope)));
             sentences.push(("limits", limits(scope)));
             sentences.extend(scope.stepped.map(|stepped| ("steps", steps(&stepped))));
-            sentences
-                .extend(scope.ended.map(|ended| ("flights", flights(&ended, &self.commanded))));
+            sentences.extend(
+                scope.ended.map(|ended| ("flights", flights(&ended, scope.range, &self.commanded))),
+            );
             let disturbed = disturbances::sentences(scope, self.moving);
             sentences.extend(disturbed.into_iter().map(|it| ("disturbances", it)));
         }
@@ -242,7 +243,7 @@ fn acting(limited: bool) -> &'static str {
 }
 
 /// The flights that a scenario commands, limits acting on the way.
-fn flights(ended: &Ended, commanded_over_time: &str) -> String {
+fn flights(ended: &Ended, range: Range, commanded_over_time: &str) -> String {
     let [setpoint, load] = [ended.setpoint_rad, ended.load_rad].map(degrees);
     let commanded = match (setpoint > 0.0, load > 0.0) {
         (true, true) => format!(
@@ -259,8 +260,10 @@ fn flights(ended: &Ended, commanded_over_time: &str) -> String {
             short(load)
         ),
     };
+    let smaller = ended.setpoint_rad < range.setpoint_rad || ended.load_rad < range.load_rad;
+    let part = if smaller { "; OF LARGER ONES THIS IS NOT SHOWN" } else { "" };
     format!(
-        "from rest at the trim at the controller's first sample, sensors without bias, {commanded} ({commanded_over_time}): each flight ends where the loop without limits does, {}; from {} s on none acts any more",
+        "from rest at the trim at the controller's first sample, sensors without bias, {commanded} ({commanded_over_time}): each flight ends where the loop without limits does, {}; from {} s on none acts any more{part}",
         acting(ended.limited),
         short(ended.settled_s)
     )

@@ -18,7 +18,7 @@ fn effort() -> Effort {
     Effort { halvings: 0, largest_factor: 1.0, ..Effort::default() }
 }
 
-fn load(path: &str, overrides: &[&str]) -> Study {
+pub(super) fn load(path: &str, overrides: &[&str]) -> Study {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(path);
     let overrides: Vec<String> = overrides.iter().map(|text| (*text).to_owned()).collect();
     file::load(&path, &overrides).unwrap_or_else(|error| panic!("{error}"))
@@ -28,11 +28,11 @@ fn design(overrides: &[&str]) -> Study {
     load("data/designs/b747-paper.toml", overrides)
 }
 
-fn certified(study: &Study) -> Certification {
+pub(super) fn certified(study: &Study) -> Certification {
     Certification::of(study, Some("FSPID"), &effort()).expect("certified")
 }
 
-fn written(certification: &Certification) -> String {
+pub(super) fn written(certification: &Certification) -> String {
     let [one] = certification.results.as_slice() else { panic!("one loop") };
     to_text(one.certificate().expect("a certificate"), &one.origin)
 }
@@ -47,7 +47,7 @@ fn good_value() -> Value {
     serde_json::from_str(good()).expect("JSON")
 }
 
-fn checked(text: &str) -> CheckedFile {
+pub(super) fn checked(text: &str) -> CheckedFile {
     check_text(text).unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -545,78 +545,4 @@ fn the_learned_self_tuner_of_six_small_unmanned_aircraft_is_proved_around_the_tr
             ],
         );
     }
-}
-
-/// Not around the trim alone, and with the limits that may act on the way: the steps of 5 deg that it is judged on, at a
-/// condition where they are few sets.
-#[test]
-fn steps_of_a_learned_self_tuner_that_remembers_are_proved_with_its_limits() {
-    let condition =
-        ["aircraft.name=ultra-stick-25e", "aircraft.airspeed_m_s=13", "aircraft.altitude_m=100"];
-    let found = certified(&load("data/designs/learned/uav-steps.toml", &condition));
-    assert!(found.all_proved(), "{}", found.text());
-    let text = written(&found);
-    let file = checked(&text);
-    assert!(file.holds());
-    let rechecked = file.result.as_ref().expect("holds");
-    let stepped = rechecked.stepped.expect("steps are proved");
-    assert!((stepped.setpoint_rad.to_degrees() - 5.0).abs() < 1e-12, "{stepped:?}");
-    // What is left of a thousandth leaks away with 0.2529 a second.
-    let rested_s = stepped.rested_s.expect("gains remember");
-    assert!((rested_s - libm::log(1024.0) / 0.2529).abs() < 0.1, "{rested_s}");
-    assert!(found.text().contains("after a rest of"), "{}", found.text());
-
-    // And what the scenario commands: a load at the servo from 1 s on, a step at 11 s.
-    let ended = rechecked.ended.expect("flights are proved");
-    let sizes = [ended.setpoint_rad, ended.load_rad].map(f64::to_degrees);
-    assert!((sizes[0] - 5.0).abs() < 1e-12 && (sizes[1] - 1.0).abs() < 1e-12, "{ended:?}");
-    assert!(ended.settled_s > 11.0 && ended.settled_s < 25.0, "{ended:?}");
-    assert!(found.text().contains("the set-point over time as commanded"), "{}", found.text());
-    let against = |more: &str| {
-        let mut file = checked(&text);
-        let study =
-            load("data/designs/learned/uav-steps.toml", &[&condition[..], &[more]].concat());
-        file.compare(&study).expect("compared");
-        let differences = file.against.expect("compared").differences.into_iter();
-        differences.map(|it| format!("{} {}", it.path, it.flown)).collect::<Vec<_>>().join("; ")
-    };
-    assert_eq!(against("setpoint.amplitude_deg=-4"), "");
-    assert_eq!(against("disturbance[0].amplitude_deg=-0.5"), "");
-    let later = against("setpoint.at_s=12");
-    assert_eq!(
-        later,
-        "commanded set-point of 5 deg times 1 from 12 s; load at the servo of 1 deg times 1 from 1 s"
-    );
-    assert!(against("disturbance[0].enters_at=elevator").contains("load at the elevator"));
-
-    // Flights of any size within come to their set-point in the simulator.
-    for (step, push) in [(5.0, 1.0), (-5.0, 1.0), (0.03, -1.0), (2.9, 0.4), (-4.1, -0.02)] {
-        let sizes = [
-            format!("setpoint.amplitude_deg={step}"),
-            format!("disturbance[0].amplitude_deg={push}"),
-        ];
-        let sizes: Vec<&str> = sizes.iter().map(String::as_str).collect();
-        let mut scenario =
-            load("data/designs/learned/uav-steps.toml", &[&condition[..], &sizes].concat())
-                .scenario;
-        scenario.surroundings.pitch_sensor = None;
-        scenario.surroundings.rate_sensor = None;
-        let flight = fspid_sim::simulate(&scenario).expect("flies");
-        let named = scenario.controllers.iter().position(|it| it.name == "FSPID").expect("there");
-        let theta_rad = flight.traces[named].theta_rad.last().expect("a sample");
-        assert!((theta_rad.to_degrees() - step).abs() < 0.05, "{step} {push}: {theta_rad}");
-    }
-
-    // Gains that are said to stay in less than they do, and a model that is said to be nearer than it is.
-    let changed = |change: &dyn Fn(&mut Value)| {
-        let mut value: Value = serde_json::from_str(&text).expect("JSON");
-        change(&mut value["steps"]["near_rest"]["gains"]);
-        let file = checked(&resealed(&value).expect("a certificate"));
-        assert!(!file.holds());
-        file.result.as_ref().expect_err("refused").to_string()
-    };
-    let narrower = changed(&|gains| gains["most"] = gains["least"].clone());
-    assert!(narrower.contains("gains that remember"), "{narrower}");
-    let nearer = changed(&|gains| gains["model_rad"] = json!(0.0));
-    assert!(nearer.contains("not shown to end near its rest"), "{nearer}");
 }

@@ -78,8 +78,8 @@ const COMMANDED: Shape = Object(&[
 
 const GROUP: Shape = Object(&[
     key("of", List(&Whole(0, u32::MAX as u64), [0, MOST_LEG_PARTS])),
-    key("setpoints", List(&END, [2, MOST_LEG_PARTS + 1])),
-    key("loads", List(&END, [2, MOST_LEG_PARTS + 1])),
+    key("setpoints_rad", List(&END, [2, MOST_LEG_PARTS + 1])),
+    key("loads_rad", List(&END, [2, MOST_LEG_PARTS + 1])),
 ]);
 
 const CHANGES: Shape = List(
