@@ -9,17 +9,17 @@ use fspid_study::judgement::{Judgement, NotEvaluated, SlopeOf, Sloped, add_slope
 use fspid_study::metrics::Absent;
 use fspid_study::simulation::Simulation;
 
-use crate::requirements::{JUMBO, judged, study, values, verified, written};
+use crate::requirements::{JUMBO, judged, study, values};
 
 /// The only judgement.
-fn one(text: &str, requirement: &str, set: &[&str]) -> Judgement {
+pub(super) fn one(text: &str, requirement: &str, set: &[&str]) -> Judgement {
     let mut judgements = judged(text, &format!("[[requirement]]\n{requirement}"), set);
     assert_eq!(judgements.len(), 1, "{judgements:?}");
     judgements.remove(0)
 }
 
 /// The same for one controller of the jumbo.
-fn of(controller: &str, requirement: &str, set: &[&str]) -> Judgement {
+pub(super) fn of(controller: &str, requirement: &str, set: &[&str]) -> Judgement {
     one(JUMBO, &format!("{requirement}\ncontroller = \"{controller}\"\n"), set)
 }
 
@@ -66,27 +66,6 @@ fn a_quickly_sampled_loop_tends_to_the_margins_of_the_book() {
     near(Measure::PhaseMargin, 45.01, 5e-3);
     near(Measure::GainCrossover, 1.445, 5e-4);
     near(Measure::SensitivityPeak, 1.9829, 1e-4);
-}
-
-#[test]
-fn the_frozen_margins_are_the_least_of_the_map() {
-    let analysis = Analysis::of(&study(JUMBO, &[]), Question::default()).expect("it is analysed");
-    let map = analysis.loops[1].plants[0].map.as_ref().expect("it tunes itself");
-    let least = |of: fn(&fspid_study::analysis::Margins) -> f64| {
-        let points = map.points.iter().chain([&map.worst]);
-        points.map(|p| of(&p.margins.expect("stable"))).fold(f64::INFINITY, f64::min)
-    };
-    let ours = |measure| values(JUMBO, measure, "controller = \"FSPID\"", &[])[0];
-    assert_eq!(ours(Measure::FrozenPhaseMargin), least(|m| m.phase_margin_deg));
-    assert_eq!(ours(Measure::FrozenDiskMargin), least(|m| m.disk_margin));
-    assert_eq!(
-        ours(Measure::FrozenGainMargin),
-        least(fspid_study::analysis::Margins::smaller_gain_margin_db)
-    );
-    assert!(ours(Measure::FrozenPhaseMargin) <= values(JUMBO, Measure::PhaseMargin, "", &[])[1]);
-    // Fixed gains are frozen as they are.
-    let fixed = |measure| values(JUMBO, measure, "controller = \"P\"", &[])[0];
-    assert_eq!(fixed(Measure::FrozenPhaseMargin), fixed(Measure::PhaseMargin));
 }
 
 #[test]
@@ -377,36 +356,6 @@ fn a_self_tuning_loop_that_is_unstable_at_rest_is_not_believed() {
 }
 
 #[test]
-fn gains_that_drift_at_rest_have_no_margins_but_a_flight() {
-    let text = JUMBO
-        .replace("law = \"memoryless\"", "law = \"accumulating\"")
-        .replace("table = \"mirrored\"", "table = \"printed\"");
-    let of = |requirement: &str| one(&text, &format!("{requirement}\ncontroller = \"FSPID\""), &[]);
-    let margin = of("measure = \"phase_margin_deg\"\nleast = 0.0");
-    assert_eq!(margin.found, Err(NotEvaluated::Absent(Absent::GainsDrift)));
-    let frozen = of("measure = \"frozen_disk_margin\"\nleast = 0.0");
-    assert!(matches!(frozen.found, Err(NotEvaluated::BeyondMap { .. })), "{frozen:?}");
-    assert!(of("measure = \"largest_error_deg\"\nmost = 99.0").met);
-}
-
-#[test]
-fn frozen_gains_that_do_not_hold_the_plant_are_told_with_the_inputs_that_give_them() {
-    let wild = [
-        "controller.FSPID.supervisor.output_scale.kp=2.0",
-        "controller.FSPID.supervisor.output_scale.ki=1.0",
-        "controller.FSPID.supervisor.output_scale.kd=1.0",
-    ];
-    let stable = of("FSPID", "measure = \"frozen_stable\"", &wild);
-    assert!(!stable.met && stable.value_in_words() == "unstable");
-    let place = stable.place();
-    assert!(place.spectral_radius.expect("told") >= 1.0 && place.frozen.is_some(), "{place}");
-    let margin = of("FSPID", "measure = \"frozen_disk_margin\"\nleast = 0.0", &wild);
-    assert!(!margin.met);
-    let Err(NotEvaluated::Unstable { place, .. }) = margin.found else { panic!("{margin:?}") };
-    assert_eq!(place.frozen, stable.place().frozen);
-}
-
-#[test]
 fn the_worst_of_all_steps_and_all_plants_counts() {
     let changing = format!(
         "{}\n[[plant_change]]\nat_s = 10.0\nnumerator = [-3.38, -1.69, -0.02]\ndenominator = [1.0, 1.17103, 1.55405, 0.012538, 0.0072771]\n",
@@ -482,118 +431,6 @@ fn a_loop_that_is_proved_meets_it_and_one_that_grows_standing_still_does_not() {
     assert!(proved.iter().all(|it| it.met && it.value_in_words() == "proved stable"), "{proved:?}");
     let refuted = judged("FSPID", "1.0");
     assert!(!refuted.met && refuted.value_in_words() == "not proved stable", "{refuted:?}");
-}
-
-/// Under the accumulating law the gains add up beyond every point of the map, and an input that is evaluated beyond
-/// the range lies beyond it: no margin of the map is then one of all gains.
-#[test]
-fn gains_beyond_the_map_have_no_frozen_margins() {
-    for [from, to] in [
-        ["law = \"memoryless\"", "law = \"accumulating\"\nleakage_per_s = 0.5"],
-        ["range = 5.0", "range = 5.0\nout_of_range = \"evaluate\""],
-    ] {
-        let text = JUMBO.replace(from, to);
-        for measure in ["frozen_stable", "frozen_disk_margin"] {
-            let limit = if measure == "frozen_stable" { "" } else { "least = 0.0" };
-            let requirement = format!("measure = \"{measure}\"\n{limit}\ncontroller = \"FSPID\"");
-            let judgement = one(&text, &requirement, &[]);
-            assert!(!judgement.met);
-            assert!(
-                matches!(judgement.found, Err(NotEvaluated::BeyondMap { .. })),
-                "{judgement:?}"
-            );
-        }
-        let at_rest =
-            one(&text, "measure = \"disk_margin\"\nleast = 0.0\ncontroller = \"FSPID\"", &[]);
-        assert!(at_rest.met, "{at_rest:?}");
-    }
-}
-
-/// Grids with numbers for the three gains at some cells, and 0 at the others.
-fn with_cells(text: &str, cells: &[([usize; 2], [f64; 3])]) -> String {
-    let grid = |gain: usize| {
-        let cell = |row: usize, column: usize| {
-            let own = cells.iter().find(|(at, _)| *at == [row, column]);
-            format!("{:?}", own.map_or(0.0, |(_, numbers)| numbers[gain]))
-        };
-        let row = |row| format!("[{}]", [0, 1, 2, 3, 4, 5, 6].map(|it| cell(row, it)).join(", "));
-        format!("[{}]", [0, 1, 2, 3, 4, 5, 6].map(row).join(", "))
-    };
-    let [kp, ki, kd] = [0, 1, 2].map(grid);
-    let numbers = format!("numbers = {{ delta_kp = {kp}, delta_ki = {ki}, delta_kd = {kd} }} #");
-    text.replace("table = ", &numbers)
-}
-
-/// What is found for fixed gains in place of the self-tuning ones, with the same filter of the derivative.
-fn fixed(text: &str, measure: &str, [kp, ki, kd]: [f64; 3]) -> f64 {
-    let filter = text.lines().find(|line| line.starts_with("derivative_filter_s"));
-    let filter = filter.unwrap_or_default();
-    let gains = format!("kp = {kp:?}\nki = {ki:?}\nkd = {kd:?}\n{filter}");
-    let text = text.replacen("kp = 1.0", &gains, 1);
-    let requirement = format!("measure = \"{measure}\"\nleast = 0.0\ncontroller = \"P\"");
-    one(&text, &requirement, &[]).found.expect("stable").value
-}
-
-#[test]
-fn numbers_are_level_beyond_the_range_so_that_their_map_is_whole() {
-    // The corner of the greatest error and change adds 5 * 0.1 to kp.
-    let clamping = with_cells(JUMBO, &[([6, 6], [5.0, 0.0, 0.0])]);
-    let evaluating = clamping.replace("range = 5.0", "range = 5.0\nout_of_range = \"evaluate\"");
-    let requirement = "measure = \"frozen_disk_margin\"\nleast = 0.0\ncontroller = \"FSPID\"";
-    let frozen = |text: &str| one(text, requirement, &[]);
-    let value = |judgement: &Judgement| judgement.found.as_ref().expect("found").value;
-    assert!(frozen(&evaluating).met);
-    assert_eq!(value(&frozen(&evaluating)), value(&frozen(&clamping)));
-    // Two ways to the margins, the family's and that of the eigenvalues.
-    let [at_rest, corner] = [1.33, 1.83].map(|kp| fixed(JUMBO, "disk_margin", [kp, 1.0, 1.22]));
-    assert!((at_rest - corner).abs() > 1e-3, "{at_rest} {corner}");
-    assert!((value(&frozen(&evaluating)) - at_rest.min(corner)).abs() < 1e-9, "{corner}");
-}
-
-/// The cell with the least disk margin need not have the least gain margin, nor the least phase margin: every
-/// measure asks for its own worst.
-#[test]
-fn frozen_margins_of_numbers_are_no_better_than_those_of_any_of_their_cells() {
-    let text = JUMBO
-        .replace("b747-paper", "navion-full")
-        .replace("time_constant_s = 0.1", "time_constant_s = 0.05")
-        .replace("derivative_filter_s = 0.05", "")
-        .replace("{ kp = 1.33, ki = 1.0, kd = 1.22 }", "{ kp = 1.0, ki = 1.0, kd = 0.1 }")
-        .replace("{ kp = 0.1, ki = 0.05, kd = 0.05 }", "{ kp = 1.0, ki = 1.0, kd = 1.0 }");
-    // The first of each pair is the worst by its disk margin in one case, the second in the other.
-    for [first, second] in
-        [[[0.82, 5.0, 0.165], [3.0, 2.0, 0.0]], [[0.85, 4.8, 0.165], [3.0, 2.0, 0.0]]]
-    {
-        let added = |[kp, ki, kd]: [f64; 3]| [kp - 1.0, ki - 1.0, kd - 0.1];
-        let numbers = with_cells(&text, &[([1, 1], added(first)), ([5, 1], added(second))]);
-        for measure in ["gain_margin_db", "phase_margin_deg", "disk_margin"] {
-            let requirement =
-                format!("measure = \"frozen_{measure}\"\nleast = 6.0\ncontroller = \"FSPID\"");
-            let judgement = one(&numbers, &requirement, &[]);
-            let found = judgement.found.as_ref().expect("stable").value;
-            let least = [first, second].map(|gains| fixed(&text, measure, gains));
-            assert!(found <= least[0].min(least[1]) + 1e-9, "{measure}: {found} {least:?}");
-            if measure == "gain_margin_db" {
-                // That of (3, 2, 0), by `analyse` of these gains as fixed ones.
-                assert!(!judgement.met && (found - 3.8813).abs() < 1e-4, "{judgement:?}");
-                let place = judgement.place().frozen.expect("it is told");
-                assert!((place.gains.kp - 3.0).abs() < 1e-9, "{place:?}");
-            }
-        }
-    }
-}
-
-#[test]
-fn the_answer_says_that_the_cells_of_numbers_are_among_the_frozen_gains() {
-    let told = |text: &str| {
-        let requirement = "[[requirement]]\nmeasure = \"frozen_stable\"\n";
-        let (_folder, path) = written(&format!("{text}\n{requirement}"));
-        let text = verified(&path, &[], &[]).text(None);
-        text.split_whitespace().collect::<Vec<_>>().join(" ")
-    };
-    let cells = "the 49 cells where rules conclude numbers";
-    assert!(told(&with_cells(JUMBO, &[])).contains(cells));
-    assert!(!told(JUMBO).contains("49 cells"));
 }
 
 #[test]
