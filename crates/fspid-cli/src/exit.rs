@@ -69,7 +69,7 @@ impl Failure {
     pub(crate) const INPUT: u8 = 2;
     /// The output could not be written.
     pub(crate) const OUTPUT: u8 = 4;
-    /// Interrupted by the user, as shells say it.
+    /// Interrupted by the user, as shells say it, or by what `--max-memory` allows.
     pub(crate) const INTERRUPTED: u8 = 130;
 
     fn new(code: u8, message: impl Display) -> Self {
@@ -122,9 +122,12 @@ impl Failure {
         Self::new(Self::OUTPUT, message)
     }
 
-    /// Work that the user has interrupted, and how it goes on.
+    /// Work that the user has interrupted, or its memory, and how it goes on.
     pub(crate) fn interrupted(message: impl Display) -> Self {
-        Self::new(Self::INTERRUPTED, message)
+        match crate::commands::interrupt::reason() {
+            Some(reason) => Self::new(Self::INTERRUPTED, format_args!("{reason}: {message}")),
+            None => Self::new(Self::INTERRUPTED, message),
+        }
     }
 
     /// Standard output that cannot be written; a reader that has gone away is no failure.

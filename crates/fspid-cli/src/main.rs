@@ -14,6 +14,7 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
 
+use commands::memory::Size;
 use exit::Failure;
 
 /// Design, simulate and judge fuzzy self-tuning PID controllers of an aircraft's pitch.
@@ -23,9 +24,13 @@ use exit::Failure;
     version,
     long_version = version::LONG,
     arg_required_else_help = true,
-    after_help = "Exit codes: 0 done; 1 a requirement or claim check was not met; 2 the input is wrong; 4 the output could not be written; 130 interrupted.\nWith --format json standard output holds one JSON object: the answer, or {\"error\": {\"code\", \"message\", …}}.\n`-` is standard input or output wherever a file is named.\nStart with `fspid init pitch.toml`, then `fspid simulate pitch.toml --report pitch.html`;\nor with a fuzzy system: `fspid check tip.toml`, then `fspid infer tip.toml --input service=7 --input food=8`."
+    after_help = "Exit codes: 0 done; 1 a requirement or claim check was not met; 2 the input is wrong; 4 the output could not be written; 130 interrupted, or beyond --max-memory.\nWith --format json standard output holds one JSON object: the answer, or {\"error\": {\"code\", \"message\", …}}.\n`-` is standard input or output wherever a file is named.\nStart with `fspid init pitch.toml`, then `fspid simulate pitch.toml --report pitch.html`;\nor with a fuzzy system: `fspid check tip.toml`, then `fspid infer tip.toml --input service=7 --input food=8`."
 )]
 struct Arguments {
+    /// Memory that the program may take, such as 2GiB; flights that need more are not begun, and what grows beyond is stopped.
+    /// By default flights may need what the machine has left.
+    #[arg(long, global = true, value_name = "SIZE")]
+    max_memory: Option<Size>,
     #[command(subcommand)]
     command: Command,
 }
@@ -67,7 +72,10 @@ enum Command {
 fn main() -> ExitCode {
     commands::interrupt::listen();
     let done = match line::parsed::<Arguments>() {
-        Ok(arguments) => run(arguments.command),
+        Ok(arguments) => {
+            commands::memory::allow(arguments.max_memory);
+            run(arguments.command)
+        }
         Err(end) => end.map_or(Ok(()), Err),
     };
     match done {

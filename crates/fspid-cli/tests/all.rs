@@ -28,6 +28,8 @@ mod guide;
 mod hostile_answers;
 mod learn;
 mod limit;
+#[cfg(target_os = "linux")]
+mod memory;
 mod no_clock;
 mod one_verdict;
 #[cfg(unix)]

@@ -21,6 +21,7 @@ pub mod fuzzy_system;
 pub mod inference;
 pub mod json;
 pub mod judgement;
+pub mod memory;
 pub mod metrics;
 pub mod moment;
 pub mod output;

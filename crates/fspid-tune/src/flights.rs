@@ -9,6 +9,7 @@ use fspid_scenario::dispersion::Drawn;
 use fspid_scenario::file::{Study, Template};
 use fspid_scenario::requirement::{AskedIn, Requirement};
 use fspid_scenario::tuning::Case;
+use fspid_study::memory::Needed;
 use rayon::prelude::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -131,6 +132,13 @@ impl Flights {
     /// What cases warn of, as often as they do.
     pub(crate) fn warnings(&self) -> impl Iterator<Item = &String> {
         self.cases.iter().flat_map(|case| &case.warnings)
+    }
+
+    /// Memory that they hold at once on so many threads, and their cases.
+    pub(crate) fn needed(&self, threads: usize) -> Needed {
+        let samples = |it: &FlownCase| it.template.study().scenario.timing.rows();
+        let longest = self.cases.iter().map(samples).max().unwrap_or(0);
+        Needed::for_flights(longest, threads).with_cases(self.cases.len())
     }
 
     /// How many flights a point has.

@@ -8,6 +8,7 @@ use fspid_scenario::requirement::Requirement;
 use fspid_scenario::tuning::{TunableParameter, Tuning};
 use fspid_sim::Controller;
 use fspid_study::analysis::AtRest;
+use fspid_study::memory::Needed;
 use fspid_study::output::{Names, Place};
 
 use crate::crew::{Crew, Part};
@@ -102,6 +103,12 @@ impl TuningProblem {
     #[must_use]
     pub fn digest(&self) -> String {
         self.digest.clone()
+    }
+
+    /// Memory that its flights hold at once on so many threads.
+    #[must_use]
+    pub fn needed(&self, threads: usize) -> Needed {
+        self.flights.needed(threads)
     }
 
     /// What is allowed in the scenario and its cases and probably not meant, each once.

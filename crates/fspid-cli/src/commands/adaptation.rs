@@ -6,7 +6,7 @@ use clap::Args;
 use fspid_campaign::local;
 
 use super::progress::{Telling, alive, tell};
-use super::{Format, interrupt};
+use super::{Format, interrupt, memory};
 use crate::argument::{InFile, OutFile, count, written};
 use crate::exit::{Failure, note, wrote};
 use fspid_diagnostics::digits::grouped;
@@ -73,6 +73,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let asked = Adaptation::new(&source, &options).map_err(Failure::input)?;
     asked.warnings().iter().for_each(|it| note(format_args!("warning: {it}")));
+    memory::asked(asked.needed(memory::threads(arguments.threads)))?;
     let answer = measured(arguments, &asked)?;
     if let Some(path) = &arguments.report {
         output::write(path, answer.page())?;

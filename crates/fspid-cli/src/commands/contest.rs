@@ -7,7 +7,7 @@ use clap::Args;
 use super::cluster::{Cluster, with_crew};
 use super::limit::told;
 use super::progress::{Telling, answer_after, duration, tell};
-use super::{Format, interrupt, json_text};
+use super::{Format, interrupt, json_text, memory};
 use crate::argument::{Folder, InFile, count};
 use crate::exit::{Failure, note, print};
 use fspid_diagnostics::digits::{counted, grouped};
@@ -92,6 +92,9 @@ fn run_front(arguments: &Arguments, asked: &AskedFront) -> Result<(), Failure> {
     let telling = if arguments.quiet { Telling::Nothing } else { Telling::for_standard_error() };
     interrupt::watch();
     let carrier = arguments.cluster.carrier(&source)?;
+    if carrier.is_none() {
+        memory::asked(front.needed(memory::threads(arguments.threads)))?;
+    }
     let rungs: Vec<f64> = front.contests().map(|(travel_deg, _)| travel_deg).collect();
     let held = with_crew(carrier.as_ref(), arguments.threads, |crew| {
         let mut watch = Watch::new(telling, Vec::new());
@@ -143,6 +146,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let telling = if arguments.quiet { Telling::Nothing } else { Telling::for_standard_error() };
     interrupt::watch();
     let carrier = arguments.cluster.carrier(&source)?;
+    if carrier.is_none() {
+        memory::asked(contest.needed(memory::threads(arguments.threads)))?;
+    }
     let held = with_crew(carrier.as_ref(), arguments.threads, |crew| {
         let expected = match (telling, crew) {
             (Telling::Nothing, _) | (_, Crew::Others(_)) => Vec::new(),

@@ -1,4 +1,4 @@
-//! Ctrl-C: long work stops where it can go on, and says how.
+//! Ctrl-C, and memory that has grown too large: long work stops where it can go on, and says how.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -14,6 +14,8 @@ const ENDED: &str = "interrupted";
 static ASKED: AtomicBool = AtomicBool::new(false);
 /// What is told where work ends at once; None where it stops by itself once it is asked to.
 static AT_ONCE: Mutex<Option<String>> = Mutex::new(None);
+/// Why it shall stop; None where the user asked.
+static REASON: Mutex<Option<String>> = Mutex::new(None);
 
 /// Ctrl-C ends the program as every failure does, in words and as JSON, unless a command says otherwise.
 pub(crate) fn listen() {
@@ -39,10 +41,31 @@ fn hold_back_full_files() {
 fn heard() {
     // Off the line of the progress.
     note("");
+    stop("; Ctrl-C again ends at once");
+}
+
+/// Stops as Ctrl-C does, for a reason that is told.
+pub(crate) fn ask(reason: String) {
+    note("");
+    if let Ok(mut told) = REASON.lock() {
+        *told = Some(reason);
+    }
+    stop("");
+}
+
+/// Why the program stops, where it is not the user who wants it.
+pub(crate) fn reason() -> Option<String> {
+    REASON.lock().ok().and_then(|told| told.clone())
+}
+
+fn stop(hint: &str) {
     let at_once = AT_ONCE.lock().ok().and_then(|told| told.clone());
     let again = || ASKED.swap(true, Ordering::Relaxed).then(|| ENDED.to_owned());
     let Some(told) = at_once.or_else(again) else {
-        note("stopping; Ctrl-C again ends at once");
+        note(format_args!(
+            "stopping{}{hint}",
+            reason().map_or(String::new(), |it| format!(": {it}"))
+        ));
         return;
     };
     let failure = Failure::interrupted(told);

@@ -24,6 +24,7 @@ pub(crate) mod interrupt;
 pub(crate) mod learn;
 pub(crate) mod limit;
 pub(crate) mod manual;
+pub(crate) mod memory;
 mod progress;
 pub(crate) mod reproduce;
 pub(crate) mod schema;

@@ -4,11 +4,12 @@ use clap::Args;
 
 use super::external_controller::Beside;
 use super::progress::{Telling, at_work};
-use super::{Format, interrupt, json_text, limit};
+use super::{Format, interrupt, json_text, limit, memory};
 use crate::argument::{InFile, OutFile, written};
 use crate::exit::{Failure, note, print};
 use fspid_scenario::file::{self, Study};
 use fspid_sim::{NamedExternal, Scenario};
+use fspid_study::memory::Needed;
 use fspid_study::simulation::Simulation;
 use fspid_study::{output, report};
 use fspid_tune::limit::{Answer, Ladder, Measure, Options, Travel};
@@ -77,6 +78,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             "--real-time goes with a scenario that has [simulator], ArduPilot or PX4; `fspid show` shows the trace of any flight at its pace",
         ));
     }
+    let is_written = arguments.trace.is_some() || arguments.report.is_some();
+    memory::asked(Needed::for_traces(&study.scenario, is_written))?;
     let simulation = at_work("flying", || Simulation::of(&study)).map_err(Failure::input)?;
     if let Some(path) = &arguments.trace {
         simulation.column_names().changed().for_each(note);

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use super::cluster::{Carrier, Cluster, with_crew};
 use super::limit::told;
 use super::progress::{Telling, answer_after, duration, tell};
-use super::{Format, interrupt, json_text};
+use super::{Format, interrupt, json_text, memory};
 use crate::argument::{InFile, OutFile, count, is_standard, written};
 use crate::exit::{Failure, note, print, wrote};
 use fspid_diagnostics::digits::grouped;
@@ -190,6 +190,11 @@ impl Tuning<'_> {
             design::check_place(source, out).map_err(failure)?;
         }
         let effort = effort(arguments, &problem);
+        if self.carrier.is_none() {
+            let flights = problem.needed(memory::threads(arguments.threads));
+            let candidates = effort.population.unwrap_or(0) as u64;
+            memory::asked(flights.with_candidates(candidates))?;
+        }
         let mut place = kept(arguments, out.as_deref(), problem.file_name());
         let tuned = with_crew(self.carrier, arguments.threads, |crew| {
             search(arguments, (&problem, crew), &effort, &mut place)

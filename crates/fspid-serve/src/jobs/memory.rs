@@ -4,65 +4,44 @@
 //! in the air, is known beforehand; what grows, such as the candidates of a search, is measured. Memory that was given back
 //! may stay with the process: a job is charged with what the process has grown by since it began.
 
-use std::fs;
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::Duration;
 
-use fspid_diagnostics::digits::grouped;
 use fspid_scenario::file::Study;
+use fspid_study::memory::{Needed, mebibytes, resident_bytes};
 
 use super::asked::Work;
 use super::job::Job;
 use super::task::Ended;
 
-/// Bytes that a sample of a flight takes on each thread that flies: eight lanes of a batch in rows of floats. Measured as 293
-/// in campaigns and 304 in tunings.
-const BYTES_OF_SAMPLE: u64 = 320;
-/// Bytes that a candidate of a generation takes, with its flights' answers.
-const BYTES_OF_CANDIDATE: u64 = 1024;
-/// Bytes of a run and controller of a shard until it is written: 100 measures and more, in columns and as a file.
-const BYTES_OF_RUN: u64 = 4096;
 /// How often the memory of the process is looked at.
 const TICK: Duration = Duration::from_millis(50);
-const MIB: u64 = 1024 * 1024;
 
 /// Refuses a job whose flights alone take more than it may have at once.
 pub(super) fn check(work: &Work, study: &Study, most: u64) -> Result<(), Ended> {
-    let samples = study.scenario.timing.rows() as u64;
-    let threads = rayon::current_num_threads() as u64;
-    let needed = needed(work, samples, threads);
-    if needed <= most {
+    let flights = Needed::for_flights(study.scenario.timing.rows(), rayon::current_num_threads());
+    let needed = match work {
+        // A proof flies nothing, and asks for no more than its states.
+        Work::Certify(_) => return Ok(()),
+        Work::Contest(_) => flights,
+        Work::Tune(tune) => flights.with_candidates(tune.population()),
+        Work::Campaign(campaign) => flights.with_runs(campaign.runs_of_shard()),
+    };
+    if needed.bytes() <= most {
         return Ok(());
     }
     Err(Ended::failed(format_args!(
-        "flights of {} samples on {threads} threads, with what is held beside them, would take some {} MiB of memory; a job may take {} MiB here, the command line has no limit: a shorter flight, a longer sample period or a smaller population takes less",
-        grouped(samples),
-        grouped(needed.div_ceil(MIB)),
-        grouped(most / MIB)
+        "{needed}; a job may take {} here, the command line what its machine has left: a shorter flight, a longer sample period or a smaller population takes less",
+        mebibytes(most)
     )))
-}
-
-/// Bytes that are held at once, whatever else grows. A proof flies nothing, and asks for no more than its states.
-fn needed(work: &Work, samples: u64, threads: u64) -> u64 {
-    let flights = samples.saturating_mul(threads).saturating_mul(BYTES_OF_SAMPLE);
-    match work {
-        Work::Certify(_) => 0,
-        Work::Contest(_) => flights,
-        Work::Tune(tune) => {
-            flights.saturating_add(tune.population().saturating_mul(BYTES_OF_CANDIDATE))
-        }
-        Work::Campaign(campaign) => {
-            flights.saturating_add(campaign.runs_of_shard().saturating_mul(BYTES_OF_RUN))
-        }
-    }
 }
 
 /// Why a job was ended whose memory has grown so far.
 pub(super) fn too_large(most: u64) -> Ended {
     Ended::failed(format_args!(
-        "the server's memory has grown by more than {} MiB while this job worked, which is all that a job may take here; the command line has no limit. What other jobs took meanwhile counts too",
-        grouped(most / MIB)
+        "the server's memory has grown by more than {} while this job worked, which is all that a job may take here; the command line has no limit of its own. What other jobs took meanwhile counts too",
+        mebibytes(most)
     ))
 }
 
@@ -86,27 +65,4 @@ pub(super) fn watched<T>(job: &Job, most: u64, work: impl FnOnce() -> T) -> T {
         drop(work_goes_on);
         done
     })
-}
-
-/// Memory that the process has now; none where the system does not tell it so.
-fn resident_bytes() -> Option<u64> {
-    let status = fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
-    let kib: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    Some(kib * 1024)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[cfg(target_os = "linux")]
-    #[test]
-    fn the_memory_of_the_process_grows_by_what_it_takes() {
-        let before = resident_bytes().expect("Linux tells");
-        let taken = vec![1_u8; 256 << 20];
-        let after = resident_bytes().expect("Linux tells");
-        assert_eq!(taken.iter().map(|byte| u64::from(*byte)).sum::<u64>(), 256 << 20);
-        assert!(after > before + (200 << 20), "{before} {after}");
-    }
 }

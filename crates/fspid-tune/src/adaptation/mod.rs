@@ -36,6 +36,7 @@ use fspid_scenario::count::{BUDGET, RUNS, SEEDS};
 use fspid_scenario::file::{Study, known_words};
 use fspid_scenario::tuning::Case;
 use fspid_sim::Controller;
+use fspid_study::memory::Needed;
 use rayon::prelude::*;
 
 pub use answer::{Answer, Followed, Following, Moved, PlantRow, Row, Step};
@@ -132,6 +133,13 @@ impl Adaptation {
             controller,
             against,
         })
+    }
+
+    /// Memory that its flights hold at once on so many threads.
+    #[must_use]
+    pub fn needed(&self, threads: usize) -> Needed {
+        let theirs = self.theirs.iter().map(|flights| flights.needed(threads));
+        theirs.fold(self.flights.needed(threads), Needed::and)
     }
 
     /// What is allowed in the scenario and its cases and probably not meant, each once.

@@ -45,6 +45,7 @@ use std::path::Path;
 use fspid_campaign::Folder;
 use fspid_campaign::engine::FlightResult;
 use fspid_scenario::tuning::{Contest as Rules, Tuning};
+use fspid_study::memory::Needed;
 use fspid_study::output;
 
 pub use crate::kept::Then;
@@ -118,6 +119,15 @@ impl Contest {
         let tuned: Vec<String> = tuned.flat_map(TuningProblem::warnings).collect();
         let judged = self.entrants.iter().flat_map(|entrant| entrant.flights.warnings());
         each_once(tuned.iter().chain(judged))
+    }
+
+    /// Memory that its flights hold at once on so many threads, with the cases of everybody.
+    #[must_use]
+    pub fn needed(&self, threads: usize) -> Needed {
+        let tuned = self.entrants.iter().filter_map(|entrant| entrant.problem.as_ref());
+        let tuned = tuned.map(|problem| problem.needed(threads));
+        let judged = self.entrants.iter().map(|entrant| entrant.flights.needed(threads));
+        tuned.chain(judged).fold(Needed::for_flights(0, threads), Needed::and)
     }
 
     /// The controllers that are tuned, each with the candidates of all its tunings.

@@ -15,6 +15,7 @@ mod text;
 use std::path::Path;
 
 use fspid_scenario::measure::Measure;
+use fspid_study::memory::Needed;
 use fspid_study::output;
 use fspid_study::shell::word;
 use serde_json::Value;
@@ -104,6 +105,13 @@ impl Front {
     /// The contests, each with the mean travel that it allows, deg.
     pub fn contests(&self) -> impl Iterator<Item = (f64, &Contest)> {
         self.rungs.iter().map(|(travel_deg, contest)| (*travel_deg, contest))
+    }
+
+    /// Memory that its flights hold at once on so many threads, with all contests.
+    #[must_use]
+    pub fn needed(&self, threads: usize) -> Needed {
+        let each = self.contests().map(|(_, contest)| contest.needed(threads));
+        each.fold(Needed::for_flights(0, threads), Needed::and)
     }
 
     /// What is allowed and probably not meant, each once.

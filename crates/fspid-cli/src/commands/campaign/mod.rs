@@ -16,11 +16,13 @@ use std::path::Path;
 use clap::{Args, Subcommand, ValueEnum};
 
 use super::external_controller::Beside;
+use super::memory;
 use crate::argument::{self, count};
 use crate::exit::{Failure, note};
 use fspid_campaign::sample::Sampling;
 use fspid_campaign::{Campaign, CampaignError, Folder, Question, Shards, USUAL_RUNS, USUAL_SEED};
 use fspid_scenario::count as counts;
+use fspid_study::memory::Needed;
 
 /// Fly a scenario many times with numbers drawn anew, and say how often it fails.
 ///
@@ -168,7 +170,7 @@ impl Planned {
         options.into_iter().find(|(given, _)| *given).map(|(_, option)| option)
     }
 
-    /// Plans it in a folder, cut for whoever flies it where nobody asks for a number.
+    /// Plans it for a folder, cut for whoever flies it where nobody asks for a number. Nothing is written.
     fn campaign(&self, scenario: &Path, folder: &Folder, cut: Shards) -> Result<Campaign, Failure> {
         let overrides = self.beside.overrides(&self.overrides)?;
         let question = Question {
@@ -183,7 +185,6 @@ impl Planned {
         for warning in &campaign.template().study().warnings {
             note(format_args!("warning: {warning}"));
         }
-        folder.put_plan(campaign.plan()).map_err(failure)?;
         Ok(campaign)
     }
 }
@@ -211,6 +212,14 @@ impl PlannedFolder {
 fn planned(folder: &Folder) -> Result<Campaign, Failure> {
     let plan = folder.plan().map_err(failure)?;
     Campaign::new(plan, folder.path()).map_err(failure)
+}
+
+/// Refuses flights that take more memory than there is: so many at once at most, and so many runs that are kept until they are
+/// written.
+fn fits(campaign: &Campaign, threads: usize, flights: u64, kept: u64) -> Result<(), Failure> {
+    let samples = campaign.template().study().scenario.timing.rows();
+    let needed = Needed::for_flights(samples, memory::threads(threads));
+    memory::asked(needed.of_at_most(flights).with_runs(kept))
 }
 
 /// A failure with the exit code that it deserves.

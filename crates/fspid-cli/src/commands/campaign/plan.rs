@@ -4,7 +4,7 @@ use clap::Args;
 use serde_json::json;
 
 use super::super::Format;
-use super::{Planned, PlannedFolder};
+use super::{Planned, PlannedFolder, failure};
 use crate::argument::InFile;
 use crate::exit::Failure;
 use fspid_campaign::Shards;
@@ -27,6 +27,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let folder = arguments.place.folder();
     let campaign = arguments.planned.campaign(&arguments.scenario, &folder, Shards::ForWorkers)?;
+    folder.put_plan(campaign.plan()).map_err(failure)?;
     let plan = campaign.plan();
     let last = plan.shards().saturating_sub(1);
     let (path, shards) = (folder.plan_path(), plan.shards());

@@ -4,8 +4,8 @@ use clap::{Args, ValueEnum};
 
 use super::super::progress::Telling;
 use super::super::{Format, interrupt};
-use super::failure;
 use super::progress::told_of_search;
+use super::{failure, fits};
 use crate::argument::{self, InFile, count, positive_share};
 use crate::exit::{Failure, note};
 use fspid_campaign::sample::Sampling;
@@ -115,6 +115,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let nothing = fspid_campaign::Progress::default();
     rare::Target::of(&campaign, &nothing, &asked.fails, asked.controller.as_deref())
         .map_err(failure)?;
+    fits(&campaign, arguments.threads, arguments.flights, 0)?;
     let folder = arguments.out.as_ref().map(|out| Folder::new(out));
     interrupt::ends_with(match &folder {
         Some(folder) => format!(

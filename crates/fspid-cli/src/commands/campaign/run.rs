@@ -7,7 +7,7 @@ use super::super::progress::Telling;
 use super::super::{Format, interrupt};
 use super::engine::{Asked, Cluster, Engine};
 use super::progress::told;
-use super::{Planned, PlannedFolder, failure, planned};
+use super::{Planned, PlannedFolder, failure, fits, planned};
 use crate::argument::{InFile, count};
 use crate::exit::Failure;
 use fspid_campaign::table::{Digest, Reader};
@@ -53,6 +53,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let telling = if arguments.quiet { Telling::Nothing } else { Telling::for_standard_error() };
     let runs = campaign.plan().runs;
+    if arguments.cluster.engine == Engine::Local {
+        let at_once = campaign.plan().shard_runs.min(runs);
+        fits(&campaign, arguments.threads, at_once, at_once)?;
+    }
+    if arguments.scenario.is_some() {
+        folder.put_plan(campaign.plan()).map_err(failure)?;
+    }
     interrupt::ends_with(format!(
         "interrupted; what is flown stays, and this goes on: fspid campaign run --out {}",
         shell::word(&folder.path().display().to_string())

@@ -3,7 +3,7 @@
 use clap::Args;
 
 use super::super::{Format, interrupt, json_text};
-use super::failure;
+use super::{failure, fits};
 use crate::argument::{InFile, count};
 use crate::exit::{Failure, print};
 use fspid_campaign::sample::Sampling;
@@ -63,6 +63,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         budget: arguments.budget,
         seed: arguments.seed,
     };
+    fits(&campaign, arguments.threads, asked.budget as u64, 0)?;
     let found = local::in_threads(arguments.threads, || search::search(&campaign, &asked));
     let worst = found.and_then(|found| found).map_err(failure)?;
     match arguments.format {
