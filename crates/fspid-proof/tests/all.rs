@@ -2,12 +2,14 @@
 
 mod certify;
 mod check_definite;
+mod check_disturbed;
 mod check_driven;
 mod check_exponential;
 mod check_growth;
 mod check_lyapunov;
 mod check_matrix;
 mod check_plant;
+mod check_plant_set;
 mod family;
 mod flown_proofs;
 mod gain_set;

@@ -2,7 +2,7 @@
 
 use fspid_lti::Matrix;
 use fspid_numeric::scalar::Interval;
-use fspid_proof::check::{IntervalMatrix, driven, exponential};
+use fspid_proof::check::{IntervalMatrix, NotProved, driven, exponential};
 
 const DT_S: f64 = 0.02;
 /// Parts of a sample, each with its own value.
@@ -79,10 +79,33 @@ fn no_signal_within_a_sample_adds_more_than_its_energy_and_the_worst_nearly_as_m
 fn a_disturbance_without_a_way_in_and_what_has_no_bounds_are_refused() {
     let (a, b) = plant();
     let time = Interval::point(DT_S);
-    assert!(driven(&a, &points(&[vec![0.0], vec![0.0], vec![0.0]]), time).is_err());
+    let none = driven(&a, &points(&[vec![0.0], vec![0.0], vec![0.0]]), time);
+    assert!(matches!(none, Err(NotProved::Number { .. })), "{none:?}");
     assert!(driven(&a, &points(&[vec![1.0], vec![0.0]]), time).is_err());
     assert!(driven(&b, &b, time).is_err());
     assert!(driven(&a, &points(&[vec![f64::NAN], vec![0.0], vec![0.0]]), time).is_err());
     assert!(driven(&a, &b, Interval::ENTIRE).is_err());
     assert!(driven(&a, &b, Interval::point(DT_S).hull(Interval::point(1.001 * DT_S))).is_err());
+}
+
+#[test]
+fn units_of_states_change_what_is_added_and_nothing_else() {
+    let (a, b) = plant();
+    let time = Interval::point(DT_S);
+    let unit = [libm::exp2(-15.0), 1.0, libm::exp2(15.0)];
+    let rows = |matrix: &IntervalMatrix, over: &dyn Fn(usize) -> f64| -> Vec<Vec<f64>> {
+        let rows = matrix.midpoint();
+        let entry = |row: usize, column: usize| {
+            rows.get(row, column).expect("exists") * unit[row] / over(column)
+        };
+        (0..3).map(|row| (0..matrix.columns()).map(|column| entry(row, column)).collect()).collect()
+    };
+    let (turned_a, turned_b) = (points(&rows(&a, &|at| unit[at])), points(&rows(&b, &|_| 1.0)));
+    let plain = driven(&a, &b, time).expect("proved");
+    let turned = driven(&turned_a, &turned_b, time).expect("proved");
+    for (place, (plain, turned)) in plain.data().iter().zip(turned.data()).enumerate() {
+        let expected = plain * unit[place / 3];
+        let largest = plain.abs().max(1e-12) * unit[place / 3];
+        assert!((turned - expected).abs() <= 1e-6 * largest, "{place} {turned:e} {expected:e}");
+    }
 }

@@ -150,6 +150,31 @@ fn an_uncertain_time_encloses_the_exponentials_at_both_ends_and_between() {
     assert!(whole.max_radius() < 1e-3);
 }
 
+#[test]
+fn inputs_of_any_size_are_held_as_small_ones_are_to_the_bit() {
+    let a = point(&Matrix::from_rows(&[[0.0, 1.0], [-4.0, -0.4]]).expect("square"));
+    let b = Matrix::from_rows(&[[0.3, 0.0], [0.7, 0.0]]).expect("finite");
+    let (_, small) = held(&a, &point(&b), Interval::point(0.1)).expect("small");
+    for exponent in [-60.0, 20.0, 60.0, 300.0] {
+        let factor = libm::exp2(exponent);
+        let (_, found) = held(&a, &point(&b.scaled(factor)), Interval::point(0.1)).expect("finite");
+        assert_eq!(found, small.scaled(Interval::point(factor)), "{exponent}");
+    }
+}
+
+#[test]
+fn a_motion_is_enclosed_up_to_sixty_squarings_and_refused_beyond() {
+    let shear = |size: f64| Matrix::from_rows(&[[0.0, size], [0.0, 0.0]]).expect("finite");
+    let largest = libm::exp2(57.0);
+    let found = exponential(&point(&shear(largest))).expect("sixty squarings");
+    let expected = Matrix::from_rows(&[[1.0, largest], [0.0, 1.0]]).expect("finite");
+    assert!(found.contains(&expected), "{found:?}");
+    let beyond = exponential(&point(&shear(2.0 * largest)));
+    assert!(matches!(beyond, Err(NotProved::Unbounded { .. })), "{beyond:?}");
+    let gone = exponential(&point(&Matrix::identity(1).scaled(-1e21)));
+    assert!(matches!(gone, Err(NotProved::Unbounded { .. })), "{gone:?}");
+}
+
 fn repeatable() -> ProptestConfig {
     ProptestConfig {
         failure_persistence: None,

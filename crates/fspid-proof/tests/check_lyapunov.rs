@@ -3,7 +3,8 @@
 use fspid_lti::Matrix;
 use fspid_numeric::scalar::Interval;
 use fspid_proof::check::{
-    IntervalMatrix, NotProved, Relaxation, decreases, decreases_between, inside_limit, is_positive,
+    IntervalMatrix, NotProved, Relaxation, decreases, decreases_between, inside_limit,
+    inside_limits, is_positive, reach,
 };
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -430,6 +431,109 @@ fn numbers_that_are_not_finite_or_not_allowed_are_refused_everywhere() {
         assert!(inside_limit(&p, level, &row, 1.5).is_err());
         assert!(inside_limit(&p, 1.0, &row, level).is_err());
     }
+}
+
+/// Of $P = T^T D T$ with T unit upper triangular, $r P^{-1} r^T$ is the sum of $(r T^{-1})_i^2 / d_i$.
+#[test]
+fn no_reach_falls_short_of_the_exact_one_however_ill_the_form_is_conditioned() {
+    let d = [3.0, 7.0, 11.0];
+    // In the last the factor as computed falls short by some 10⁻⁵, and the form in its basis says so.
+    let shapes =
+        [[0.0; 3], [5.0, -2.0, 3.0], [4e3, 77.0, -1e3], [985_724.0, -133_038.0, 648_242.0]];
+    for [a, b, c] in shapes {
+        // T is [1 a b; 0 1 c; 0 0 1]; all is whole and below 2⁵³.
+        let p = [
+            d[0],
+            d[0] * a,
+            d[0] * b,
+            d[0] * a,
+            d[0] * a * a + d[1],
+            d[0] * a * b + d[1] * c,
+            d[0] * b,
+            d[0] * a * b + d[1] * c,
+            d[0] * b * b + d[1] * c * c + d[2],
+        ];
+        let p = matrix(3, &p);
+        for [x, y, z] in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, -1.0, 2.0]] {
+            // r T⁻¹, from left to right.
+            let turned = [x, y - a * x, z - b * x - c * (y - a * x)];
+            let squares = turned.iter().zip(d).map(|(value, d)| value * value / d);
+            let exact = 2.25 * squares.sum::<f64>();
+            let found =
+                reach(&p, 2.25, &[x, y, z].map(Interval::point)).expect("positive definite");
+            assert!(found * found >= exact * (1.0 - 1e-15), "{a} {x} {y} {z}: {found} {exact}");
+            assert!(found * found <= exact * (1.0 + 1e-3), "{a} {x} {y} {z}: {found} {exact}");
+        }
+    }
+}
+
+#[test]
+fn nothing_is_reached_on_an_ellipsoid_of_no_size() {
+    assert_eq!(reach(&Matrix::identity(2), 0.0, &[Interval::ONE; 2]), Ok(0.0));
+}
+
+#[test]
+fn a_row_between_bounds_reaches_as_far_as_the_longest_of_them() {
+    let row = [Interval::between(-3.0, 1.0), Interval::between(0.0, 4.0)];
+    let found = reach(&Matrix::identity(2), 4.0, &row).expect("positive definite");
+    assert!((10.0..10.0001).contains(&found), "{found}");
+}
+
+/// Forms from [0.9 -0.2; -0.2 0.9] to [1.1 0.2; 0.2 1.1], the least eigenvalue of which is 0.7, along (1, 1).
+#[test]
+fn limits_hold_for_every_form_inside_and_each_for_its_row() {
+    let (on, off) = (Interval::between(0.9, 1.1), Interval::between(-0.2, 0.2));
+    let forms = IntervalMatrix::from_rows(&[[on, off], [off, on]]).expect("square");
+    let along = vec![Interval::ONE; 2];
+    let only = vec![Interval::ONE, Interval::ZERO];
+    // |r z|² ≤ 2 level / 0.7; of the first state alone Gershgorin's bound is level / 0.7.
+    for level in [1.0, 4.0] {
+        let most = f64::sqrt(2.0 * level / 0.7);
+        let with = |limit: f64| inside_limits(&forms, level, &[(along.clone(), limit)]);
+        assert_eq!(with(1.0001 * most), Ok(()));
+        let found = with(0.9999 * most);
+        assert!(matches!(found, Err(NotProved::BeyondLimit { row: 0, .. })), "{found:?}");
+        let rows = [(only.clone(), most), (along.clone(), 0.9999 * most)];
+        let found = inside_limits(&forms, level, &rows);
+        assert!(matches!(found, Err(NotProved::BeyondLimit { row: 1, .. })), "{found:?}");
+        assert_eq!(inside_limits(&forms, level, &rows[..1]), Ok(()));
+    }
+    assert_eq!(inside_limits(&forms, 1.0, &[]), Ok(()));
+}
+
+#[test]
+fn limits_of_many_rows_are_refused_where_numbers_or_shapes_are_not_allowed() {
+    let forms = IntervalMatrix::identity(2);
+    let row = |limit: f64| vec![(vec![Interval::ONE, Interval::ZERO], limit)];
+    assert_eq!(inside_limits(&forms, 1.0, &row(1.5)), Ok(()));
+    for bad in [f64::NAN, f64::INFINITY, 0.0, -1.0] {
+        assert!(inside_limits(&forms, bad, &row(1.5)).is_err(), "{bad}");
+        assert!(inside_limits(&forms, 1.0, &row(bad)).is_err(), "{bad}");
+        assert!(reach(&Matrix::identity(2), bad, &[Interval::ONE; 2]).is_err() || bad == 0.0);
+    }
+    for columns in [1, 3] {
+        let found = inside_limits(&forms, 1.0, &[(vec![Interval::ZERO; columns], 1.5)]);
+        assert!(matches!(found, Err(NotProved::Shape(_))), "{found:?}");
+        let found = reach(&Matrix::identity(2), 1.0, &vec![Interval::ZERO; columns]);
+        assert!(matches!(found, Err(NotProved::Shape(_))), "{found:?}");
+    }
+    let unknown = vec![(vec![Interval::ENTIRE, Interval::ZERO], 1e300)];
+    assert!(inside_limits(&forms, 1.0, &unknown).is_err());
+    let indefinite = point(&matrix(2, &[1.0, 2.0, 2.0, 1.0]));
+    assert!(inside_limits(&indefinite, 1.0, &row(1.5)).is_err());
+    assert!(inside_limits(&IntervalMatrix::zeros(2, 3), 1.0, &row(1.5)).is_err());
+    assert!(reach(&matrix(2, &[1.0, 2.0, 2.0, 1.0]), 1.0, &[Interval::ONE; 2]).is_err());
+}
+
+#[test]
+fn an_entry_without_bounds_is_named_by_its_place() {
+    let mut p = Matrix::identity(3);
+    for (row, column) in [(1, 2), (2, 1)] {
+        p.set(row, column, f64::NAN).expect("the entry exists");
+    }
+    let expected = NotProved::Unbounded { what: "Lyapunov matrix", row: 1, column: 2 };
+    assert_eq!(is_positive(&p), Err(expected.clone()));
+    assert_eq!(decreases(&p, 1.0, &IntervalMatrix::zeros(3, 3), None), Err(expected));
 }
 
 #[test]

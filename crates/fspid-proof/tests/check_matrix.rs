@@ -175,3 +175,26 @@ fn a_matrix_of_floats_is_itself() {
     assert_eq!((exact.rows(), exact.columns()), (2, 3));
     assert_eq!(exact.transpose().transpose(), exact);
 }
+
+#[test]
+fn a_matrix_encloses_what_lies_in_each_of_its_entries_and_nothing_of_another_shape() {
+    let wide = |radius: f64| {
+        let entry = |middle: f64| Interval::between(middle - radius, middle + radius);
+        intervals(2, &[entry(1.0), entry(2.0), entry(3.0), entry(4.0)])
+    };
+    assert!(wide(0.25).encloses(&wide(0.125)) && wide(0.25).encloses(&wide(0.25)));
+    assert!(!wide(0.125).encloses(&wide(0.25)));
+    assert!((wide(0.25).max_radius() - 0.25).abs() < 1e-15);
+    // One entry alone lies outside.
+    for place in 0..4 {
+        let mut entries = [1.0, 2.0, 3.0, 4.0];
+        entries[place] += 0.5;
+        let other = Matrix::from_rows(&[&entries[..2], &entries[2..]]).expect("square");
+        assert!(
+            !wide(0.25).encloses(&IntervalMatrix::from(&other)) && !wide(0.25).contains(&other)
+        );
+    }
+    let row = intervals(4, &[1.0, 2.0, 3.0, 4.0].map(Interval::point));
+    assert!(!wide(0.25).encloses(&row) && !row.encloses(&wide(0.0)));
+    assert!(!wide(0.25).contains(&row.midpoint()));
+}

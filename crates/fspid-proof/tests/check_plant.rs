@@ -1,8 +1,12 @@
 //! The enclosed plant against the one that simulations fly.
 
 use fspid_core::{Gains, Pid, PidConfig};
+use fspid_lti::Matrix;
 use fspid_numeric::scalar::Interval;
-use fspid_proof::check::{ActuatorLag, IntervalMatrix, NotProved, PrintedPlant, printed};
+use fspid_proof::check::{
+    ActuatorLag, ContinuousPlant, IntervalMatrix, LagOf, NotProved, PrintedPlant, exponential,
+    printed,
+};
 use fspid_sim::actuator::{Actuator, Lag};
 use fspid_sim::loop_model::{Followers, LoopModel, LoopSettings, Memory, SampledPlant, Sensing};
 use fspid_sim::signal::{Profile, Shape};
@@ -168,4 +172,138 @@ fn a_plant_that_cannot_be_is_refused() {
     }
     let bolting = PrintedPlant { denominator: &[1.0, -1e6, 0.0], numerator: &[1.0], ..good };
     assert!(matches!(bolting.sampled(), Err(NotProved::Unbounded { .. })));
+}
+
+/// Coefficients with the highest power of s first.
+fn value(coefficients: &[f64], s: f64) -> f64 {
+    coefficients.iter().fold(0.0, |sum, coefficient| sum * s + coefficient)
+}
+
+#[test]
+fn the_normal_form_has_the_transfer_function_from_elevator_to_pitch_and_pitch_rate() {
+    let denominator = [2.0, 3.1, 1.7, 4.0, 0.7];
+    let numerator = [-1.5, 1.1, 2.0, 0.3];
+    for order in 1..=4_usize {
+        for inner in 0..order {
+            let (numerator, denominator) = (&numerator[..=inner], &denominator[..=order]);
+            for (sign, per_nose_up) in
+                [(ElevatorSign::NoseUpPositive, 1.0), (ElevatorSign::NoseDownPositive, -1.0)]
+            {
+                let parts = (sign, LagOf::None);
+                let plant =
+                    ContinuousPlant::in_normal_form(numerator, denominator, parts, |it| *it == 0.0);
+                let plant = plant.expect("strictly proper");
+                assert_eq!((plant.by_states.len(), plant.by_elevator.len()), (order, order));
+                for s in [0.3, 1.0, 4.0] {
+                    let entry = |row: usize, column: usize| {
+                        (if row == column { s } else { 0.0 }) - plant.by_states[row][column]
+                    };
+                    let rows: Vec<Vec<f64>> = (0..order)
+                        .map(|row| (0..order).map(|column| entry(row, column)).collect())
+                        .collect();
+                    let input: Vec<[f64; 1]> = plant.by_elevator.iter().map(|it| [*it]).collect();
+                    let input = Matrix::from_rows(&input).expect("finite");
+                    let states = Matrix::from_rows(&rows).expect("square").solve(&input);
+                    let states = states.expect("no pole on the right");
+                    let expected = per_nose_up * value(numerator, s) / value(denominator, s);
+                    let pitch = states.data()[0];
+                    assert!(
+                        (pitch - expected).abs() < 1e-12 * expected.abs(),
+                        "{order} {inner} {s}"
+                    );
+                    let rate = states.data().iter().chain([&1.0]).zip(&plant.pitch_rate);
+                    let rate: f64 = rate.map(|(state, by)| state * by).sum();
+                    assert!(
+                        (rate - s * expected).abs() < 1e-11 * expected.abs(),
+                        "{order} {inner} {s}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_numerator_that_may_vanish_or_is_none_of_a_plant_has_no_normal_form() {
+    let form = |numerator: &[f64], denominator: &[f64]| {
+        let parts = (ElevatorSign::NoseUpPositive, LagOf::None);
+        ContinuousPlant::in_normal_form(numerator, denominator, parts, |it| it.abs() < 0.1)
+    };
+    assert!(form(&[1.0, 2.0], &[1.0, 2.0, 3.0]).is_some());
+    assert_eq!(form(&[0.05, 2.0], &[1.0, 2.0, 3.0]), None);
+    assert_eq!(form(&[1.0, 2.0], &[0.05, 2.0, 3.0]), None);
+    assert_eq!(form(&[1.0, 2.0, 3.0], &[1.0, 2.0, 3.0]), None);
+    assert_eq!(form(&[1.0, 2.0, 3.0, 4.0], &[1.0, 2.0, 3.0]), None);
+    assert_eq!(form(&[], &[1.0, 2.0]), None);
+    assert_eq!(form(&[1.0], &[]), None);
+}
+
+fn printed_plant(plant: usize, dt_s: f64) -> PrintedPlant<'static> {
+    let (numerator, denominator, elevator_sign) = PLANTS[plant];
+    PrintedPlant { numerator, denominator, elevator_sign, lag: ActuatorLag::None, dt_s }
+}
+
+#[test]
+fn an_elevator_moves_the_rate_at_once_where_the_numerator_is_one_degree_below() {
+    let at_once = [0, 1, 2, 3].map(|plant| printed_plant(plant, 0.02).moves_rate_at_once());
+    assert_eq!(at_once, [false, false, true, true]);
+}
+
+#[test]
+fn an_impulse_within_a_sample_is_held_at_its_start_at_its_end_and_between() {
+    for (plant, states) in [(0, 4), (1, 3), (2, 3), (3, 1)] {
+        let found = printed_plant(plant, 0.01).impulse_within_sample().expect("a plant");
+        assert_eq!(found.len(), states);
+        let (numerator, denominator, sign) = PLANTS[plant];
+        let parts = (sign, LagOf::None);
+        let own = ContinuousPlant::of_transfer_function(numerator, denominator, parts.0, parts.1);
+        let column: Vec<[f64; 1]> = own.by_elevator.iter().map(|it| [*it]).collect();
+        let column = IntervalMatrix::from(&Matrix::from_rows(&column).expect("finite"));
+        let a = IntervalMatrix::from(&Matrix::from_rows(&own.by_states).expect("square"));
+        let largest = column.entries().fold(0.0, |most: f64, entry| most.max(entry.magnitude()));
+        for time_s in [0.0, 0.003, 0.01] {
+            let moved = exponential(&a.scaled(Interval::point(time_s))).expect("small");
+            let moved = moved.product(&column).expect("fits").midpoint();
+            for (entry, value) in found.iter().zip(moved.data()) {
+                let near = 1e-14 * largest;
+                assert!(
+                    entry.lower() <= value + near && entry.upper() >= value - near,
+                    "{plant} {time_s}"
+                );
+                assert!(entry.width() < 0.5 * largest, "{plant} {entry:?}");
+            }
+        }
+    }
+}
+
+/// $E E^T$, entry by entry.
+fn square(factor: &Matrix) -> Vec<f64> {
+    factor.product(&factor.transpose()).expect("square").data().to_vec()
+}
+
+#[test]
+fn a_gust_that_enters_as_the_elevator_does_adds_as_much() {
+    for (number, (numerator, denominator, _)) in PLANTS.into_iter().enumerate() {
+        let plant = printed_plant(number, 0.02);
+        let elevator = square(&plant.driven(None).expect("proved"));
+        let states = denominator.len() - 1;
+        for factor in [1.0, 3.0] {
+            // Over the denominator with a leading 1.
+            let mut gust = vec![0.0; states - numerator.len()];
+            gust.extend(numerator.iter().map(|it| factor * it / denominator[0]));
+            let found = square(&plant.driven(Some(&gust)).expect("proved"));
+            let largest = elevator.iter().fold(0.0, |most: f64, it| most.max(it.abs()));
+            for (found, elevator) in found.iter().zip(&elevator) {
+                let expected = factor * factor * elevator;
+                assert!(
+                    (found - expected).abs() < 1e-6 * factor * factor * largest,
+                    "{found:e} {expected:e}"
+                );
+            }
+        }
+        for other in [states - 1, states + 1] {
+            let found = plant.driven(Some(&vec![1.0; other]));
+            assert!(matches!(found, Err(NotProved::Number { .. })), "{other} {found:?}");
+        }
+    }
 }

@@ -39,3 +39,34 @@ fn between(function: &impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> Optio
 fn middle(low: f64, high: f64) -> f64 {
     if high > 2.0 * low { (low * high).sqrt() } else { 0.5 * (low + high) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn zeros_count_once_from_the_lower_end_up_to_below_the_upper_one() {
+        for sign in [1.0, -1.0] {
+            let line = |zero: f64| move |x: f64| sign * (x - zero);
+            for turns in [vec![], vec![2.0], vec![1.0, 2.0, 3.0]] {
+                assert_eq!(all(line(1.0), &turns, (1.0, 3.0)), [1.0]);
+                assert_eq!(all(line(2.0), &turns, (1.0, 3.0)), [2.0]);
+                assert_eq!(
+                    all(line(3.0), &turns, (1.0, 3.0)),
+                    [0.0; 0],
+                    "the upper end is outside"
+                );
+            }
+            // A turn below the band would make a part of what lies outside.
+            assert_eq!(all(line(1.0), &[0.5], (2.0, 3.0)), [0.0; 0]);
+        }
+    }
+
+    #[test]
+    fn two_hundred_decades_are_halved_by_their_ratio() {
+        for zero in [1e-90, 1.0, 1e90] {
+            let found = all(|x| x - zero, &[], (1e-100, 1e100));
+            assert!(found.len() == 1 && (found[0] / zero - 1.0).abs() < 1e-15, "{found:?}");
+        }
+    }
+}

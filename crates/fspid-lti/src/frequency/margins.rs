@@ -71,7 +71,7 @@ impl FrequencyResponse {
         let phases = ends.map(|omega| self.phase_rad(omega));
         let (min, max) =
             phases.fold((0.0_f64, 0.0_f64), |(min, max), phase| (min.min(phase), max.max(phase)));
-        let (first, last) = (libm::floor(min / PI) as i64 - 1, libm::ceil(max / PI) as i64 + 1);
+        let (first, last) = (libm::floor(min / PI) as i64, libm::ceil(max / PI) as i64);
         let odd = (first..=last).filter(|multiple| multiple % 2 != 0);
         odd.flat_map(|multiple| self.neutral_at_phase(multiple as f64 * PI, band)).collect()
     }
@@ -249,6 +249,119 @@ mod tests {
         let system = TransferFunction::new(&[1.0, 2.0], &[1.0, 1.0]).expect("a lead");
         let response = FrequencyResponse::new(system, 0.0).expect("roots");
         assert_eq!(response.margins(), Err(LtiError::Feedthrough));
+    }
+
+    #[test]
+    fn a_loop_at_its_limit_has_a_gain_margin_of_one() {
+        // −1/(s + 1): the closed pole is at the origin.
+        let found = margins(&[-1.0], &[1.0, 1.0], 0.0);
+        assert_eq!((found.gain_margin(), found.lower_neutral()), (Some(1.0), None));
+    }
+
+    #[test]
+    fn a_loop_that_is_nothing_at_rest_has_no_limit_there() {
+        let found = margins(&[1.0, 0.0], &[1.0, 2.0, 1.0], 0.0);
+        assert!(found.stable() && found.neutral_gains.is_empty(), "{found:?}");
+    }
+
+    #[test]
+    fn poles_come_back_where_the_phase_rises_and_leave_where_it_falls() {
+        // (s + a)²/(s³ (s + b)²): the phase is −π where atan(ω/a) − atan(ω/b) is π/4, which is ω² − (b − a) ω + a b = 0.
+        let (a, b) = (0.01_f64, 0.1_f64);
+        let denominator = [1.0, 2.0 * b, b * b, 0.0, 0.0, 0.0];
+        let root = ((b - a) * (b - a) - 4.0 * a * b).sqrt();
+        let places = [0.5 * (b - a - root), 0.5 * (b - a + root)];
+        let gain = |w: f64| w * w * w * (w * w + b * b) / (w * w + a * a);
+        let found = margins(&[1.0, 2.0 * a, a * a], &denominator, 0.0).neutral_gains;
+        assert_eq!(found.iter().map(|it| it.poles).collect::<Vec<_>>(), [-2, 2]);
+        for (found, place) in found.iter().zip(places) {
+            assert!((found.omega_rad_s / place - 1.0).abs() < 1e-12, "{found:?} {place}");
+            assert!((found.gain / gain(place) - 1.0).abs() < 1e-12, "{found:?}");
+        }
+        let between = (found[0].gain * found[1].gain).sqrt();
+        for (factor, stable) in
+            [(0.5 * found[0].gain, false), (between, true), (2.0 * found[1].gain, false)]
+        {
+            let numerator = [factor, 2.0 * a * factor, a * a * factor];
+            assert_eq!(margins(&numerator, &denominator, 0.0).stable(), stable, "{factor}");
+        }
+    }
+
+    #[test]
+    fn every_half_turn_of_lead_is_a_limit_too() {
+        // s⁷ over eight lags begins at 7 π/2 and ends at −π/2: −1 is passed at 3 π and at π.
+        let mut denominator = crate::Polynomial::new(&[1.0]).expect("one");
+        for pole in 1..=8 {
+            let lag = crate::Polynomial::new(&[1.0, f64::from(pole)]).expect("a lag");
+            denominator = denominator.product(&lag).expect("small");
+        }
+        let numerator = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        let found = margins(&numerator, denominator.coefficients(), 0.0).neutral_gains;
+        assert_eq!(found.len(), 2, "{found:?}");
+        for (neutral, left) in found.iter().zip([2.5, 0.5]) {
+            let lags = (1..=8).map(|pole| libm::atan(neutral.omega_rad_s / f64::from(pole)));
+            assert!((lags.sum::<f64>() - left * PI).abs() < 1e-12, "{neutral:?}");
+        }
+    }
+
+    #[test]
+    fn a_slow_loop_with_a_short_dead_time_has_its_limit_where_the_dead_time_makes_it() {
+        let (pole, delay_s) = (0.01, 0.01);
+        let found = margins(&[0.5 * pole], &[1.0, pole], delay_s).upper_neutral().expect("a limit");
+        let lag = libm::atan(found.omega_rad_s / pole) + delay_s * found.omega_rad_s;
+        assert!((lag - PI).abs() < 1e-12, "{found:?}");
+        let gain = 2.0 * (1.0 + found.omega_rad_s * found.omega_rad_s / pole / pole).sqrt();
+        assert!((found.gain / gain - 1.0).abs() < 1e-12, "{found:?} {gain}");
+    }
+
+    #[test]
+    fn a_resonance_thousands_of_turns_of_dead_time_away_is_not_overlooked() {
+        // The gain is 50 at 10⁶ rad/s and above 1 for a tenth of that, over which 20 ms turn the phase by 2000 rad.
+        let (wn, zeta, delay_s) = (1e6, 1e-3_f64, 0.02);
+        let found = margins(&[0.1 * wn * wn], &[1.0, 2.0 * zeta * wn, wn * wn], delay_s);
+        let (first, last) = (found.crossovers[0].omega_rad_s, found.crossovers[1].omega_rad_s);
+        // The gain is 1 where (1 − w)² + 4 ζ² w = 0.01, in w the square of ω over ωn.
+        let (half, root) = (1.0 - 2.0 * zeta * zeta, (0.01_f64 - 4.0 * zeta * zeta).sqrt());
+        assert!(
+            (first / wn - (half - root).sqrt()).abs() < 1e-6
+                && (last / wn - (half + root).sqrt()).abs() < 1e-6
+        );
+        let pairs = (last - first) * delay_s / (2.0 * PI);
+        // The resonance itself turns by half a turn more.
+        assert!(
+            (found.unstable_poles as f64 / 2.0 - pairs).abs() < 2.0,
+            "{} {pairs}",
+            found.unstable_poles
+        );
+    }
+
+    #[test]
+    fn a_loop_that_is_hardly_above_one_lacks_nearly_half_a_turn() {
+        let found = margins(&[1.01], &[1.0, 1.0], 0.0).phase_margin().expect("a crossover");
+        let omega_rad_s = (1.01_f64 * 1.01 - 1.0).sqrt();
+        assert!(
+            (found.phase_margin_rad - (PI - libm::atan(omega_rad_s))).abs() < 1e-12,
+            "{found:?}"
+        );
+    }
+
+    #[test]
+    fn a_lead_bears_a_dead_time_of_what_is_left_of_the_turn() {
+        // s/(s² + s/2 + 1): the gain is 1 where 1 − ω² is ±(√3/2) ω, with ±60° of phase.
+        let found = margins(&[1.0, 0.0], &[1.0, 0.5, 1.0], 0.0);
+        let root = (0.75_f64 + 4.0).sqrt();
+        let [lower, upper] = [0.5 * (root - 0.75_f64.sqrt()), 0.5 * (root + 0.75_f64.sqrt())];
+        assert!((found.crossovers[0].omega_rad_s - lower).abs() < 1e-12, "{found:?}");
+        assert!((found.crossovers[0].phase_margin_rad + 2.0 * PI / 3.0).abs() < 1e-12, "{found:?}");
+        let delay_s = found.delay_margin_s().expect("a crossover");
+        assert!((delay_s - 2.0 * PI / 3.0 / upper).abs() < 1e-12, "{delay_s}");
+        let one = |phase_margin_rad: f64| Margins {
+            unstable_poles: 0,
+            neutral_gains: Vec::new(),
+            crossovers: vec![Crossover { omega_rad_s: 2.0, phase_margin_rad }],
+        };
+        assert_eq!(one(-1.0).delay_margin_s(), Some(0.5 * (2.0 * PI - 1.0)));
+        assert_eq!(one(0.0).delay_margin_s(), Some(0.0));
     }
 
     proptest! {

@@ -234,6 +234,33 @@ mod tests {
     }
 
     #[test]
+    fn a_response_has_the_system_and_the_dead_time_that_it_was_given() {
+        let system = TransferFunction::new(&[2.0], &[1.0, 3.0]).expect("a lag");
+        let found = FrequencyResponse::new(system.clone(), 0.3).expect("roots");
+        assert_eq!((found.system(), found.delay_s()), (&system, 0.3));
+    }
+
+    #[test]
+    fn a_negative_sign_is_half_a_turn_of_lag() {
+        let found = response(&[-1.0], &[1.0, 1.0], 0.0);
+        assert!((found.phase_rad(1.0) + 1.25 * PI).abs() < 1e-14);
+        let both = response(&[-1.0], &[-1.0, -1.0], 0.0);
+        assert!((both.phase_rad(1.0) + 0.25 * PI).abs() < 1e-14);
+    }
+
+    #[test]
+    fn roots_beyond_all_others_are_crossed_as_any() {
+        // 10/(1 + s/p) has the gain 1 at √99 p.
+        for pole in [1e-12, 1.0, 1e12] {
+            let found = response(&[10.0 * pole], &[1.0, pole], 0.0).gain_crossings(1.0);
+            assert!(
+                found.len() == 1 && (found[0] / pole - 99.0_f64.sqrt()).abs() < 1e-13,
+                "{found:?}"
+            );
+        }
+    }
+
+    #[test]
     fn dead_times_that_no_loop_has_are_refused() {
         let system = TransferFunction::new(&[1.0], &[1.0, 1.0]).expect("a lag");
         assert!(FrequencyResponse::new(system.clone(), -0.1).is_err());

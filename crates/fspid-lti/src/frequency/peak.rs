@@ -105,12 +105,19 @@ mod tests {
         // S − 1/2 is all-pass for an integrator: 1/2 at every frequency.
         let found = response(&[3.0], &[1.0, 0.0], 0.0).disk_margin(0.0).expect("stable");
         assert!((found.size - 2.0).abs() < 1e-14, "{found:?}");
+        assert!(found.omega_rad_s.abs() < 1e-14, "the lowest of all: {found:?}");
         // T is 1 at rest and less beyond: with a skew of −1 the disk is 1/max |T|.
         let found = response(&[3.0], &[1.0, 0.0], 0.0).disk_margin(-1.0).expect("stable");
         assert!((found.size - 1.0).abs() < 1e-14 && found.omega_rad_s.abs() < 1e-14, "{found:?}");
-        // S rises to 1 at infinite frequency.
-        let found = response(&[3.0], &[1.0, 0.0], 0.0).peak_sensitivity().expect("stable");
-        assert!(found.omega_rad_s.is_infinite() && (found.value - 1.0).abs() < 1e-15, "{found:?}");
+        // S rises to 1 at infinite frequency, in whichever units the loop is written.
+        for unit in [1.0, 2.0] {
+            let open = response(&[3.0 * unit], &[unit, 0.0], 0.0);
+            let found = open.peak_sensitivity().expect("stable");
+            assert!(
+                found.omega_rad_s.is_infinite() && (found.value - 1.0).abs() < 1e-15,
+                "{found:?}"
+            );
+        }
     }
 
     #[test]

@@ -63,6 +63,21 @@ mod tests {
     }
 
     #[test]
+    fn a_state_takes_the_root_of_what_its_row_is_over_its_column() {
+        // 10¹² is nearly 2⁴⁰: the first state alone moves, by 2²⁰.
+        assert_eq!(balance(vec![1.0, 1e6, 1e-6, 2.0], 2), [20, 0]);
+    }
+
+    #[test]
+    fn no_unit_moves_so_far_that_entries_leave_the_range_of_floats() {
+        assert_eq!(balance(vec![1.0, 1e150, 1e-150, 1.0], 2), [0, 0]);
+        // In two steps the second state would go further than in one.
+        let [one, other] = [-320, 160].map(|exponent| libm::scalbn(1.0, exponent));
+        let exponents = balance(vec![0.0, 0.0, 1.0, 0.0, 0.0, one, 0.0, other, 0.0], 3);
+        assert_eq!(exponents, [0, -298, -69]);
+    }
+
+    #[test]
     fn rows_of_zeros_and_matrices_without_bounds_are_left_alone() {
         assert_eq!(balance(vec![1.0, 1e9, 0.0, 0.0], 2), [0, 0]);
         assert_eq!(balance(vec![1.0, f64::INFINITY, 1.0, f64::NAN], 2), [0, 0]);

@@ -93,3 +93,20 @@ pub(super) fn symmetric(what: &'static str, matrix: &Matrix) -> Result<IntervalM
     }
     Ok(exact)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_diagonal_that_is_as_large_as_what_stands_beside_it_shows_nothing() {
+        let with = |beside: f64| {
+            let rows = [[1.0, -beside], [beside, 1.0]];
+            dominant("matrix", &IntervalMatrix::from(&Matrix::from_rows(&rows).expect("finite")))
+        };
+        assert_eq!(with(1.0_f64.next_down()), Ok(()));
+        let expected =
+            NotProved::NotDominant { what: "matrix", row: 0, diagonal: 1.0, others: 1.0 };
+        assert_eq!(with(1.0), Err(expected));
+    }
+}

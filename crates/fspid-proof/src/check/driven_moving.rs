@@ -162,6 +162,39 @@ mod tests {
     }
 
     #[test]
+    fn a_disturbance_enters_alike_at_all_gains() {
+        // Of the box only its middle is asked for, from −1/8 to 1/8; there, too, the disturbance is u itself: 4, as of
+        // a loop that stands still.
+        let (loops, forms, seen) = (points(&[0.5, 0.0]), scalars(&[2.0, 0.0]), points(&[1.0, 0.0]));
+        let entry = IntervalMatrix::identity(1);
+        let moving = Moving { loops: &loops, forms: &forms, changes: &[2.0], rate: 1.0 };
+        let bounded = |gain: f64| {
+            let drive = MovingDrive { decay: 1.0, gain, entry: &entry, seen: Some(&seen) };
+            let middle = |cell: &Ends| {
+                let [lower, upper] = cell[0];
+                let part = [lower.max(-0.125), upper.min(0.125)];
+                (part[0] <= part[1]).then(|| vec![part])
+            };
+            grows_no_faster_while_moving(&moving, &drive, middle).is_ok()
+        };
+        assert!(bounded(4.01));
+        assert!(!bounded(3.99));
+    }
+
+    #[test]
+    fn what_is_no_bound_is_refused_by_name() {
+        let (loops, forms) = (points(&[0.5, 0.0]), scalars(&[2.0, 0.0]));
+        let entry = IntervalMatrix::identity(1);
+        let moving = Moving { loops: &loops, forms: &forms, changes: &[2.0], rate: 1.0 };
+        for (decay, gain, name) in [(0.0, 5.0, "decay"), (1.0, 0.0, "gain of the disturbance")] {
+            let drive = MovingDrive { decay, gain, entry: &entry, seen: None };
+            let found = grows_no_faster_while_moving(&moving, &drive, |cell| Some(cell.clone()));
+            let reason = found.expect_err("refused").reason;
+            assert!(matches!(reason, NotProved::Number { what, .. } if what == name), "{reason:?}");
+        }
+    }
+
+    #[test]
     fn what_is_no_bound_is_refused() {
         let parts = [[0.25, 0.25], [2.0, 0.0], [1.0, 0.0]];
         for [decay, gain] in [[1.1, 5.0], [0.0, 5.0], [f64::NAN, 5.0], [1.0, 0.0], [1.0, -1.0]] {

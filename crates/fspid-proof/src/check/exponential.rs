@@ -234,4 +234,13 @@ mod tests {
         assert!(sum.radius[2] >= rest[2] && sum.radius[2] < 1.1 * rest[2]);
         assert!(sum.radius[6].max(sum.radius[0]) <= 0.0);
     }
+
+    #[test]
+    fn a_chain_of_entries_is_followed_through_states_behind_it() {
+        // 1 to 2, 2 to 0: by powers of the matrix 1 comes to 0 as well.
+        let mut chain = Matrix::zeros(3, 3);
+        chain.set(1, 2, 0.1).and_then(|()| chain.set(2, 0, 0.1)).expect("the entries exist");
+        let expected = [false, false, false, true, false, true, true, false, false];
+        assert_eq!(reached(&IntervalMatrix::from(&chain)), expected);
+    }
 }

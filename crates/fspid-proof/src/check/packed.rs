@@ -207,4 +207,128 @@ mod tests {
         }
         assert_eq!(Packed::sum(core::iter::empty()).size, 0);
     }
+
+    /// Lower unit triangular L of whole numbers and D of ones make $L D L^T$, the pivots of which are those of D.
+    #[test]
+    fn a_negative_pivot_is_found_wherever_it_stands() {
+        for size in 1..=7_usize {
+            let lower = |row: usize, column: usize| match row.cmp(&column) {
+                core::cmp::Ordering::Less => 0.0,
+                core::cmp::Ordering::Equal => 1.0,
+                core::cmp::Ordering::Greater => ((3 * row + 5 * column) % 4) as f64 - 1.0,
+            };
+            let with = |negative: Option<usize>| {
+                let pivot = |at: usize| if negative == Some(at) { -1.0 } else { 1.0 };
+                let entry = |row: usize, column: usize| {
+                    let terms = (0..size).map(|at| lower(row, at) * pivot(at) * lower(column, at));
+                    terms.sum::<f64>()
+                };
+                let rows: Vec<Vec<f64>> = (0..size)
+                    .map(|row| (0..size).map(|column| entry(row, column)).collect())
+                    .collect();
+                Packed::of(&IntervalMatrix::from(&Matrix::from_rows(&rows).expect("finite")))
+            };
+            assert_eq!(with(None).prove_definite("matrix"), Ok(()), "{size}");
+            for place in 0..size {
+                let found = with(Some(place)).prove_definite("matrix").expect_err("indefinite");
+                assert!(
+                    matches!(found, NotProved::NoFactor { row, .. } if row == place),
+                    "{size} {place} {found:?}"
+                );
+            }
+        }
+    }
+
+    /// Above the largest row sum of the radii and $\gamma_{n + 1}$ of the trace, and not far above.
+    #[test]
+    fn the_shift_is_above_radii_and_roundings_and_not_far_above() {
+        let cases = [1_usize, 3, 20].into_iter().flat_map(|size| {
+            [0.0, 0.25]
+                .into_iter()
+                .flat_map(move |radius| [false, true].map(|first| (size, radius, first)))
+        });
+        for (size, radius, first) in cases {
+            // Wider towards one corner: the first row or the last has the largest sum.
+            let last = size - 1;
+            let wide = |row: usize, column: usize| {
+                radius * (if first { 2 * last - row - column } else { row + column }) as f64
+            };
+            let entry = |row: usize, column: usize| {
+                let middle = if row == column { 1.0 + row as f64 } else { 0.5 };
+                Interval::between(middle - wide(row, column), middle + wide(row, column))
+            };
+            let rows: Vec<Vec<Interval>> =
+                (0..size).map(|row| (0..size).map(|column| entry(row, column)).collect()).collect();
+            let packed = Packed::of(&IntervalMatrix::from_rows(&rows).expect("square"));
+            let trace = (size * (size + 1) / 2) as f64;
+            let norm: f64 = (0..size).map(|at| wide(if first { 0 } else { last }, at)).sum();
+            let shift = packed.shift().expect("small");
+            let (n, u) = (size as f64, 0.5 * f64::EPSILON * (trace + norm));
+            assert!(shift >= norm + 2.0 * (n + 1.0) * u, "{size} {radius} {shift:e}");
+            assert!(shift <= norm + 10.0 * (n + 4.0) * u + 1e-200, "{size} {radius} {shift:e}");
+        }
+    }
+
+    #[test]
+    fn nothing_at_all_is_not_positive() {
+        for size in 1..4 {
+            let zeros = Packed::of(&IntervalMatrix::zeros(size, size));
+            assert!(zeros.prove_definite("matrix").is_err(), "{size}");
+        }
+    }
+
+    #[test]
+    fn matrices_beyond_what_the_bounds_hold_for_are_refused() {
+        let diagonal =
+            |value: f64, radius: f64| Packed { size: 1, middle: vec![value], radius: vec![radius] };
+        assert!(diagonal(0.9 * LARGEST, 0.0).prove_definite("matrix").is_ok());
+        for (value, radius) in [(LARGEST, 0.0), (2.0 * LARGEST, 0.0), (1.0, 2.0 * LARGEST)] {
+            assert_eq!(diagonal(value, radius).shift(), None, "{value} {radius}");
+        }
+        let identity = |size: usize| Packed::of(&IntervalMatrix::identity(size)).shift();
+        assert!(identity(MOST).is_some() && identity(MOST + 1).is_none());
+    }
+
+    #[test]
+    fn the_radius_of_a_sum_covers_its_roundings_and_the_radii_of_its_terms() {
+        let one = |middle: f64, radius: f64| Packed {
+            size: 1,
+            middle: vec![middle],
+            radius: vec![radius],
+        };
+        let u = 0.5 * f64::EPSILON;
+        for count in [1_usize, 10, 100, MOST] {
+            // Large terms that cancel leave as many roundings as others.
+            let terms = [one(1e3, 0.0), one(-1e3, 0.0)];
+            let sum = Packed::sum((0..count).map(|at| (0.7, &terms[at % 2])));
+            let (n, size) = (count as f64, 700.0 * count as f64);
+            assert!(sum.radius[0] >= (n + 5.0) * u * size, "{count} {:e}", sum.radius[0]);
+            assert!(sum.radius[0] <= 4.0 * (n + 9.0) * u * size, "{count} {:e}", sum.radius[0]);
+            // Radii add up whatever the signs are, and are rounded themselves.
+            let wide = [one(0.0, 0.5), one(0.0, 0.5)];
+            let sum = Packed::sum(
+                (0..count).map(|at| (if at % 2 == 0 { 0.7 } else { -0.7 }, &wide[at % 2])),
+            );
+            let radii = 0.35 * n;
+            assert!(sum.radius[0] >= radii * (1.0 + (n + 5.0) * u), "{count} {:e}", sum.radius[0]);
+            assert!(
+                sum.radius[0] <= radii * (1.0 + 6.0 * (n + 9.0) * u),
+                "{count} {:e}",
+                sum.radius[0]
+            );
+        }
+        // What underflows is there all the same.
+        let tiny = one(1e-200, 1e-200);
+        assert!(Packed::sum([(1e-200, &tiny)].into_iter()).radius[0] > 0.0);
+    }
+
+    #[test]
+    fn sums_that_are_too_long_or_too_large_have_no_bounds() {
+        let one = Packed { size: 1, middle: vec![1.0], radius: vec![0.0] };
+        let of = |count: usize| Packed::sum((0..count).map(|_| (1.0, &one))).radius[0];
+        assert!(of(MOST).is_finite() && of(MOST + 1).is_infinite());
+        let huge = Packed { middle: vec![f64::MAX], ..one };
+        assert!(Packed::sum([(1.0, &huge), (1.0, &huge)].into_iter()).radius[0].is_infinite());
+        assert!(Packed::sum([(1.0, &huge), (-1.0, &huge)].into_iter()).radius[0].is_infinite());
+    }
 }

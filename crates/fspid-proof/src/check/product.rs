@@ -214,10 +214,10 @@ fn spread(result: &mut IntervalMatrix, left: &IntervalMatrix, right: &IntervalMa
                 *sum += middle * by_radius + radius * by_largest;
             }
         }
+        // Finite, within the range that was asked for.
         let own = &mut result.radius[i * columns..(i + 1) * columns];
-        let middles = &mut result.middle[i * columns..(i + 1) * columns];
-        for ((radius, middle), sum) in own.iter_mut().zip(middles).zip(&sums) {
-            (*middle, *radius) = bounded(*middle, sum_up(*radius, sum * upward));
+        for (radius, sum) in own.iter_mut().zip(&sums) {
+            *radius = sum_up(*radius, sum * upward);
         }
     }
 }
@@ -300,6 +300,10 @@ mod tests {
             let corner = square.get(0, 0).expect("exists");
             assert!(corner.upper() > 0.0 && corner.upper() >= size * size);
         }
+        let (fair, far) = (point(&[[3.0, 0.1], [0.7, 0.1]]), point(&[[1e200, 1.0], [1e-200, 0.1]]));
+        for (left, right) in [(&fair, &far), (&far, &fair)] {
+            assert_eq!(product(left, right), entry_by_entry(left, right));
+        }
         let mut narrow = point(&[[1.0, 0.1], [0.0, 0.1]]);
         narrow.radius[0] = 1e-200;
         assert_eq!(product(&narrow, &narrow), entry_by_entry(&narrow, &narrow));
@@ -310,6 +314,40 @@ mod tests {
         for (found, expected) in square.entries().zip(plain.entries()) {
             assert!(found.intersection(expected).is_some() && found.radius() < 1e-14);
         }
+    }
+
+    #[test]
+    fn what_is_far_below_one_beside_the_identity_keeps_its_square_in_the_radius() {
+        // 2 F + F² is above 2 F, by less than any float is.
+        let matrix = point(&[[1e-300, 0.1], [0.0, 0.1]]);
+        let entry = square_beyond_identity(&matrix).get(0, 0).expect("exists");
+        assert!(entry.lower() <= 2e-300 && entry.upper() > 2e-300, "{entry:?}");
+    }
+
+    #[test]
+    fn the_share_of_the_products_that_rounding_may_take_is_twice_the_bound() {
+        let u = exact_power(-53);
+        for (terms, root) in [(0, 2.0), (1, 3.0), (3, 5.0), (98, 100.0)] {
+            assert_eq!(rounding_share(terms).to_bits(), (2.0 * root * root * u * u).to_bits());
+        }
+    }
+
+    #[test]
+    fn sums_of_very_many_radii_do_not_fall_short() {
+        // Of 1 and 99 999 times nine tenths of half its last digit, which plain sums lose.
+        let count = 100_000;
+        let small = 0.9 * exact_power(-53);
+        let left = IntervalMatrix {
+            rows: 1,
+            columns: count,
+            middle: vec![1.0; count],
+            radius: vec![0.0; count],
+        };
+        let mut right = IntervalMatrix::zeros(count, 1);
+        right.radius.fill(small);
+        right.radius[0] = 1.0;
+        let radius = product(&left, &right).radius[0];
+        assert!(radius >= 1.0 + (count - 1) as f64 * small && radius < 1.0 + 1e-9, "{radius:e}");
     }
 
     #[test]
