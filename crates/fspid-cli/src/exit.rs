@@ -117,6 +117,11 @@ impl Failure {
         Self { problems, ..Self::input(error) }
     }
 
+    /// Input of which every problem is known.
+    pub(crate) fn of_problems(message: impl Display, problems: Value) -> Self {
+        Self { problems: Some(problems), ..Self::input(message) }
+    }
+
     /// Output that cannot be written.
     pub(crate) fn output(message: impl Display) -> Self {
         Self::new(Self::OUTPUT, message)

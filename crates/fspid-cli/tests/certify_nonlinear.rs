@@ -136,3 +136,79 @@ fn what_is_no_nonlinear_aircraft_of_derivatives_is_refused_by_name() {
     refused("aircraft.model=linear", "a linear plant");
     refused("actuator.bias_deg=0.5", "the actuator has a bias");
 }
+
+const CASES: &str = r#"
+[[tuning.objective]]
+measure = "iae_deg_s"
+
+[[tuning.case]]
+name = "up"
+set = ["setpoint.amplitude_deg=2"]
+
+[[tuning.case]]
+name = "down"
+set = ["setpoint.amplitude_deg=-2"]
+
+[[tuning.case]]
+name = "faster"
+set = ["aircraft.airspeed_ft_s=190"]
+"#;
+
+/// The scenario with cases, each certified with the nonlinear aircraft, so written.
+fn in_cases(folder: &tempfile::TempDir, more: &[&str]) -> std::process::Output {
+    let scenario = format!("{SCENARIO}{CASES}");
+    std::fs::write(folder.path().join("pitch.toml"), scenario).expect("written");
+    let words = ["certify", "pitch.toml", "--cases", "tuning", "--nonlinear", "--out", "proofs"];
+    fspid(&[&words, more].concat(), folder.path())
+}
+
+#[test]
+fn the_nonlinear_aircraft_of_every_case_is_proved_about_its_own_trim_and_told_of_all_together() {
+    let folder = folder();
+    let output = in_cases(&folder, &["--format", "json"]);
+    assert_eq!(code(&output), 0, "{}", text(&output.stderr));
+    let answer = json(&output);
+    let all = &answer["in_every_case"][0]["nonlinear"];
+    let each: Vec<_> =
+        (0..3).map(|at| &answer["cases"][at]["controllers"][0]["nonlinear"]).collect();
+    assert_eq!(each[0], each[1]);
+    assert_ne!(each[0]["box"], each[2]["box"]);
+    let number = |of: &serde_json::Value, keys: &str| of.pointer(keys).and_then(|it| it.as_f64());
+    let of_each =
+        |keys: &str| each.iter().map(|it| number(it, keys).expect("a number")).collect::<Vec<_>>();
+    let least = of_each("/begins_within_deg").into_iter().fold(f64::INFINITY, f64::min);
+    assert_eq!(number(all, "/begins_within_deg"), Some(least));
+    for side in ["pitch_deg", "airspeed_m_s", "command_deg"] {
+        let keys = format!("/box/{side}");
+        let largest = of_each(&keys).into_iter().fold(0.0, f64::max);
+        assert_eq!(number(all, &keys), Some(largest), "{side}");
+    }
+    let words = all["in_words"].as_str().expect("a sentence");
+    assert!(words.contains("in every case about its own trim"), "{words}");
+
+    let against = |certificate: &str, set: &[&str]| {
+        let words = ["certify", "--check", certificate, "--against", "pitch.toml"];
+        fspid(&[&words, set].concat(), folder.path())
+    };
+    let faster = "proofs/faster/pid.certificate.json";
+    let same = against(faster, &["--set", "aircraft.airspeed_ft_s=190"]);
+    let said = text(&same.stdout);
+    assert_eq!(code(&same), 0, "{said}");
+    assert!(said.contains("a flight that begins in the certified ellipsoid"), "{said}");
+    // As the scenario stands another trim flies.
+    let other = against(faster, &[]);
+    assert_eq!(code(&other), 1);
+    assert!(text(&other.stdout).contains("nonlinear.aircraft.airspeed_m_s"));
+}
+
+#[test]
+fn a_case_without_a_nonlinear_aircraft_is_named_with_the_reason_and_nothing_is_said_of_all() {
+    let folder = folder();
+    let output = in_cases(&folder, &["--set", "aircraft.model=linear"]);
+    let said = text(&output.stdout);
+    assert_eq!(code(&output), 1, "{said}");
+    let reason = "nonlinear aircraft OPEN: what flies is a linear plant";
+    assert_eq!(said.matches(reason).count(), 3, "{said}");
+    assert!(said.contains("PID: NOT PROVED at 3 of 3 cases of [tuning]"), "{said}");
+    assert!(said.contains("OPEN: the nonlinear aircraft is not proved in every case"), "{said}");
+}

@@ -438,4 +438,9 @@ fn check_tells_of_every_case_that_makes_no_scenario() {
     assert!(told.contains("case \"backwards\""), "{told}");
     // The same mistake once.
     assert!(!told.contains("misspelt as well"), "{told}");
+    let asked = ["check", "wrong.toml", "--format", "json"];
+    let error = crate::common::json(&crate::common::fspid(&asked, folder));
+    let problems = error["error"]["problems"]["problems"].as_array().expect("a list").clone();
+    let cases: Vec<_> = problems.iter().map(|it| &it["case"]).collect();
+    assert_eq!(cases, ["misspelt", "backwards"]);
 }

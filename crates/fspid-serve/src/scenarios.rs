@@ -9,9 +9,11 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use axum::http::StatusCode;
-use fspid_scenario::file;
+use fspid_diagnostics::{Problem, Problems};
+use fspid_scenario::file::{self, Study};
 use fspid_scenario::fuzzy_system::is_scenario;
 use fspid_study::output;
+use fspid_tune::Written;
 use serde_json::{Value, json};
 use sha2::{Digest as _, Sha256};
 
@@ -24,6 +26,8 @@ const MOST_DEEP: usize = 8;
 const MOST_ENTRIES: usize = 20_000;
 /// Scenarios that are shown.
 const MOST_SCENARIOS: usize = 1000;
+/// Cases of a text that are read when it is saved. Each is the whole text once more, and a text may be of thousands.
+const MOST_CASES: usize = 512;
 /// Folders in which nobody writes scenarios, beside those whose names begin with a dot.
 const OTHERS: [&str; 2] = ["target", "node_modules"];
 
@@ -113,7 +117,7 @@ impl Shelf {
     /// Saves a scenario, unless its file is another than the one that the person has seen. A text with problems is saved
     /// too, for somebody works on it; they are told.
     pub(crate) fn save(&self, id: &str, text: &str, seen: &str) -> Result<Value, Refusal> {
-        let _saving = self.saving.lock().unwrap_or_else(PoisonError::into_inner);
+        let saving = self.saving.lock().unwrap_or_else(PoisonError::into_inner);
         let now = self.read(id)?;
         if now.digest != seen {
             let sentence = format!("{} has changed since it was read", now.name);
@@ -126,6 +130,8 @@ impl Shelf {
             let sentence = format!("{}: {reason}; the file is as it was", found.name);
             Refusal::new(StatusCode::INSUFFICIENT_STORAGE, sentence)
         })?;
+        // A contest of a hundred cases is read a hundred times: nobody else waits for that.
+        drop(saving);
         let told = json!({ "digest": digest(text.as_bytes()), "problems": problems(&found, text) });
         Ok(told)
     }
@@ -215,8 +221,27 @@ pub(crate) fn digest(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// What is wrong with the text of a scenario, as the program tells it in JSON; none where nothing is.
+/// What is wrong with the text of a scenario, and with what its dispersions and cases make of it, as `fspid check` tells it
+/// in JSON; none where nothing is.
 fn problems(found: &Found, text: &str) -> Value {
-    let read = file::parse(text, &found.name, found.path.parent(), &[]);
-    read.err().map_or(Value::Null, |problems| problems.to_json())
+    let (name, folder) = (found.name.as_str(), found.path.parent());
+    let written = Written { text, name, folder, overrides: &[] };
+    let template = match written.template() {
+        Ok(template) => template,
+        Err(problems) => return problems.to_json(),
+    };
+    match cases(template.study()) {
+        count if count > MOST_CASES => {
+            let allowed = format!("up to {MOST_CASES} are read here; `fspid check` reads all");
+            let problem = Problem::whole(format!("{count} cases"), allowed);
+            Problems::new(name, vec![problem], 0).to_json()
+        }
+        _ => written.check_beyond(&template).err().map_or(Value::Null, |wrong| wrong.to_json()),
+    }
+}
+
+/// How many cases a scenario is tuned on and judged by.
+fn cases(study: &Study) -> usize {
+    let tuned = study.tuning.as_ref().map_or(0, |it| it.cases.len());
+    tuned + study.contest.as_ref().map_or(0, |it| it.cases.len())
 }

@@ -184,6 +184,47 @@ fn a_contest_and_a_proof_tell_their_answers() {
 }
 
 #[test]
+fn a_proof_answers_what_is_asked_beside_stability_and_its_certificates_hold_alone() {
+    let served = Served::new();
+    std::fs::write(served.path("mine.toml"), include_str!("data/navion.toml")).expect("written");
+    let asked = |options: Value| {
+        let events = served.followed(&served.begin("certify", options));
+        assert_eq!(ended(&events).0, "done", "{events:?}");
+        let progress =
+            events.iter().rfind(|(_, name, _)| name == "progress").map(|it| it.2.clone());
+        (ended(&events).1.clone(), progress.expect("progress"))
+    };
+    let (found, progress) = asked(json!({ "nonlinear": true }));
+    assert_eq!((&progress["done"], &progress["total"]), (&json!(1), &json!(2)));
+    let told = progress["text"].as_str().expect("a text");
+    assert!(told.ends_with("certifying the nonlinear aircraft with PID"), "{told}");
+    let controller = &found["json"]["controllers"][0];
+    assert_eq!(controller["nonlinear"]["verdict"], "proved", "{controller:#}");
+    let certificate = found["certificates"][0]["text"].as_str().expect("a certificate");
+    let checked = fspid_study::certify::check_text(certificate).expect("a certificate");
+    assert!(checked.holds());
+    assert_eq!(checked.json()["nonlinear"]["verdict"], "proved");
+    let (found, _) = asked(json!({ "disturbances": true }));
+    let controller = &found["json"]["controllers"][0];
+    let bounds = controller["scope"]["disturbances"].as_array().map_or(0, Vec::len);
+    assert!(bounds > 0, "{controller:#}");
+    let (alone, progress) = asked(json!({}));
+    assert_eq!(progress["total"], 1);
+    let controller = &alone["json"]["controllers"][0];
+    assert!(controller["nonlinear"].is_null(), "{controller:#}");
+    assert!(controller["scope"]["disturbances"].is_null(), "{controller:#}");
+}
+
+#[test]
+fn a_question_that_there_is_not_is_refused_with_those_that_there_are() {
+    let served = Served::new();
+    let asked =
+        json!({ "kind": "certify", "id": served.id("mine.toml"), "options": { "nonlinar": true } });
+    let told = served.ask("POST", "/api/jobs", Some(asked)).error(400);
+    assert!(told.contains("`nonlinear`"), "{told}");
+}
+
+#[test]
 fn a_stream_that_is_taken_up_again_goes_on_behind_the_last_event() {
     let served = Served::new();
     let job = served.begin("tune", endless());

@@ -55,6 +55,32 @@ fn what_is_saved_is_what_is_read_and_tells_its_problems() {
 }
 
 #[test]
+fn what_cases_and_dispersions_make_wrong_is_told_as_check_tells_it() {
+    let served = Served::new();
+    let path = format!("/api/scenarios/{}", served.id("mine.toml"));
+    let saved = |text: &str| {
+        let digest = served.json(&path)["digest"].clone();
+        let body = json!({ "text": text, "digest": digest });
+        served.ask("PUT", &path, Some(body)).json(200)["problems"].clone()
+    };
+    let wrong = SCENARIO.replace("setpoint.amplitude_deg=2", "setpoint.amplitude_dg=2");
+    let told = saved(&wrong);
+    let problem = &told["problems"][0];
+    assert_eq!(
+        (&problem["case"], &problem["path"]),
+        (&json!("larger"), &json!("setpoint.amplitude_dg"))
+    );
+    assert_eq!(told["problems"].as_array().map(Vec::len), Some(1), "{told:#}");
+    let told = saved(&SCENARIO.replace("\"setpoint.amplitude_deg\"", "\"setpoint.amplitud_deg\""));
+    let told = told.to_string();
+    assert!(told.contains("setpoint.amplitud_deg") && !told.contains("\"case\""), "{told}");
+    let case = |at: usize| format!("\n[[tuning.case]]\nname = \"{at}\"\nset = []\n");
+    let many: String = (0..600).map(case).collect();
+    let told = saved(&SCENARIO.replace("\n[contest]", &(many + "\n[contest]")));
+    assert!(told.to_string().contains("up to 512 are read here"), "{told}");
+}
+
+#[test]
 fn a_file_that_changed_meanwhile_is_not_written_over() {
     let served = Served::new();
     let path = format!("/api/scenarios/{}", served.id("mine.toml"));

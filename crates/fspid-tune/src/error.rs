@@ -10,6 +10,26 @@ use fspid_scenario::file::{LoadError, Problems};
 use fspid_study::output::OutputError;
 use thiserror::Error;
 
+/// A case of a tuning or a contest that makes the scenario wrong.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("case \"{case}\" makes the scenario wrong:\n{problems}")]
+pub struct WrongCase {
+    /// Name of the case.
+    pub case: String,
+    /// What is wrong then.
+    pub problems: LoadError,
+}
+
+impl WrongCase {
+    /// Its name and what is wrong, where the scenario could be read at all.
+    pub(crate) fn problems(&self) -> Option<(&str, &Problems)> {
+        match &self.problems {
+            LoadError::Problems(problems) => Some((&self.case, problems)),
+            LoadError::Unreadable { .. } => None,
+        }
+    }
+}
+
 /// Why a tuning or a contest could not begin or go on.
 #[derive(Debug, Error)]
 #[non_exhaustive]
@@ -21,13 +41,8 @@ pub enum TuneError {
     #[error("{0}")]
     Unreadable(#[from] LoadError),
     /// A case makes the scenario wrong.
-    #[error("case \"{case}\" makes the scenario wrong:\n{problems}")]
-    Case {
-        /// Name of the case.
-        case: String,
-        /// What is wrong then.
-        problems: Box<LoadError>,
-    },
+    #[error("{0}")]
+    Case(Box<WrongCase>),
     /// The scenario says nothing of tuning.
     #[error(
         "{path}: it does not say what a good flight is\n    add it, for instance:\n\n        [[tuning.objective]]\n        measure = \"iae_deg_s\"\n\n        [[tuning.objective]]\n        measure = \"elevator_travel_deg\"\n        weight = 0.1\n"

@@ -36,9 +36,10 @@ mod slopes;
 mod source;
 mod space;
 mod tuned;
+mod written;
 
 pub use crew::{Crew, Engine, Order, Worker};
-pub use error::TuneError;
+pub use error::{TuneError, WrongCase};
 pub use fspid_optimise::Stop;
 pub use kept::{Beginning, Kept, Then, Unfit};
 pub use problem::{TuningProblem, controllers_with_marks};
@@ -48,3 +49,4 @@ pub use slopes::Counted;
 pub use source::Source;
 pub use space::Space;
 pub use tuned::{Number, Tuned};
+pub use written::{NotRight, Written};

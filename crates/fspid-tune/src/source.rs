@@ -1,12 +1,11 @@
 //! Where a scenario comes from.
 
-use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use fspid_scenario::file::{Study, Template};
 use fspid_scenario::tuning::Case;
 
-use crate::error::TuneError;
+use crate::error::{TuneError, WrongCase};
 
 /// A scenario file with changes from outside.
 #[derive(Clone, Debug)]
@@ -42,32 +41,19 @@ impl Source {
         Ok(files)
     }
 
-    /// What is wrong with the scenario as the cases of its tuning and its contest make it, in their order; of cases that are
-    /// wrong in the same way the first.
-    #[must_use]
-    pub fn wrong_cases(&self, study: &Study) -> Vec<TuneError> {
-        let mut known = BTreeSet::new();
-        let mut is_new = |error: &TuneError| match error {
-            TuneError::Case { problems, .. } => known.insert(problems.to_string()),
-            _ => true,
-        };
-        let wrong = cases(study).filter_map(|case| self.case(case).err());
-        wrong.filter(|error| is_new(error)).collect()
-    }
-
     /// Reads the scenario with the changes of a case.
     pub(crate) fn case(&self, case: &Case) -> Result<Template, TuneError> {
         let mut overrides = self.overrides.clone();
         overrides.extend(case.set.iter().cloned());
-        Template::load(&self.path, &overrides).map_err(|problems| TuneError::Case {
-            case: case.name.clone(),
-            problems: Box::new(problems),
+        Template::load(&self.path, &overrides).map_err(|problems| {
+            let case = case.name.clone();
+            TuneError::Case(Box::new(WrongCase { case, problems }))
         })
     }
 }
 
 /// Cases that a scenario is tuned on, and those that it is judged by.
-fn cases(study: &Study) -> impl Iterator<Item = &Case> {
+pub(crate) fn cases(study: &Study) -> impl Iterator<Item = &Case> {
     let tuned = study.tuning.iter().flat_map(|tuning| &tuning.cases);
     tuned.chain(study.contest.iter().flat_map(|contest| &contest.cases))
 }

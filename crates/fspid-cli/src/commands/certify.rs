@@ -11,7 +11,6 @@ use super::{Format, json_text};
 use crate::argument::{Folder, InFile};
 use crate::exit::{Failure, note, print};
 use fspid_scenario::file::{self, Study, Template};
-use fspid_sim::SimError;
 use fspid_study::certify::{
     self, Answer, Cases, Certification, CertifiedCases, Change, CheckedFile, Effort, Question,
 };
@@ -59,8 +58,9 @@ pub(crate) struct Arguments {
     /// `--cases`. It takes a minute or two for each case.
     #[arg(long, requires = "cases")]
     steps: bool,
-    /// Certify as well the nonlinear aircraft in a box around its trim, which the search makes as large as it can.
-    #[arg(long, conflicts_with_all = ["check", "cases"])]
+    /// Certify as well the nonlinear aircraft in a box around its trim, which the search makes as large as it can; with
+    /// `--cases` in each case, and in all of them together.
+    #[arg(long, conflicts_with = "check")]
     nonlinear: bool,
     /// Write the certificates into this folder.
     #[arg(long, value_name = "DIR")]
@@ -117,7 +117,10 @@ fn prove(path: &Path, arguments: &Arguments) -> Result<(), Failure> {
     if let Some(table) = arguments.cases {
         return prove_cases(path, &template, table.into(), arguments);
     }
-    let certification = watched(&template, (only, arguments), telling);
+    let effort = Effort::default();
+    let certification = certifying(telling, |tell| {
+        Certification::answering(&template, question(arguments, &effort), tell)
+    });
     // The answer begins on an empty line.
     if telling == Telling::Line {
         tell(telling, "");
@@ -170,10 +173,8 @@ fn prove_cases(
     let telling = Telling::for_standard_error();
     for change in cases.changes().to_vec() {
         let changed = changed(path, &change, arguments)?;
-        let only = arguments.controller.as_deref();
-        let Arguments { disturbances, family, steps, .. } = *arguments;
-        let effort = Effort { long_flights: steps, ..Effort::default() };
-        let question = Question { only, disturbances, family, effort: &effort };
+        let effort = Effort { long_flights: arguments.steps, ..Effort::default() };
+        let question = question(arguments, &effort);
         let added = certifying(telling, |tell| {
             let mut tell = |name: &str| tell(&format!("{name} at {}", change.name));
             cases.add(&change, &changed, question, &mut tell)
@@ -200,30 +201,11 @@ fn changed(path: &Path, change: &Change, arguments: &Arguments) -> Result<Templa
         .map_err(|problems| Failure::input(format_args!("{}: {problems}", change.name)))
 }
 
-/// Certifies, and tells whom and for how long.
-fn watched(
-    template: &Template,
-    (only, arguments): (Option<&str>, &Arguments),
-    telling: Telling,
-) -> Result<Certification, SimError> {
-    certifying(telling, |tell| {
-        let effort = Effort::default();
-        let mut certification = Certification::watched(template.study(), only, &effort, tell)?;
-        if arguments.disturbances {
-            let mut told = |name: &str| tell(&format!("what disturbances do to {name}"));
-            certification =
-                certification.with_disturbances(template.study(), &effort, &mut told)?;
-        }
-        if arguments.family {
-            let mut told = |name: &str| tell(&format!("all that can be drawn of {name}"));
-            certification = certification.with_families(template, &effort, &mut told)?;
-        }
-        if arguments.nonlinear {
-            let mut told = |name: &str| tell(&format!("the nonlinear aircraft with {name}"));
-            certification = certification.with_nonlinear(template.study(), &effort, &mut told);
-        }
-        Ok(certification)
-    })
+/// What is asked of the scenario, or of each of its cases.
+fn question<'a>(arguments: &'a Arguments, effort: &'a Effort) -> Question<'a> {
+    let only = arguments.controller.as_deref();
+    let Arguments { disturbances, family, nonlinear, .. } = *arguments;
+    Question { only, disturbances, family, nonlinear, effort }
 }
 
 /// Does some work, and tells meanwhile whom it is about and for how long.

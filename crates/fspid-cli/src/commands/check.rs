@@ -9,14 +9,11 @@ use super::Format;
 use crate::argument::InFile;
 use crate::exit::{Failure, note};
 use fspid_diagnostics::digits::counted;
-use fspid_scenario::file::{self, Study, Template};
+use fspid_scenario::file::{self, LoadError, Template};
 use fspid_scenario::fuzzy_system;
 use fspid_study::certify::CheckedFile;
 use fspid_study::json::with_null_reasons;
-use fspid_tune::Source;
-
-/// Of cases that are wrong, each in its own way, so many are told.
-const MOST_CASES: usize = 10;
+use fspid_tune::Written;
 
 /// Check a scenario or a fuzzy system and tell every problem in it.
 ///
@@ -50,15 +47,20 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.overrides.is_empty() && fuzzy_system::is_system(&arguments.file) {
         return system(&arguments.file, arguments.format);
     }
-    let template = Template::load(&arguments.file, &arguments.overrides).map_err(Failure::load)?;
+    let text = file::read_text(&arguments.file).map_err(Failure::load)?;
+    let written = Written {
+        text: &text,
+        name: &arguments.file.display().to_string(),
+        folder: Some(arguments.file.parent().unwrap_or(Path::new(""))),
+        overrides: &arguments.overrides,
+    };
+    let template = written.template().map_err(|it| Failure::load(LoadError::Problems(it)))?;
     let study = template.study();
     for warning in &study.warnings {
         note(format_args!("warning: {warning}"));
     }
-    if !study.dispersions.is_empty() {
-        template.check_dispersions().map_err(Failure::input)?;
-    }
-    check_cases(study, arguments)?;
+    let beyond = written.check_beyond(&template);
+    beyond.map_err(|wrong| Failure::of_problems(&wrong, wrong.to_json()))?;
     for gains in &study.derived_gains {
         note(format_args!("gains of {gains}"));
     }
@@ -91,20 +93,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     arguments.format.print(text, json)?;
     certificate.map_or(Ok(()), |(path, checked)| judge(&path, &checked, arguments))
-}
-
-/// The cases that a scenario is tuned on and judged by: each has to be a scenario.
-fn check_cases(study: &Study, arguments: &Arguments) -> Result<(), Failure> {
-    let (path, overrides) = (arguments.file.to_path_buf(), arguments.overrides.clone());
-    let wrong = Source { path, overrides }.wrong_cases(study);
-    if wrong.is_empty() {
-        return Ok(());
-    }
-    let mut told: Vec<String> = wrong.iter().take(MOST_CASES).map(ToString::to_string).collect();
-    if wrong.len() > MOST_CASES {
-        told.push(format!("and {} more", counted(wrong.len() - MOST_CASES, "wrong case")));
-    }
-    Err(Failure::input(told.join("\n")))
 }
 
 /// The certificate beside a scenario, verified and compared with what flies, if there is one.

@@ -2,7 +2,8 @@
 
 use std::cell::RefCell;
 
-use fspid_study::certify::{self, Certification, Effort};
+use fspid_scenario::file::Template;
+use fspid_study::certify::{self, Certification, Effort, Question};
 use serde_json::{Value, json};
 
 use super::task::{Ended, Stopping, Task};
@@ -24,46 +25,71 @@ fn stops() -> bool {
 pub(super) struct Certify {
     pub(super) overrides: Vec<String>,
     controller: Option<String>,
+    disturbances: bool,
+    family: bool,
+    nonlinear: bool,
 }
 
 impl Certify {
     pub(super) fn read(options: &mut Fields) -> Result<Self, Refusal> {
-        Ok(Self { overrides: options.texts("set")?, controller: options.text("controller")? })
+        Ok(Self {
+            overrides: options.texts("set")?,
+            controller: options.text("controller")?,
+            disturbances: options.flag("disturbances")?,
+            family: options.flag("family")?,
+            nonlinear: options.flag("nonlinear")?,
+        })
     }
 
     pub(super) fn work(&self, task: &Task<'_>) -> Result<Value, Ended> {
-        let (study, only) = (&task.study, self.controller.as_deref());
-        let names: Vec<&str> =
-            study.scenario.controllers.iter().map(|named| named.name.as_str()).collect();
-        if let Some(name) = only.filter(|name| !names.contains(name)) {
-            let known = fspid_diagnostics::known_words(name, &names);
-            return Err(Ended::failed(format_args!("there is no controller `{name}`{known}")));
-        }
-        let asked = only.map_or(names, |name| vec![name]);
-        let total = asked.len() as u64;
+        let template = &task.template;
+        let effort = Effort { stops, ..Effort::default() };
+        let question = self.question(&effort);
+        let asked = self.asked(template)?;
+        let total = (asked.len() * question.parts()) as u64;
         task.tell("begun", &json!({ "controllers": asked }));
         let mut done = 0;
-        let mut tell = |name: &str| {
-            task.progress(done, total, &format!("controllers; certifying {name}"));
+        let mut tell = |what: &str| {
+            // A controller whose plant changes is asked some things more than once.
+            task.progress(done.min(total), total, &format!("answers; certifying {what}"));
             done += 1;
         };
         STOPPING.replace(Some(task.stopping.clone()));
-        let effort = Effort { stops, ..Effort::default() };
-        let certification = Certification::watched(study, only, &effort, &mut tell);
+        let certification = Certification::answering(template, question, &mut tell);
         STOPPING.replace(None);
         let certification = certification.map_err(Ended::failed)?;
         if task.is_stopped() {
             return Err(Ended::Cancelled);
         }
-        let files: Vec<Value> = certification
-            .results
-            .iter()
-            .filter_map(|certified| {
-                let text = certify::to_text(certified.certificate()?, &certified.origin);
-                Some(json!({ "name": certification.file_name(certified), "text": text }))
-            })
-            .collect();
         let (text, json) = (certification.text(), certification.json());
-        Ok(json!({ "text": text, "json": json, "certificates": files }))
+        Ok(json!({ "text": text, "json": json, "certificates": certificates(&certification) }))
     }
+
+    fn question<'a>(&'a self, effort: &'a Effort) -> Question<'a> {
+        let Self { disturbances, family, nonlinear, .. } = *self;
+        Question { only: self.controller.as_deref(), disturbances, family, nonlinear, effort }
+    }
+
+    /// Names of the controllers that are certified.
+    fn asked<'a>(&'a self, template: &'a Template) -> Result<Vec<&'a str>, Ended> {
+        let controllers = &template.study().scenario.controllers;
+        let names: Vec<&str> = controllers.iter().map(|named| named.name.as_str()).collect();
+        match self.controller.as_deref() {
+            None => Ok(names),
+            Some(name) if names.contains(&name) => Ok(vec![name]),
+            Some(name) => {
+                let known = fspid_diagnostics::known_words(name, &names);
+                Err(Ended::failed(format_args!("there is no controller `{name}`{known}")))
+            }
+        }
+    }
+}
+
+/// Every certificate with the name of its file.
+fn certificates(certification: &Certification) -> Vec<Value> {
+    let files = certification.results.iter().filter_map(|certified| {
+        let text = certify::to_text(certified.certificate()?, &certified.origin);
+        Some(json!({ "name": certification.file_name(certified), "text": text }))
+    });
+    files.collect()
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use fspid_campaign::CampaignError;
-use fspid_scenario::file::{self, LoadError, Study};
+use fspid_scenario::file::{self, LoadError, Template};
 use fspid_study::output::{self, OutputError};
 use fspid_tune::{Source, TuneError};
 use serde_json::{Value, json};
@@ -116,7 +116,7 @@ pub(super) struct Task<'a> {
     pub(super) job: &'a Job,
     /// The scenario with its changes.
     pub(super) source: Source,
-    pub(super) study: Study,
+    pub(super) template: Template,
     /// Where it keeps what it writes: the same for the same work on the same scenario, so that it goes on there.
     pub(super) folder: PathBuf,
     pub(super) stopping: Stopping,
@@ -133,8 +133,9 @@ impl<'a> Task<'a> {
     ) -> Result<Self, Ended> {
         let seen = text_digest(&path)?;
         let source = Source { path, overrides: asked.work.overrides().to_vec() };
-        let study = file::load(&source.path, &source.overrides)?;
-        memory::check(&asked.work, &study, bounds.bytes)?;
+        let template = Template::load(&source.path, &source.overrides)?;
+        let study = template.study();
+        memory::check(&asked.work, study, bounds.bytes)?;
         let all = format!("{:?} {}", asked.work, study.digest);
         let mut name = digest(all.as_bytes());
         name.truncate(16);
@@ -143,7 +144,7 @@ impl<'a> Task<'a> {
         job.keeps_in(&folder);
         study.warnings.iter().for_each(|warning| job.tell("warning", &json!({ "text": warning })));
         let stopping = Stopping { job: Arc::clone(job), begun: Instant::now(), bounds };
-        Ok(Self { job, source, study, folder, stopping, seen })
+        Ok(Self { job, source, template, folder, stopping, seen })
     }
 
     pub(super) fn work(&self, work: &Work) -> Result<Value, Ended> {

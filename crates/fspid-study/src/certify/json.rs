@@ -22,7 +22,7 @@ const NO_STEPS: &str = "no step from rest is proved with limits acting; of gains
 const NO_FLIGHTS: &str = "the flights that the scenario commands are not proved with limits acting; in cases they are asked for with --steps alone";
 
 /// Why keys of these answers are null.
-const NULLS: [(&str, &str); 21] = [
+pub(super) const NULLS: [(&str, &str); 21] = [
     ("decay_per_sample", "the claim is one of growth, or no rate is proved"),
     (
         "law_keeps_to_the_rate",
@@ -157,7 +157,7 @@ impl CheckedFile {
                 Err(doubt) => json!({ "reason": doubt.to_string() }),
             },
             present(json!({
-                "nonlinear": self.nonlinear().map(|(claim, it)| nonlinear::proved_in_json(claim, &it)),
+                "nonlinear": self.nonlinear().map(|(claim, it)| nonlinear::proved_in_json(&claim.reach, &it)),
                 "against": self.against.as_ref().map(comparison),
             })),
         ]);

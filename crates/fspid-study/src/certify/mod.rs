@@ -28,6 +28,7 @@ mod loop_file;
 mod no_certificate;
 mod nonlinear;
 mod nonlinear_file;
+mod question;
 mod scope;
 mod shape;
 mod steps_file;
@@ -48,7 +49,7 @@ use fspid_scenario::file::{Study, Template};
 pub use fspid_proof::Effort;
 
 pub use around::Around;
-pub use cases::{Cases, CertifiedCase, CertifiedCases, Change, MOST_CASES, NoCases, Question};
+pub use cases::{Cases, CertifiedCase, CertifiedCases, Change, MOST_CASES, NoCases};
 pub use checked::{Answer, CheckedFile, check_text};
 pub use comparison::{Comparison, Difference};
 pub use coverage::{COVERAGE, KeyCoverage, Treatment, coverage_table};
@@ -57,6 +58,7 @@ pub use family::{FamilyAnswer, NoFamily};
 pub use file::{Origin, SCHEMA, Seal, from_text, to_text};
 pub use no_certificate::NoCertificate;
 pub use nonlinear::{NoNonlinear, NonlinearAnswer};
+pub use question::Question;
 pub use scope::in_short as scope_in_short;
 pub use shape::Wrong;
 
@@ -193,21 +195,8 @@ impl Certification {
     }
 
     /// Certifies all that the dispersions of the scenario can draw, with each of its loops that is proved; `template` is the
-    /// scenario that was certified. Tells the name of each controller before.
-    ///
-    /// # Errors
-    /// [`SimError`] where a plant has no linear model; where the effort was stopped, the loop has no answer.
-    pub fn with_families(
-        self,
-        template: &Template,
-        effort: &Effort,
-        tell: &mut dyn FnMut(&str),
-    ) -> Result<Self, SimError> {
-        self.with_families_of(template, effort, family::Chosen::AsABox, tell)
-    }
-
-    /// As [`with_families`](Self::with_families), with what becomes of choices.
-    fn with_families_of(
+    /// scenario that was certified, `chosen` what becomes of choices. Tells the name of each controller before.
+    fn with_families(
         mut self,
         template: &Template,
         effort: &Effort,
@@ -274,9 +263,9 @@ impl Certification {
 
     /// Certifies the nonlinear aircraft near its trim, with each of the loops that is proved. Tells the name of each
     /// controller before; where the effort was stopped, the loop has no answer.
-    #[must_use]
-    pub fn with_nonlinear(
+    fn with_nonlinear(
         mut self,
+        prove: &mut nonlinear::Prove,
         study: &Study,
         effort: &Effort,
         tell: &mut dyn FnMut(&str),
@@ -284,7 +273,7 @@ impl Certification {
         for certified in &mut self.results {
             let Ok(outcome) = &mut certified.outcome else { continue };
             tell(&certified.controller);
-            match nonlinear::certified(study, outcome, effort) {
+            match nonlinear::certified(study, outcome, prove, effort) {
                 Ok(answer) => certified.nonlinear = Some(answer),
                 Err(stopped) => certified.outcome = Err(stopped),
             }

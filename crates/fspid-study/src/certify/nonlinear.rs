@@ -62,6 +62,19 @@ impl NonlinearAnswer {
         matches!(self, Self::Verdict(verdict, _) if matches!(**verdict, NonlinearVerdict::Proved(..)))
     }
 
+    /// The answer in a line, with what is proved but not of what nothing is said.
+    pub(super) fn in_short(&self) -> String {
+        match self {
+            Self::Verdict(verdict, certificate) => match &**verdict {
+                NonlinearVerdict::Proved(claim, checked) => {
+                    format!("PROVED: {}", in_short(certificate, claim, checked))
+                }
+                NonlinearVerdict::Open(_) => self.text(),
+            },
+            Self::None(_) | Self::LinearNotProved => self.text(),
+        }
+    }
+
     /// The answer in capitals, and why.
     pub(super) fn text(&self) -> String {
         match self {
@@ -109,6 +122,29 @@ fn heights(claim: &Claim) -> &'static [f64] {
     &HEIGHTS_M[at..]
 }
 
+/// Who proves, and knows what was asked before: cases that differ in what is commanded alone have one aircraft.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Prove {
+    known: Vec<(Certificate, MotionNumbers, NonlinearVerdict)>,
+}
+
+impl Prove {
+    fn of(
+        &mut self,
+        certificate: &Certificate,
+        aircraft: &MotionNumbers,
+        effort: &Effort,
+    ) -> Result<NonlinearVerdict, NotProvable> {
+        let mut known = self.known.iter();
+        if let Some((.., found)) = known.find(|it| it.0 == *certificate && it.1 == *aircraft) {
+            return Ok(found.clone());
+        }
+        let found = prove_nonlinear(certificate, aircraft, effort)?;
+        self.known.push((certificate.clone(), *aircraft, found.clone()));
+        Ok(found)
+    }
+}
+
 /// Certifies the nonlinear aircraft beside the verdict of its linear loop, whose certificate then speaks of both.
 ///
 /// # Errors
@@ -116,6 +152,7 @@ fn heights(claim: &Claim) -> &'static [f64] {
 pub(super) fn certified(
     study: &Study,
     outcome: &mut Outcome,
+    prove: &mut Prove,
     effort: &Effort,
 ) -> Result<NonlinearAnswer, NotProvable> {
     let Verdict::Proved(certificate, rechecked) = &outcome.verdict else {
@@ -130,7 +167,7 @@ pub(super) fn certified(
             Ok(aircraft) => aircraft,
             Err(none) => return Ok(NonlinearAnswer::None(none)),
         };
-        let found = prove_nonlinear(certificate, &aircraft, effort)?;
+        let found = prove.of(certificate, &aircraft, effort)?;
         let proved = matches!(found, NonlinearVerdict::Proved(..));
         verdict = Some(found);
         if proved {
@@ -153,28 +190,59 @@ pub(super) fn sentence(
     claim: &Nonlinear,
     checked: &CheckedNonlinear,
 ) -> String {
-    let Reach { motion, command_rad } = claim.reach;
+    format!(
+        "the equations of motion themselves: a flight that begins in the certified ellipsoid, so {stays}, at samples and between them, meets no limit, {comes}{decay}; {conditions}",
+        stays = stays(&claim.reach, checked),
+        comes = comes(checked),
+        decay = decay(certificate, claim),
+        conditions = conditions(&air(&claim.aircraft)),
+    )
+}
+
+/// A proved claim in a line, where what it does not speak of is said once for many of them.
+fn in_short(certificate: &Certificate, claim: &Nonlinear, checked: &CheckedNonlinear) -> String {
+    format!(
+        "a flight that begins {stays}, {comes}{decay}; in still air {air}",
+        stays = stays(&claim.reach, checked),
+        comes = comes(checked),
+        decay = decay(certificate, claim),
+        air = air(&claim.aircraft),
+    )
+}
+
+/// How far a flight may begin from the trim, and which box it then does not leave.
+pub(super) fn stays(reach: &Reach, checked: &CheckedNonlinear) -> String {
+    let Reach { motion, command_rad } = *reach;
     let [pitch, rate, speed_m_s, alpha, elevator] = motion;
     let [pitch, rate, alpha, elevator, command] =
         [pitch, rate, alpha, elevator, command_rad].map(|it| above(degrees(it)));
     let begins = below(degrees(checked.pitch_within_rad), 3);
     let speed = format!("{} m/s ({} ft/s)", above(speed_m_s), above(speed_m_s / FOOT_M));
+    format!(
+        "with the pitch angle up to {begins} deg off and nothing else, stays within {pitch} deg of pitch, {rate} deg/s of pitch rate, {speed} of airspeed, {alpha} deg of angle of attack and {elevator} deg of elevator from the trim (commands within {command} deg)"
+    )
+}
+
+/// How fast it comes there; nothing where no rate is proved.
+fn decay(certificate: &Certificate, claim: &Nonlinear) -> String {
     let dt_s = certificate.description.controller.config().dt_s;
-    let decay = match claim.rate {
+    match claim.rate {
         rate if rate < 1.0 => {
             format!(" at least as fast as with a time constant of {:.1} s", -dt_s / libm::log(rate))
         }
         _ => String::new(),
-    };
+    }
+}
+
+/// Under which conditions all that is so, and of what nothing is said.
+pub(super) fn conditions(air: &str) -> String {
     format!(
-        "the equations of motion themselves: a flight that begins in the certified ellipsoid, so with the pitch angle up to {begins} deg off and nothing else, stays within {pitch} deg of pitch, {rate} deg/s of pitch rate, {speed} of airspeed, {alpha} deg of angle of attack and {elevator} deg of elevator from the trim (commands within {command} deg), at samples and between them, meets no limit, {comes}{decay}; so with the set-point at the trim, no load, sensors without bias, wings level, the throttle of the trim, still air {air}, above the ground; the steps in which a simulation integrates are not covered, and all else here is about the linear model",
-        comes = comes(checked),
-        air = air(&claim.aircraft),
+        "so with the set-point at the trim, no load, sensors without bias, wings level, the throttle of the trim, still air {air}, above the ground; the steps in which a simulation integrates are not covered, and all else here is about the linear model"
     )
 }
 
 /// Where a flight ends.
-fn comes(checked: &CheckedNonlinear) -> String {
+pub(super) fn comes(checked: &CheckedNonlinear) -> String {
     let [pitch, _, speed_m_s, ..] = checked.remains;
     if pitch > 0.0 {
         let pitch = above(degrees(pitch));
@@ -188,7 +256,7 @@ fn comes(checked: &CheckedNonlinear) -> String {
 }
 
 /// Which air is in the claim.
-fn air(aircraft: &MotionNumbers) -> String {
+pub(super) fn air(aircraft: &MotionNumbers) -> String {
     let MotionNumbers { height_m, density_kg_m3, densities_kg_m3, .. } = aircraft;
     if *height_m > 0.0 {
         format!(
@@ -214,8 +282,8 @@ fn below(value: f64, decimals: i32) -> String {
 }
 
 /// A proved claim for programs.
-pub(super) fn proved_in_json(claim: &Nonlinear, checked: &CheckedNonlinear) -> Value {
-    let Reach { motion, command_rad } = claim.reach;
+pub(super) fn proved_in_json(reach: &Reach, checked: &CheckedNonlinear) -> Value {
+    let Reach { motion, command_rad } = *reach;
     let [pitch, rate, speed_m_s, alpha, elevator] = motion;
     json!({
         "verdict": "proved",
@@ -231,17 +299,21 @@ pub(super) fn proved_in_json(claim: &Nonlinear, checked: &CheckedNonlinear) -> V
     })
 }
 
+/// That nothing is proved, for programs.
+pub(super) fn open_in_json() -> Value {
+    json!({ "verdict": "open", "begins_within_deg": null, "box": null })
+}
+
 /// The answer for programs.
 pub(super) fn in_json(answer: &NonlinearAnswer) -> Value {
     let found = match answer {
         NonlinearAnswer::Verdict(verdict, _) => match &**verdict {
-            NonlinearVerdict::Proved(claim, checked) => Some(proved_in_json(claim, checked)),
+            NonlinearVerdict::Proved(claim, checked) => Some(proved_in_json(&claim.reach, checked)),
             NonlinearVerdict::Open(_) => None,
         },
         NonlinearAnswer::None(_) | NonlinearAnswer::LinearNotProved => None,
     };
-    let open = || json!({ "verdict": "open", "begins_within_deg": null, "box": null });
-    let mut found = found.unwrap_or_else(open);
+    let mut found = found.unwrap_or_else(open_in_json);
     found["in_words"] = answer.text().into();
     found
 }

@@ -4,10 +4,11 @@ use fspid_proof::{LeftOut, Verdict};
 use serde_json::{Value, json};
 
 use super::{CertifiedCase, CertifiedCases};
+use crate::certify::json::NULLS;
 use crate::certify::scope::range_in_words;
 use crate::certify::text::{found, sentence};
 use crate::certify::{Certified, DisturbanceAnswer, family};
-use crate::json::merged;
+use crate::json::{merged, present, with_null_reasons};
 use crate::metrics::short;
 
 impl CertifiedCases {
@@ -62,7 +63,9 @@ impl CertifiedCases {
             };
             let disturbed = self.disturbed_in_words(name).into_iter();
             let disturbed = disturbed.map(|it| format!("\n  disturbances       {it}"));
-            verdict + &disturbed.collect::<String>()
+            let near_trim = self.near_trim_in_words(name).into_iter();
+            let near_trim = near_trim.map(|it| format!("\n  nonlinear          {it}"));
+            verdict + &disturbed.chain(near_trim).collect::<String>()
         });
         sentences.collect::<Vec<_>>().join("\n")
     }
@@ -106,17 +109,31 @@ impl CertifiedCases {
             })
         });
         let cases: Vec<Value> = cases.collect();
-        let mut answer = json!({
+        let answer = json!({
             "schema": schema,
             "scenario": self.scenario,
             "of": self.which.words(),
             "all_proved": self.all_proved(),
             "cases": cases,
         });
-        if !null.is_empty() {
-            answer["null"] = Value::Object(null);
+        let mut everywhere = with_null_reasons(self.in_every_case(), &NULLS);
+        if let Some(Value::Object(reasons)) = everywhere.get_mut("null").map(Value::take) {
+            null.extend(reasons);
         }
-        merged([answer, self.disturbed_in_json(&self.controllers())])
+        let reasons = (!null.is_empty()).then_some(null);
+        merged([answer, everywhere, present(json!({ "null": reasons }))])
+    }
+
+    /// What of all that was asked beside stability holds in every case of each controller; empty where nothing was.
+    fn in_every_case(&self) -> Value {
+        let each = self.controllers().into_iter().map(|name| {
+            let of = json!({ "name": name });
+            merged([of, self.disturbed_in_json(name), self.near_trim_in_json(name)])
+        });
+        let each: Vec<Value> = each.collect();
+        let has_more = |it: &Value| it.as_object().is_some_and(|keys| keys.len() > 1);
+        let told = each.iter().any(has_more).then_some(each);
+        present(json!({ "in_every_case": told }))
     }
 }
 
@@ -148,6 +165,9 @@ fn line(certified: &Certified) -> String {
     let mut out = format!("  {name}: {told}\n");
     if let Some(reason) = certified.disturbances.as_ref().and_then(DisturbanceAnswer::trouble) {
         out.push_str(&format!("    disturbances NOT BOUNDED: {reason}\n"));
+    }
+    if let Some(nonlinear) = &certified.nonlinear {
+        out.push_str(&format!("    nonlinear aircraft {}\n", nonlinear.in_short()));
     }
     if let Some(family) = &certified.family {
         out.push_str(&format!("    all that is drawn: {}\n", family::in_words(family)));

@@ -4,9 +4,8 @@ use fspid_proof::{Disturbed, Scope};
 use serde_json::{Value, json};
 
 use super::CertifiedCases;
+use crate::certify::disturbances;
 use crate::certify::text::found;
-use crate::certify::{Certified, disturbances};
-use crate::json::merged;
 
 /// How gains move, after such a bound.
 const MOVING: &str = ", in every case, with gains moving as its certificate says";
@@ -20,13 +19,7 @@ impl CertifiedCases {
 
     /// What is bounded in all cases of a controller; none where one is missing.
     fn disturbed_everywhere(&self, controller: &str) -> Option<Scope> {
-        let results = self.cases.iter().flat_map(|case| &case.certification.results);
-        let own: Vec<&Certified> = results.filter(|it| it.controller == controller).collect();
-        // Every change has the controller, with a plant or more.
-        if self.cases.len() != self.changes.len() || own.len() < self.changes.len() {
-            return None;
-        }
-        let scopes = own.into_iter().map(|certified| {
+        let scopes = self.in_every_change(controller)?.into_iter().map(|certified| {
             let is_bounded = certified.disturbances.as_ref().is_some_and(|it| it.is_bounded());
             let (certificate, rechecked) =
                 found(certified.outcome.as_ref().ok()?).filter(|_| is_bounded)?;
@@ -46,20 +39,14 @@ impl CertifiedCases {
         }
     }
 
-    /// For programs: of each controller that has them what is bounded in all cases.
-    pub(super) fn disturbed_in_json(&self, controllers: &[&str]) -> Value {
+    /// For programs: what is bounded in all cases of a controller; empty where bounds were not asked for.
+    pub(super) fn disturbed_in_json(&self, controller: &str) -> Value {
         if !self.asks_for_disturbances() {
             return json!({});
         }
-        let each = controllers.iter().map(|name| {
-            let scope = self.disturbed_everywhere(name);
-            let bounds = scope.map_or_else(
-                || json!({ "disturbances": [] }),
-                |scope| disturbances::in_json(&scope),
-            );
-            merged([json!({ "name": name }), bounds])
-        });
-        json!({ "in_every_case": each.collect::<Vec<Value>>() })
+        let none = || json!({ "disturbances": [] });
+        let scope = self.disturbed_everywhere(controller);
+        scope.map_or_else(none, |scope| disturbances::in_json(&scope))
     }
 }
 

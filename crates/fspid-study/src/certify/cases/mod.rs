@@ -4,13 +4,16 @@
 mod answer;
 mod choices;
 mod disturbed;
+mod near_trim;
 
 use fspid_proof::{Asked, LoopDescription, NotProvable, Outcome, certify};
 use fspid_scenario::file::{Study, Template};
 use fspid_scenario::tuning::Case;
 use fspid_sim::SimError;
 
-use super::{Certification, Effort, family::Chosen};
+use super::family::Chosen;
+use super::nonlinear::Prove;
+use super::{Certification, Certified, Question};
 use crate::output::{Names, Place};
 
 pub(super) use choices::{is_chosen_apart, only_choices_differ};
@@ -72,19 +75,6 @@ pub enum NoCases {
     },
 }
 
-/// How each change is certified.
-#[derive(Clone, Copy, Debug)]
-pub struct Question<'a> {
-    /// The controller, or all of them.
-    pub only: Option<&'a str>,
-    /// What disturbances do at most as well.
-    pub disturbances: bool,
-    /// All that the dispersions can draw as well.
-    pub family: bool,
-    /// How hard to try.
-    pub effort: &'a Effort,
-}
-
 /// A scenario with a change, certified.
 #[derive(Clone, Debug)]
 pub struct CertifiedCase {
@@ -111,6 +101,8 @@ pub struct CertifiedCases {
     folders: Names,
     cases: Vec<CertifiedCase>,
     known: Vec<Known>,
+    /// What was asked of nonlinear aircraft before.
+    nonlinear: Prove,
 }
 
 impl CertifiedCases {
@@ -139,7 +131,8 @@ impl CertifiedCases {
         }
         let folders = Names::of(Place::PlainFile, changes.iter().map(|it| &it.name));
         let scenario = study.scenario.name.clone();
-        Ok(Self { scenario, which, changes, folders, cases: Vec::new(), known: Vec::new() })
+        let (cases, known, nonlinear) = (Vec::new(), Vec::new(), Prove::default());
+        Ok(Self { scenario, which, changes, folders, cases, known, nonlinear })
     }
 
     /// The changes.
@@ -172,7 +165,7 @@ impl CertifiedCases {
         question: Question<'_>,
         tell: &mut dyn FnMut(&str),
     ) -> Result<(), SimError> {
-        let Question { only, disturbances, family, effort } = question;
+        let Question { only, effort, .. } = question;
         let known = &mut self.known;
         let mut ask = |description: &LoopDescription, asked: &Asked| {
             let mut asked = asked.clone();
@@ -189,19 +182,24 @@ impl CertifiedCases {
             known.push(Known { description, asked, outcome: outcome.clone() });
             outcome
         };
-        let mut certification = Certification::asking(template.study(), only, &mut ask, tell)?;
-        if disturbances {
-            certification = certification.with_disturbances(template.study(), effort, tell)?;
-        }
-        if family {
-            let chosen = match self.which {
-                Cases::Choices => Chosen::Apart,
-                Cases::Tuning | Cases::Contest => Chosen::AsABox,
-            };
-            certification = certification.with_families_of(template, effort, chosen, tell)?;
-        }
+        let stable = Certification::asking(template.study(), only, &mut ask, tell)?;
+        let chosen = match self.which {
+            Cases::Choices => Chosen::Apart,
+            Cases::Tuning | Cases::Contest => Chosen::AsABox,
+        };
+        let beside = (chosen, &mut self.nonlinear);
+        let certification = stable.with_all_beside(template, question, beside, tell)?;
         self.cases.push(CertifiedCase { change: change.clone(), certification });
         Ok(())
+    }
+
+    /// Every loop of a controller in every change; none where a change is missing.
+    fn in_every_change(&self, controller: &str) -> Option<Vec<&Certified>> {
+        let results = self.cases.iter().flat_map(|case| &case.certification.results);
+        let own: Vec<&Certified> = results.filter(|it| it.controller == controller).collect();
+        // Every change has the controller, with a plant or more.
+        let is_whole = self.cases.len() == self.changes.len() && own.len() >= self.changes.len();
+        is_whole.then_some(own)
     }
 
     /// True if every loop of every change is proved stable, and none is missing.
