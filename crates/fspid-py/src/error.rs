@@ -5,7 +5,7 @@ use std::fmt::Display;
 use fspid::campaign::CampaignError;
 use fspid::scenario::file::{LoadError, Problems};
 use fspid::study::verify::VerifyError;
-use fspid::tune::TuneError;
+use fspid::tune::{NotRight, TuneError};
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 
@@ -27,6 +27,12 @@ pub(crate) fn input(py: Python<'_>, message: impl Display) -> PyErr {
 pub(crate) fn problems(py: Python<'_>, problems: &Problems) -> PyErr {
     let message = problems.to_string().trim_end().to_owned();
     raise(py, "ScenarioError", (message, problems.to_json().to_string()))
+}
+
+/// A scenario that is wrong as it stands, or as its dispersions and cases make it.
+pub(crate) fn not_right(py: Python<'_>, wrong: &NotRight) -> PyErr {
+    let message = wrong.to_string().trim_end().to_owned();
+    raise(py, "ScenarioError", (message, wrong.to_json().to_string()))
 }
 
 /// A file that gave no scenario.

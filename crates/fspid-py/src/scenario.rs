@@ -10,7 +10,7 @@ use fspid::study::certify::{self, Certification, Effort};
 use fspid::study::report;
 use fspid::study::simulation::Simulation;
 use fspid::study::verify;
-use fspid::tune::{Source, TuneError};
+use fspid::tune::{Source, TuneError, Written};
 use pyo3::prelude::*;
 use tempfile::TempDir;
 
@@ -71,6 +71,12 @@ impl Scenario {
     /// Its text, its name in messages, and from where it names files.
     pub(crate) fn origin(&self) -> (&str, String, Option<&Path>) {
         (&self.text, name_of(self.path.as_deref()), self.folder.as_deref())
+    }
+
+    /// Asks something of its text.
+    fn written<T>(&self, ask: impl FnOnce(&Written<'_>) -> T) -> T {
+        let (text, name, folder) = self.origin();
+        ask(&Written { text, name: &name, folder, overrides: &self.overrides })
     }
 
     /// What tunings and contests read.
@@ -190,6 +196,12 @@ impl Scenario {
         self.study.scenario.flyers().map(|flyer| flyer.name().to_owned()).collect()
     }
 
+    /// Checks what its dispersions draw, and the cases of its tuning and its contest.
+    fn check(&self, py: Python<'_>) -> PyResult<()> {
+        let checked = py.detach(|| self.written(|written| written.check()));
+        checked.map_err(|wrong| error::not_right(py, &wrong))
+    }
+
     /// Every place that can be changed, as `fspid check --paths` prints it.
     fn paths(&self, py: Python<'_>) -> PyResult<Answer> {
         let rows = file::paths(&self.file(py)?, &self.overrides);
@@ -237,17 +249,27 @@ impl Scenario {
         Ok(answer.from(self.made_of()))
     }
 
-    /// Proofs that its loops stay stable while gains move; the files are certificates.
-    fn certify(&self, py: Python<'_>, controller: Option<String>) -> PyResult<Answer> {
+    /// Proofs that its loops stay stable while gains move, with what is asked beside; the files are certificates.
+    fn certify(
+        &self,
+        py: Python<'_>,
+        controller: Option<String>,
+        disturbances: bool,
+        family: bool,
+        nonlinear: bool,
+    ) -> PyResult<Answer> {
         let names = self.controllers();
         if let Some(name) = controller.as_ref().filter(|name| !names.contains(name)) {
             let known: Vec<&str> = names.iter().map(String::as_str).collect();
             let known = file::known_words(name, &known);
             return Err(error::input(py, format_args!("there is no controller `{name}`{known}")));
         }
-        let study = Arc::clone(&self.study);
+        let template = py.detach(|| self.written(|written| written.template()));
+        let template = template.map_err(|found| error::problems(py, &found))?;
         let answer = interrupt::run(py, move || {
-            let found = Certification::of(&study, controller.as_deref(), &Effort::default())?;
+            let (only, effort) = (controller.as_deref(), &Effort::default());
+            let question = certify::Question { only, disturbances, family, nonlinear, effort };
+            let found = Certification::answering(&template, question, &mut |_| {})?;
             let files = found.results.iter().filter_map(|it| {
                 Some((found.file_name(it), certify::to_text(it.certificate()?, &it.origin)))
             });

@@ -71,6 +71,41 @@ def test_certificates_are_those_of_the_program(step, cli, tmp_path):
         assert (tmp_path / "certificates" / name).read_text() == text
 
 
+NAVION = {
+    "schema": 1,
+    "name": "a nonlinear aircraft",
+    "aircraft": {"name": "navion", "airspeed_ft_s": 176.0, "altitude_ft": 1000.0},
+    "actuator": {"time_constant_s": 0.1},
+    "loop": {"sample_period_s": 0.01, "duration_s": 8.0},
+    "setpoint": {"kind": "step", "amplitude_deg": 2.0},
+    "controller": [
+        {"name": "PID", "kind": "pid", "kp": 0.82, "ki": 0.43, "kd": 0.165, "derivative_filter_s": 0.05}
+    ],
+}
+
+
+@pytest.mark.parametrize("asked", [("disturbances",), ("nonlinear",), ("family",)])
+def test_what_is_asked_beside_stability_is_answered_as_by_the_program(asked, cli, tmp_path):
+    drawn = {"path": "actuator.time_constant_s", "name": "servo", "distribution": "uniform", "lower": 0.09, "upper": 0.11}
+    scenario = fspid.Scenario.from_dict({**NAVION, "dispersion": [drawn]} if "family" in asked else NAVION)
+    path = written(scenario, tmp_path)
+    answer = scenario.certify(**dict.fromkeys(asked, True))
+    words = [f"--{word}" for word in asked]
+    theirs = cli("certify", path, *words, "--out", "certificates", "--format", "json")
+    assert answer.good and answer.to_dict() == json.loads(theirs)
+    assert str(answer) == cli("certify", path, *words)
+    for name, text in answer.certificates.items():
+        certificate = tmp_path / "certificates" / name
+        assert certificate.read_text() == text
+        checked = json.loads(cli("certify", "--check", certificate, "--against", path, "--format", "json"))
+        assert checked["answer"] == "holds"
+        assert ("nonlinear" in checked) == ("nonlinear" in asked)
+    controller = answer.to_dict()["controllers"][0]
+    assert ("nonlinear" in controller) == ("nonlinear" in asked)
+    assert bool(controller["scope"].get("disturbances")) == ("disturbances" in asked)
+    assert ("family" in controller) == ("family" in asked)
+
+
 def test_a_tuned_design_is_that_of_the_program(cli, tmp_path):
     path = ROOT / "scenarios" / "gallery" / "tune-navion.toml"
     design = fspid.Scenario.from_file(path).tune(budget=40, out=tmp_path / "ours.toml")

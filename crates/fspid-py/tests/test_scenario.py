@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import pickle
 import subprocess
@@ -35,6 +36,29 @@ def test_everything_that_is_wrong_is_told_at_once():
     assert problems["loop.sample_period_s"].allowed
     assert "did you mean `duration_s`" in problems["loop.duratio_s"].message
     assert isinstance(told.value, fspid.InputError) and isinstance(told.value, ValueError)
+
+
+def test_check_tells_of_the_cases_that_make_no_scenario_in_the_words_of_the_program(cli, tmp_path):
+    case = {"name": "misspelt", "group": "commands", "set": ["plant.presett=navion-paper"]}
+    judged = {**case, "name": "backwards", "set": ["loop.duration_s=-1"]}
+    tuning = {"objective": [{"measure": "iae_deg_s"}], "case": [{"name": case["name"], "set": case["set"]}]}
+    scenario = fspid.Scenario.from_dict({**STEP, "tuning": tuning, "contest": {"case": [judged]}})
+    with pytest.raises(fspid.ScenarioError, match='case "misspelt" makes the scenario wrong') as told:
+        scenario.check()
+    problems = [(problem.case, problem.path) for problem in told.value.problems]
+    assert problems == [("misspelt", "plant.presett"), ("backwards", "loop.duration_s")]
+    assert "in case misspelt" in repr(told.value.problems[0])
+    (tmp_path / "scenario.toml").write_text(scenario.toml)
+    error = json.loads(cli("check", "scenario.toml", "--format", "json"))["error"]
+    assert error["message"] == str(told.value)
+    assert [problem["case"] for problem in error["problems"]["problems"]] == ["misspelt", "backwards"]
+
+
+def test_check_tells_of_what_dispersions_draw(step):
+    drawn = {"path": "loop.duration_s", "name": "end", "distribution": "uniform", "lower": -1.0, "upper": 1.0}
+    with pytest.raises(fspid.ScenarioError) as told:
+        fspid.Scenario.from_dict({**STEP, "dispersion": [drawn]}).check()
+    assert all(problem.case is None for problem in told.value.problems)
 
 
 def test_an_unknown_preset_is_answered_with_those_that_there_are():

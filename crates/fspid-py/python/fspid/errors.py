@@ -35,9 +35,11 @@ class Problem:
         Place in the text, from 1; None where the problem is not at one place of it.
     origin : str or None
         The other file or the change that it stands in, if it does not stand in the scenario itself.
+    case : str or None
+        The case of a tuning or a contest that makes it so, if the scenario is right without one.
     """
 
-    __slots__ = ("allowed", "column", "found", "line", "message", "origin", "path")
+    __slots__ = ("allowed", "case", "column", "found", "line", "message", "origin", "path")
 
     def __init__(
         self,
@@ -48,6 +50,7 @@ class Problem:
         line: int | None,
         column: int | None,
         origin: str | None,
+        case: str | None,
     ) -> None:
         self.path = path
         self.message = message
@@ -56,10 +59,12 @@ class Problem:
         self.line = line
         self.column = column
         self.origin = origin
+        self.case = case
 
     def __repr__(self) -> str:
         allowed = f"; allowed: {self.allowed}" if self.allowed else ""
-        return f"<Problem {self.path or 'scenario'}: {self.message}{allowed}>"
+        case = f" in case {self.case}" if self.case else ""
+        return f"<Problem {self.path or 'scenario'}{case}: {self.message}{allowed}>"
 
 
 class ScenarioError(InputError):
@@ -75,6 +80,6 @@ class ScenarioError(InputError):
         import json
 
         super().__init__(message)
-        keys = ("path", "message", "found", "allowed", "line", "column", "origin")
+        keys = ("path", "message", "found", "allowed", "line", "column", "origin", "case")
         found = json.loads(problems).get("problems", [])
         self.problems = [Problem(**{key: each.get(key) for key in keys}) for each in found]

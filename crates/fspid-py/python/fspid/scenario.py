@@ -146,7 +146,17 @@ class Scenario:
         return Answer(self._core.paths())
 
     def check(self) -> list[str]:
-        """What is allowed and probably not meant; mistakes were refused when the scenario was made."""
+        """What is allowed and probably not meant, of a scenario that is right in all that it says of flights.
+
+        Mistakes of the scenario as it stands were refused when it was made. What its dispersions draw and the cases that it
+        is tuned on and judged by are checked here, as ``fspid check`` does.
+
+        Raises
+        ------
+        ScenarioError
+            A dispersion draws what is no scenario, or a case makes it wrong; a problem of a case has its name as ``.case``.
+        """
+        self._core.check()
         return self.warnings
 
     def simulate(self) -> Flight:
@@ -167,15 +177,34 @@ class Scenario:
         """
         return Analysis(self._core.analyse(broken_at, map_points, fly))
 
-    def certify(self, controller: str | None = None) -> Certification:
+    def certify(
+        self,
+        controller: str | None = None,
+        *,
+        disturbances: bool = False,
+        family: bool = False,
+        nonlinear: bool = False,
+    ) -> Certification:
         """Prove that loops stay stable while their gains move; takes up to half a minute a controller.
 
         Parameters
         ----------
         controller : str, optional
             Only this one.
+        disturbances : bool
+            Bound as well, from rest, what gusts and disturbances at the elevator do to pitch angle and command.
+        family : bool
+            Certify as well, at once, all plants and actuators that the scenario's dispersions can draw.
+        nonlinear : bool
+            Certify as well the nonlinear aircraft in a box around its trim. Takes some seconds more.
+
+        Returns
+        -------
+        Certification
+            True in a condition where all that was asked is proved. Its certificates have it all, and
+            ``fspid certify --check`` believes nothing of it without proving it anew.
         """
-        return Certification(self._core.certify(controller))
+        return Certification(self._core.certify(controller, disturbances, family, nonlinear))
 
     def verify(
         self,
