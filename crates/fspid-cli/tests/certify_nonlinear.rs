@@ -74,6 +74,22 @@ fn the_nonlinear_aircraft_is_proved_in_a_box_and_its_certificate_knows_another_a
     assert!(said.contains("nonlinear.aircraft.drag_law"), "{said}");
 }
 
+/// Bounds of disturbances were asked of the form of the nonlinear claim, which is another.
+#[test]
+fn what_disturbances_do_and_the_nonlinear_aircraft_are_proved_in_one_certificate() {
+    let folder = folder();
+    let words = ["--disturbances", "--nonlinear", "--out", "proofs", "--format", "json"];
+    let found = fspid(&[&["certify", "pitch.toml"], &words[..]].concat(), folder.path());
+    assert_eq!(code(&found), 0, "{}", text(&found.stderr));
+    let controller = &json(&found)["controllers"][0];
+    assert_eq!(controller["nonlinear"]["verdict"], "proved", "{controller:#}");
+    let certificate = "proofs/pid.certificate.json";
+    let checked = fspid(&["certify", "--check", certificate], folder.path());
+    let told = text(&checked.stdout);
+    assert_eq!(code(&checked), 0, "{told}{}", text(&checked.stderr));
+    assert!(told.contains("disturbances") && told.contains("equations of motion"), "{told}");
+}
+
 #[test]
 fn a_certificate_for_a_band_of_heights_goes_round_and_is_refused_with_another_height_or_density() {
     let folder = folder();

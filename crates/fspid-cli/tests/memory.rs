@@ -43,15 +43,7 @@ fn threads_that_have_no_flight_need_no_memory() {
 #[test]
 fn a_program_that_grows_too_large_says_so_and_ends() {
     // Less than the program itself has, and of a proof nothing is known before.
-    let words = [
-        "certify",
-        "scenarios/campaign.toml",
-        "--steps",
-        "--max-memory",
-        "1MiB",
-        "--format",
-        "json",
-    ];
+    let words = ["certify", "scenarios/campaign.toml", "--max-memory", "1MiB", "--format", "json"];
     let ended = in_repository(&words);
     assert_eq!(code(&ended), 130, "{}", text(&ended.stderr));
     let answer = json(&ended);

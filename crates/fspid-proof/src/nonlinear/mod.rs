@@ -125,6 +125,8 @@ impl Nonlinear {
             steps: None,
             commanded: None,
             family: None,
+            // Of the linear model, with a form of their own.
+            disturbances: Vec::new(),
             nonlinear: None,
             ..certificate.clone()
         }
