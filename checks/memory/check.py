@@ -40,11 +40,21 @@ ASKED = {
     "of an aircraft, as text and in a report": ["simulate", NONLINEAR, "--set", "loop.duration_s=2000", "--trace", "OUT/trace.csv", "--report", "OUT/report.html"],
     "16 runs of 500 000 samples": [*campaign(16, 16, 5000), "--out", "OUT/long"],
     "8000 runs in one shard": [*campaign(8000, 8000, 4), "--out", "OUT/many"],
+    "4000 runs of eight controllers in one shard": [
+        "campaign", "run", "OUT/eight.toml", "--runs", "4000", "--shard-runs", "4000", "--threads", "2", "--quiet", "--out", "OUT/eight",
+    ],
     "a tuning": ["tune", TUNE, "--budget", "200", "--threads", "2", "--quiet", "--out", "OUT/design.toml"],
     "a tuning with a large population": [
         "tune", TUNE, "--budget", "4000", "--population", "2000", "--threads", "2", "--quiet", "--out", "OUT/large.toml",
     ],
 }
+
+
+def eight_controllers(folder: str) -> None:
+    """The campaign with six controllers more, in flights that are short."""
+    text = (ROOT / CAMPAIGN).read_text().replace("duration_s = 50.0", "duration_s = 4.0")
+    more = [f'[[controller]]\nname = "P{n}"\nkind = "p"\nkp = 1.{n}\n' for n in range(6)]
+    (Path(folder) / "eight.toml").write_text(text + "\n" + "\n".join(more))
 
 
 def needed_mib(arguments: list[str]) -> float:
@@ -69,6 +79,7 @@ def main() -> int:
     failed = 0
     for name, words in ASKED.items():
         with tempfile.TemporaryDirectory() as folder:
+            eight_controllers(folder)
             arguments = [word.replace("OUT", folder) if word.startswith("OUT/") else word for word in words]
             needed = needed_mib(arguments)
             taken = taken_mib(arguments)

@@ -14,6 +14,7 @@ lanes() {
     cat <<'LANES'
 release-program|the program as it is handed out, to the lanes below; the paper by it|web/build.sh && cargo build --release --locked && target/release/fspid reproduce --check --out target/nightly/paper
 instructions|instructions of a step, inference, margins, certificate|checks/instructions/check.py
+memory|what commands take in memory, beside what they tell before they fly|checks/memory/check.py
 supply|licences, sources, budgets, bill of materials|checks/supply/check.sh
 packages|every crate compiles from what is packed|checks/packages/check.sh
 reproducible|two builds, one hash|checks/reproducible/check.sh

@@ -6,6 +6,7 @@
 use std::borrow::Cow;
 use std::fmt::Display;
 use std::io::{self, IsTerminal as _, Write as _};
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use fspid_diagnostics::digits::counted;
@@ -25,6 +26,21 @@ static AS_JSON: AtomicBool = AtomicBool::new(false);
 static IS_FILE: AtomicBool = AtomicBool::new(false);
 /// Whether an answer was printed.
 static ANSWERED: AtomicBool = AtomicBool::new(false);
+
+/// Why the program stops early; None where it is the user who wants it.
+static REASON: Mutex<Option<String>> = Mutex::new(None);
+
+/// Says why the program stops early, where it is not the user who wants it.
+pub(crate) fn stops_for(reason: String) {
+    if let Ok(mut told) = REASON.lock() {
+        *told = Some(reason);
+    }
+}
+
+/// Why the program stops early, where it is not the user who wants it.
+pub(crate) fn reason() -> Option<String> {
+    REASON.lock().ok().and_then(|told| told.clone())
+}
 
 /// What standard output is used for.
 #[derive(Clone, Copy, Debug)]
@@ -129,7 +145,7 @@ impl Failure {
 
     /// Work that the user has interrupted, or its memory, and how it goes on.
     pub(crate) fn interrupted(message: impl Display) -> Self {
-        match crate::commands::interrupt::reason() {
+        match reason() {
             Some(reason) => Self::new(Self::INTERRUPTED, format_args!("{reason}: {message}")),
             None => Self::new(Self::INTERRUPTED, message),
         }

@@ -15,8 +15,9 @@ use fspid_sim::{Plant, Scenario};
 const BYTES_OF_SAMPLE: u64 = 320;
 /// Bytes that a candidate of a generation takes, with its flights' answers.
 const BYTES_OF_CANDIDATE: u64 = 1024;
-/// Bytes of a run of a shard until it is written: 100 measures and more of each controller, in columns and as a file.
-const BYTES_OF_RUN: u64 = 4096;
+/// Bytes of a row of a shard until it is written, one controller's measures of a run, in columns and as a file. Measured as
+/// 1400 to 2000.
+const BYTES_OF_ROW: u64 = 2048;
 /// Bytes of a case for each controller: its scenario, read and checked. Measured as 109 000 to 117 000 in five contests.
 const BYTES_OF_CASE: u64 = 120_000;
 /// Bytes that a sample of a trace takes for each controller, kept and judged, and more where it is written, as text or in a
@@ -63,8 +64,8 @@ impl Needed {
             Plant::Linear(_) => BYTES_OF_TRACE,
             Plant::Aircraft(_) | Plant::External(_) => BYTES_OF_AIRCRAFT_TRACE,
         };
-        let controllers = scenario.controllers.len() + scenario.externals.len();
-        let of_sample = (kept + if is_written { written } else { 0 }) * controllers as u64;
+        let controllers = scenario.flyers().count() as u64;
+        let of_sample = (kept + if is_written { written } else { 0 }) * controllers;
         Self { samples: scenario.timing.rows() as u64, threads: 1, of_sample, beside: 0 }
     }
 
@@ -86,10 +87,10 @@ impl Needed {
         self.with(candidates.saturating_mul(BYTES_OF_CANDIDATE))
     }
 
-    /// And runs whose rows are kept until they are written.
+    /// And rows that are kept until they are written: one for each controller of a run.
     #[must_use]
-    pub fn with_runs(self, runs: u64) -> Self {
-        self.with(runs.saturating_mul(BYTES_OF_RUN))
+    pub fn with_rows(self, rows: u64) -> Self {
+        self.with(rows.saturating_mul(BYTES_OF_ROW))
     }
 
     /// And the program that flies them.
@@ -191,8 +192,8 @@ mod tests {
         let shorter = Needed::for_flights(10, 16).with_cases(7);
         assert_eq!(flights.with_cases(2).and(shorter).bytes(), 1000 * 16 * 320 + 9 * 120_000);
         assert_eq!(
-            Needed::for_flights(0, 0).with_runs(3).with_candidates(5).bytes(),
-            3 * 4096 + 5 * 1024
+            Needed::for_flights(0, 0).with_rows(3).with_candidates(5).bytes(),
+            3 * 2048 + 5 * 1024
         );
         assert_eq!(Needed::for_flights(usize::MAX, 1024).with_program().bytes(), u64::MAX);
     }

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use fspid_study::shell;
 
-use crate::exit::{Failure, note};
+use crate::exit::{self, Failure, note};
 
 /// What is told of work that ends at once and says nothing else.
 const ENDED: &str = "interrupted";
@@ -14,8 +14,6 @@ const ENDED: &str = "interrupted";
 static ASKED: AtomicBool = AtomicBool::new(false);
 /// What is told where work ends at once; None where it stops by itself once it is asked to.
 static AT_ONCE: Mutex<Option<String>> = Mutex::new(None);
-/// Why it shall stop; None where the user asked.
-static REASON: Mutex<Option<String>> = Mutex::new(None);
 
 /// Ctrl-C ends the program as every failure does, in words and as JSON, unless a command says otherwise.
 pub(crate) fn listen() {
@@ -47,15 +45,8 @@ fn heard() {
 /// Stops as Ctrl-C does, for a reason that is told.
 pub(crate) fn ask(reason: String) {
     note("");
-    if let Ok(mut told) = REASON.lock() {
-        *told = Some(reason);
-    }
+    exit::stops_for(reason);
     stop("");
-}
-
-/// Why the program stops, where it is not the user who wants it.
-pub(crate) fn reason() -> Option<String> {
-    REASON.lock().ok().and_then(|told| told.clone())
 }
 
 fn stop(hint: &str) {
@@ -64,7 +55,7 @@ fn stop(hint: &str) {
     let Some(told) = at_once.or_else(again) else {
         note(format_args!(
             "stopping{}{hint}",
-            reason().map_or(String::new(), |it| format!(": {it}"))
+            exit::reason().map_or(String::new(), |it| format!(": {it}"))
         ));
         return;
     };

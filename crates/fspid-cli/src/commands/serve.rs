@@ -21,7 +21,7 @@ mod present {
 
     use super::super::{Format, interrupt};
     use crate::argument::{Folder, NamedFile, OutFile, written};
-    use crate::exit::{Failure, note, wrote};
+    use crate::exit::{self, Failure, note, wrote};
 
     /// How often somebody looks whether Ctrl-C was pressed.
     const PERIOD: Duration = Duration::from_millis(50);
@@ -101,7 +101,8 @@ mod present {
             thread::sleep(PERIOD);
         }
         server.stop();
-        Ok(())
+        // Ctrl-C is its good end, and nothing else is.
+        exit::reason().map_or(Ok(()), |_| Err(Failure::interrupted("the server has ended")))
     }
 
     fn settings(arguments: &Arguments, page: Page) -> Settings {

@@ -26,7 +26,10 @@ pub(super) fn check(work: &Work, study: &Study, most: u64) -> Result<(), Ended> 
         Work::Certify(_) => return Ok(()),
         Work::Contest(_) => flights,
         Work::Tune(tune) => flights.with_candidates(tune.population()),
-        Work::Campaign(campaign) => flights.with_runs(campaign.runs_of_shard()),
+        Work::Campaign(campaign) => {
+            let controllers = study.scenario.flyers().count() as u64;
+            flights.with_rows(campaign.runs_of_shard().saturating_mul(controllers))
+        }
     };
     if needed.bytes() <= most {
         return Ok(());

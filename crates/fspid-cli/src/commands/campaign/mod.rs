@@ -214,12 +214,20 @@ fn planned(folder: &Folder) -> Result<Campaign, Failure> {
     Campaign::new(plan, folder.path()).map_err(failure)
 }
 
-/// Refuses flights that take more memory than there is: so many at once at most, and so many runs that are kept until they are
-/// written.
-fn fits(campaign: &Campaign, threads: usize, flights: u64, kept: u64) -> Result<(), Failure> {
+/// Refuses runs that take more memory than there is, so many of which are flown one after the other or at once.
+fn fits(campaign: &Campaign, threads: usize, runs: u64) -> Result<(), Failure> {
+    memory::asked(flights(campaign, threads, runs))
+}
+
+/// The same of runs whose rows are kept until all of them are written.
+fn fits_as_a_shard(campaign: &Campaign, threads: usize, runs: u64) -> Result<(), Failure> {
+    let rows = runs.saturating_mul(campaign.rows().of_run() as u64);
+    memory::asked(flights(campaign, threads, runs).with_rows(rows))
+}
+
+fn flights(campaign: &Campaign, threads: usize, runs: u64) -> Needed {
     let samples = campaign.template().study().scenario.timing.rows();
-    let needed = Needed::for_flights(samples, memory::threads(threads));
-    memory::asked(needed.of_at_most(flights).with_runs(kept))
+    Needed::for_flights(samples, memory::threads(threads)).of_at_most(runs)
 }
 
 /// A failure with the exit code that it deserves.

@@ -115,7 +115,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let nothing = fspid_campaign::Progress::default();
     rare::Target::of(&campaign, &nothing, &asked.fails, asked.controller.as_deref())
         .map_err(failure)?;
-    fits(&campaign, arguments.threads, arguments.flights, 0)?;
+    fits(&campaign, arguments.threads, arguments.flights)?;
     let folder = arguments.out.as_ref().map(|out| Folder::new(out));
     interrupt::ends_with(match &folder {
         Some(folder) => format!(

@@ -7,7 +7,7 @@ use super::super::progress::Telling;
 use super::super::{Format, interrupt};
 use super::engine::{Asked, Cluster, Engine};
 use super::progress::told;
-use super::{Planned, PlannedFolder, failure, fits, planned};
+use super::{Planned, PlannedFolder, failure, fits_as_a_shard, planned};
 use crate::argument::{InFile, count};
 use crate::exit::Failure;
 use fspid_campaign::table::{Digest, Reader};
@@ -54,8 +54,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let telling = if arguments.quiet { Telling::Nothing } else { Telling::for_standard_error() };
     let runs = campaign.plan().runs;
     if arguments.cluster.engine == Engine::Local {
-        let at_once = campaign.plan().shard_runs.min(runs);
-        fits(&campaign, arguments.threads, at_once, at_once)?;
+        fits_as_a_shard(&campaign, arguments.threads, campaign.plan().shard_runs.min(runs))?;
     }
     if arguments.scenario.is_some() {
         folder.put_plan(campaign.plan()).map_err(failure)?;

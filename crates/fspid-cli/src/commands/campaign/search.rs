@@ -63,7 +63,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         budget: arguments.budget,
         seed: arguments.seed,
     };
-    fits(&campaign, arguments.threads, asked.budget as u64, 0)?;
+    fits(&campaign, arguments.threads, asked.budget as u64)?;
     let found = local::in_threads(arguments.threads, || search::search(&campaign, &asked));
     let worst = found.and_then(|found| found).map_err(failure)?;
     match arguments.format {

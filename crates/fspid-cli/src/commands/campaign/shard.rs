@@ -6,7 +6,7 @@ use serde_json::json;
 use super::super::progress::Telling;
 use super::super::{Format, interrupt};
 use super::progress::told;
-use super::{PlannedFolder, failure, fits};
+use super::{PlannedFolder, failure, fits_as_a_shard};
 use crate::argument::count;
 use crate::exit::Failure;
 use fspid_campaign::shard::{self, Done};
@@ -39,7 +39,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let most = plan.shards().saturating_sub(1);
     let range = plan.shard(number).ok_or(CampaignError::NoShard { found: number, most });
     let range = range.map_err(failure)?;
-    fits(&campaign, arguments.threads, range.end - range.first, range.end - range.first)?;
+    fits_as_a_shard(&campaign, arguments.threads, range.end - range.first)?;
     let _shared = folder.lock(false).map_err(failure)?;
     let _alone = folder.lock_shard(range).map_err(failure)?;
     interrupt::ends_with(format!(
