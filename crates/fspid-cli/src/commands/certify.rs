@@ -157,7 +157,7 @@ fn told(
 fn met(all_proved: bool) -> Result<(), Failure> {
     match all_proved {
         true => Ok(()),
-        false => Err(Failure::not_met("a loop is not proved stable")),
+        false => Err(Failure::not_met("not everything that was asked is proved of every loop")),
     }
 }
 
