@@ -23,6 +23,7 @@ pub(crate) struct Line {
 }
 
 /// The rules of a tuner that conclude numbers, over inputs as the tuner scales them.
+#[derive(Clone)]
 pub(crate) struct Lines<'a> {
     numbers: Numbers<'a>,
     /// Where the centres of each input's sets lie, rising.

@@ -17,12 +17,73 @@ const ROUNDING: f64 = f64::EPSILON;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Affine {
     pub(super) centre: f64,
-    /// By each unknown; those that are not there are 0.
-    pub(super) parts: Vec<f64>,
+    pub(super) parts: Parts,
     /// What rounding may be off, ω.
     pub(super) off: f64,
     /// What the ball adds, β.
     pub(super) of_ball: f64,
+}
+
+/// What moves with each unknown, and the sum of its magnitudes, which is asked for wherever the number stands.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Parts {
+    /// By each unknown; those that are not there are 0.
+    by: Vec<f64>,
+    /// At least the true sum.
+    spread: f64,
+}
+
+/// Magnitudes that are summed side by side: one sum would wait for each of its terms.
+const LANES: usize = 8;
+
+/// Unknowns that a sample adds, about.
+const NEWER: usize = 16;
+
+impl From<Vec<f64>> for Parts {
+    fn from(by: Vec<f64>) -> Self {
+        let mut lanes = [0.0_f64; LANES];
+        let chunks = by.chunks_exact(LANES);
+        let rest: f64 = chunks.remainder().iter().map(|part| part.abs()).sum();
+        for chunk in chunks {
+            for (lane, part) in lanes.iter_mut().zip(chunk) {
+                *lane += part.abs();
+            }
+        }
+        let spread = raised(lanes.iter().sum::<f64>() + rest, by.len());
+        Self { by, spread }
+    }
+}
+
+impl FromIterator<f64> for Parts {
+    fn from_iter<T: IntoIterator<Item = f64>>(parts: T) -> Self {
+        parts.into_iter().collect::<Vec<f64>>().into()
+    }
+}
+
+impl Parts {
+    /// What moves with an unknown.
+    pub(super) fn of(&self, symbol: usize) -> f64 {
+        self.by.get(symbol).copied().unwrap_or(0.0)
+    }
+
+    /// By each unknown.
+    pub(super) fn each(&self) -> &[f64] {
+        &self.by
+    }
+}
+
+/// Adds so many times the parts of a term.
+fn accumulate(sum: &mut Vec<f64>, factor: f64, parts: &[f64]) {
+    if sum.is_empty() {
+        // Other terms may have a few newer unknowns.
+        sum.reserve_exact(parts.len() + NEWER);
+    }
+    let shared = sum.len().min(parts.len());
+    let (both, beyond) = parts.split_at(shared);
+    for (part, of_term) in sum.iter_mut().zip(both) {
+        *part += factor * of_term;
+    }
+    sum.extend(beyond.iter().map(|of_term| factor * of_term));
 }
 
 /// A sum of so many terms that are not negative, and then some: at least the true one.
@@ -45,17 +106,19 @@ impl Affine {
         if let Some(part) = parts.last_mut() {
             *part = if whole.is_point() { 0.0 } else { radius };
         }
-        Self { centre: whole.midpoint(), parts, off: 0.0, of_ball: 0.0 }
+        Self { centre: whole.midpoint(), parts: parts.into(), off: 0.0, of_ball: 0.0 }
     }
 
     /// The number with an unknown of its own.
     pub(super) fn and_noise(mut self, radius: f64, symbol: usize) -> Self {
         if radius > 0.0 {
-            if self.parts.len() <= symbol {
-                self.parts.resize(symbol + 1, 0.0);
+            let Parts { by, spread } = &mut self.parts;
+            if by.len() <= symbol {
+                by.resize(symbol + 1, 0.0);
             }
-            self.parts[symbol] += radius;
-            self.off += 2.0 * ROUNDING * self.parts[symbol].abs();
+            by[symbol] += radius;
+            self.off += 2.0 * ROUNDING * by[symbol].abs();
+            *spread = raised(*spread + radius, 2);
         }
         self
     }
@@ -68,7 +131,7 @@ impl Affine {
 
     /// Sum of the magnitudes of all parts.
     pub(super) fn spread(&self) -> f64 {
-        raised(self.parts.iter().map(|part| part.abs()).sum(), self.parts.len())
+        self.parts.spread
     }
 
     /// How far from its middle it may be.
@@ -91,6 +154,7 @@ impl Affine {
     /// $\sum_j a_j x_j$.
     pub(super) fn sum<'a>(terms: impl IntoIterator<Item = (Interval, &'a Self)>) -> Self {
         let mut sum = Self::default();
+        let mut parts = Vec::new();
         // Of products and of what coefficients may be off.
         let (mut sizes, mut count) = (0.0, 0_usize);
         for (factor, term) in terms {
@@ -100,12 +164,7 @@ impl Affine {
                 continue;
             }
             sum.centre += middle * term.centre;
-            if sum.parts.len() < term.parts.len() {
-                sum.parts.resize(term.parts.len(), 0.0);
-            }
-            for (part, of_term) in sum.parts.iter_mut().zip(&term.parts) {
-                *part += middle * of_term;
-            }
+            accumulate(&mut parts, middle, term.parts.each());
             let known = raised(term.centre.abs() + term.spread(), 2);
             sum.off += middle.abs() * term.off + radius * raised(known + term.off, 2);
             sum.of_ball += (middle.abs() + radius) * term.of_ball;
@@ -114,7 +173,8 @@ impl Affine {
         }
         let rounding = (count as f64 + 2.0) * ROUNDING * sizes;
         // Products that underflow.
-        let tiny = f64::MIN_POSITIVE * (sum.parts.len() as f64 + 1.0) * count as f64;
+        let tiny = f64::MIN_POSITIVE * (parts.len() as f64 + 1.0) * count as f64;
+        sum.parts = parts.into();
         sum.off = raised(sum.off + raised(rounding, count) + tiny, 2 * count + 4);
         sum.of_ball = if sum.of_ball > 0.0 { raised(sum.of_ball, 2 * count + 4) } else { 0.0 };
         sum
@@ -138,14 +198,13 @@ impl Affine {
     pub(super) fn product(&self, other: &Self) -> (Self, f64) {
         let [of_self, of_other] = [self.spread(), other.spread()];
         let mut linear = Self { centre: self.centre * other.centre, ..Self::default() };
-        linear.parts.resize(self.parts.len().max(other.parts.len()), 0.0);
-        for (place, part) in linear.parts.iter_mut().enumerate() {
-            let at = |parts: &[f64]| parts.get(place).copied().unwrap_or(0.0);
-            *part = self.centre * at(&other.parts) + other.centre * at(&self.parts);
-        }
+        let mut parts = Vec::new();
+        accumulate(&mut parts, self.centre, other.parts.each());
+        accumulate(&mut parts, other.centre, self.parts.each());
         let [own, theirs] = [self.centre.abs(), other.centre.abs()];
         let sizes = raised(own * theirs + own * of_other + theirs * of_self, 6);
-        let tiny = f64::MIN_POSITIVE * (linear.parts.len() as f64 + 1.0);
+        let tiny = f64::MIN_POSITIVE * (parts.len() as f64 + 1.0);
+        linear.parts = parts.into();
         let off = raised(own + of_self + self.off, 3) * other.off
             + raised(theirs + of_other, 2) * self.off
             + 4.0 * ROUNDING * sizes;
@@ -165,5 +224,54 @@ impl Affine {
     /// $a x$.
     pub(super) fn times(&self, factor: Interval) -> Self {
         Self::sum([(factor, self)])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The sum of all magnitudes, in order and in whole numbers, which floating point has exactly.
+    #[test]
+    fn the_spread_of_a_number_is_at_least_its_parts_and_no_more_than_rounding_above() {
+        for count in 0..40_usize {
+            let parts = (0..count).map(|at| if at % 3 == 0 { -(at as f64) } else { at as f64 });
+            let whole = (0..count).sum::<usize>() as f64;
+            let number = Affine { parts: parts.collect(), ..Affine::default() };
+            let spread = number.spread();
+            assert!(
+                spread >= whole && spread <= whole * (1.0 + 1e-12) + 1e-300,
+                "{count}: {spread}"
+            );
+            let wider = number.clone().and_noise(0.75, count + 2);
+            let spread = wider.spread();
+            assert!(spread >= whole + 0.75 && spread <= (whole + 0.75) * (1.0 + 1e-12), "{count}");
+            assert_eq!(wider.parts.of(count + 2).to_bits(), 0.75_f64.to_bits());
+        }
+    }
+
+    /// Terms of different length, each of which has unknowns that others have not.
+    #[test]
+    fn sums_and_products_hold_what_their_terms_make_of_any_unknowns() {
+        let long =
+            Affine { centre: 2.0, parts: vec![0.5, -0.25, 0.125].into(), ..Affine::default() };
+        let short = Affine { centre: -1.0, parts: vec![0.25].into(), ..Affine::default() };
+        let at = |number: &Affine, unknowns: &[f64; 3]| {
+            let parts = number.parts.each().iter().zip(unknowns).map(|(part, it)| part * it);
+            number.centre + parts.sum::<f64>()
+        };
+        let three = Interval::point(3.0);
+        for (one, other) in [(&long, &short), (&short, &long)] {
+            let sum = Affine::sum([(three, one), (-Interval::ONE, other)]);
+            let (product, beside) = one.product(other);
+            for corner in 0..8_u8 {
+                let unknowns =
+                    [0, 1, 2].map(|bit: u8| if corner >> bit & 1 == 1 { 1.0 } else { -1.0 });
+                let [x, y] = [one, other].map(|number| at(number, &unknowns));
+                assert!((at(&sum, &unknowns) - (3.0 * x - y)).abs() <= sum.off + 1e-15);
+                assert!((at(&product, &unknowns) - x * y).abs() <= beside + product.off + 1e-15);
+            }
+            assert!(sum.off < 1e-14 && beside <= 0.25 * 0.875 + 1e-12, "{sum:?} {beside}");
+        }
     }
 }

@@ -7,6 +7,7 @@
 use fspid_numeric::scalar::Interval;
 
 use super::commands::{Along, Commands};
+use super::crew::side_by_side;
 use super::flights::{Beginning, Landed, Patch, Set, Way};
 use super::joined::Joined;
 use super::sample::{Flight, Stop};
@@ -130,50 +131,59 @@ struct Start {
 }
 
 /// Sets of flights of what is commanded.
+#[derive(Clone, Copy)]
 struct Course<'a> {
-    flights: Flights<'a>,
     commands: &'a Commands,
 }
 
 impl Course<'_> {
-    fn start(&mut self, whole: Patch) -> Start {
-        let like = self.flights.begun(Beginning::Controller);
+    fn start(self, flights: &mut Flights<'_>, whole: Patch) -> Start {
+        let like = flights.begun(Beginning::Controller);
         Start { joined: None, like, from: 0, of: Vec::new(), whole }
     }
 
-    fn begun(&mut self, start: &Start, patch: Patch) -> Flight {
-        self.flights.forget();
+    fn begun(self, flights: &mut Flights<'_>, start: &Start, patch: Patch) -> Flight {
+        flights.forget();
         let Start { joined, like, from, .. } = start;
         let of = |joined: &Joined| joined.flight(like, self.commands, patch, *from);
         joined.as_ref().map_or_else(|| like.clone(), of)
     }
 
     /// A part of a leg, up to the next.
-    fn through(&mut self, start: &Start, patch: Patch, to: usize) -> Result<Flight, Stop> {
+    fn through(
+        self,
+        flights: &mut Flights<'_>,
+        (start, patch): (&Start, Patch),
+        to: usize,
+    ) -> Result<Flight, Stop> {
         let way = Way { commands: self.commands, patch, from: Beginning::Controller };
-        let begun = self.begun(start, patch);
-        self.flights.until(&way, begun, [start.from, to])
+        let begun = self.begun(flights, start, patch);
+        flights.until(&way, begun, [start.from, to])
     }
 
     /// A part of the last leg, to where it has landed.
-    fn until_rest(&mut self, start: &Start, patch: Patch) -> Result<Landed, Stop> {
+    fn until_rest(
+        self,
+        flights: &mut Flights<'_>,
+        (start, patch): (&Start, Patch),
+    ) -> Result<Landed, Stop> {
         let way = Way { commands: self.commands, patch, from: Beginning::Controller };
-        let begun = self.begun(start, patch);
-        self.flights.landed(&way, begun, start.from)
+        let begun = self.begun(flights, start, patch);
+        flights.landed(&way, begun, start.from)
     }
 
     /// What a group of the next leg begins with.
-    fn next(&self, sets: &[Set], of: Vec<usize>, from: usize) -> Option<Start> {
+    fn next(flights: &Flights<'_>, sets: &[Set], of: Vec<usize>, from: usize) -> Option<Start> {
         let joined = of.iter().map(|place| sets.get(*place)).collect::<Option<Vec<&Set>>>()?;
         let (first, like) = joined.first()?;
         let whole = joined.iter().fold(*first, |whole, (patch, _)| whole.hull(patch));
         let like = like.clone();
-        Some(Start { joined: Some(self.flights.joined(&joined)?), like, from, of, whole })
+        Some(Start { joined: Some(flights.joined(&joined)?), like, from, of, whole })
     }
 
     /// Groups of sets whose gains are all within a share of what they can reach.
-    fn groups(&self, sets: &[Set], share: f64) -> Vec<Vec<usize>> {
-        let gains = sets.iter().map(|(_, flight)| self.flights.gains_of_reach(flight));
+    fn groups(flights: &Flights<'_>, sets: &[Set], share: f64) -> Vec<Vec<usize>> {
+        let gains = sets.iter().map(|(_, flight)| flights.gains_of_reach(flight));
         let gains: Vec<[Interval; 3]> = gains.collect();
         let middle = |place: &usize| gains[*place].iter().map(|it| it.midpoint()).sum::<f64>();
         let mut order: Vec<usize> = (0..sets.len()).collect();
@@ -209,24 +219,24 @@ struct Fineness {
 }
 
 /// A search for legs.
+#[derive(Clone, Copy)]
 struct Legs<'a> {
     course: Course<'a>,
     fineness: Fineness,
-    /// Work of a check so far, and the most.
-    of_check: usize,
-    most_checked: usize,
 }
 
 impl Legs<'_> {
-    fn found(mut self, whole: Patch, dt_s: f64) -> Option<Vec<Leg>> {
+    fn found(self, flights: &mut Flights<'_>, whole: Patch, dt_s: f64) -> Option<Vec<Leg>> {
         let planned = self.course.commands.legs(dt_s);
-        let mut starts = vec![self.course.start(whole)];
+        let mut starts = vec![self.course.start(flights, whole)];
         let mut legs = Vec::new();
         for (place, &(_, along)) in planned.iter().enumerate() {
             let to = planned.get(place + 1).map(|(from, _)| *from);
             let (mut groups, mut sets) = (Vec::new(), Vec::new());
-            for start in &starts {
-                let (group, own) = self.divided(start, along, to).ok()?;
+            let divided = side_by_side(flights, &starts, |flights, start| {
+                self.divided(flights, start, along, to)
+            });
+            for ((group, own), _) in divided.ok()? {
                 groups.push(group);
                 sets.extend(own);
             }
@@ -236,8 +246,8 @@ impl Legs<'_> {
             }
             legs.push(leg);
             if let Some(to) = to {
-                let groups = self.course.groups(&sets, self.fineness.gains).into_iter();
-                let next = groups.map(|of| self.course.next(&sets, of, to));
+                let groups = Course::groups(flights, &sets, self.fineness.gains).into_iter();
+                let next = groups.map(|of| Course::next(flights, &sets, of, to));
                 starts = next.collect::<Option<_>>()?;
             }
         }
@@ -246,7 +256,8 @@ impl Legs<'_> {
 
     /// Parts of a group, each of which is flown, with the sets that they come to before the next leg.
     fn divided(
-        &mut self,
+        self,
+        flights: &mut Flights<'_>,
         start: &Start,
         along: Along,
         to: Option<usize>,
@@ -264,7 +275,6 @@ impl Legs<'_> {
             }
         };
         let ends = swept(if of_load { load } else { setpoint }, &mut |piece| {
-            let before = self.course.flights.flown;
             let mut own = Vec::new();
             for pair in others.windows(2) {
                 let other = [pair[0], pair[1]];
@@ -272,11 +282,10 @@ impl Legs<'_> {
                     true => Patch { setpoint: other, load: piece },
                     false => Patch { setpoint: piece, load: other },
                 };
-                own.extend(self.part(start, patch, to)?);
+                own.extend(self.part(flights, (start, patch), to)?);
             }
-            self.of_check += self.course.flights.flown - before;
             sets.extend(own);
-            if self.of_check > self.most_checked { Err(Stop::Lost) } else { Ok(()) }
+            Ok(())
         })?;
         let (setpoints_rad, loads_rad) = if of_load { (others, ends) } else { (ends, others) };
         Ok((Group { of: start.of.clone(), setpoints_rad, loads_rad }, sets))
@@ -284,21 +293,21 @@ impl Legs<'_> {
 
     /// A part of a leg; of one before the last what it comes to, where its flights are near each other.
     fn part(
-        &mut self,
-        start: &Start,
-        patch: Patch,
+        self,
+        flights: &mut Flights<'_>,
+        of: (&Start, Patch),
         to: Option<usize>,
     ) -> Result<Option<Set>, Stop> {
         let Some(to) = to else {
-            return self.course.until_rest(start, patch).map(|_| None);
+            return self.course.until_rest(flights, of).map(|_| None);
         };
-        let flight = self.course.through(start, patch, to)?;
+        let flight = self.course.through(flights, of, to)?;
         let Commands { setpoint_rad, load_rad, .. } = self.course.commands;
         let apart_rad = self.fineness.apart * (setpoint_rad + load_rad);
-        let gains = self.course.flights.gains_of_reach(&flight).map(Interval::width);
-        let near = self.course.flights.apart_rad(&flight) <= apart_rad
+        let gains = flights.gains_of_reach(&flight).map(Interval::width);
+        let near = flights.apart_rad(&flight) <= apart_rad
             && gains.iter().all(|width| *width <= OF_GROUP * self.fineness.gains);
-        if near { Ok(Some((patch, flight))) } else { Err(Stop::Lost) }
+        if near { Ok(Some((of.1, flight))) } else { Err(Stop::Lost) }
     }
 }
 
@@ -350,10 +359,13 @@ impl Search<'_> {
         searches.into_iter().find_map(|(size, fineness)| {
             let commands = commands.scaled(size);
             let flights = Flights::of(certificate, model, set, terminal, system.as_ref())?;
-            let flights = flights.searching(part, *stops);
-            let course = Course { flights, commands: &commands };
-            let legs = Legs { course, fineness, of_check: 0, most_checked };
-            let legs = legs.found(whole(&commands, odd), dt_s)?;
+            let mut flights = flights.searching(part, *stops);
+            let legs = Legs { course: Course { commands: &commands }, fineness };
+            let legs = legs.found(&mut flights, whole(&commands, odd), dt_s)?;
+            // What is found is flown again by whoever checks it.
+            if flights.flown > most_checked {
+                return None;
+            }
             Some(Commanded { commands, terminal: terminal.clone(), legs })
         })
     }
@@ -370,33 +382,32 @@ impl Commanded {
         let mut flights = Flights::of(certificate, model, set, terminal, system.as_ref())
             .ok_or("flights: the loop near rest is not enclosed")?;
         flights.stops = stops;
-        let mut course = Course { flights, commands };
+        let course = Course { commands };
         let whole = whole(commands, is_odd(&certificate.description));
-        let mut starts = vec![course.start(whole)];
+        let mut starts = vec![course.start(&mut flights, whole)];
         let (mut worst, mut count) = (Landed::default(), 0);
         for (place, leg) in legs.iter().enumerate() {
-            let next = legs.get(place + 1);
-            let mut sets = Vec::new();
+            let mut parts = Vec::new();
             for (start, group) in starts.iter().zip(&leg.groups) {
                 group.fills(start.whole)?;
-                let patches = group.patches();
-                count += patches.len();
-                for patch in patches {
-                    match next {
-                        Some(next) => {
-                            let flight = course.through(start, patch, next.from_sample);
-                            sets.push((patch, flight.map_err(given_up)?));
-                        }
-                        None => {
-                            let landed = course.until_rest(start, patch).map_err(given_up)?;
-                            worst = worst.worse(landed);
-                        }
-                    }
-                }
+                parts.extend(group.patches().into_iter().map(|patch| (start, patch)));
             }
-            if let Some(next) = next {
-                starts = next.starts(&course, &sets)?;
-            }
+            count += parts.len();
+            let Some(next) = legs.get(place + 1) else {
+                let landed = side_by_side(&mut flights, &parts, |flights, of| {
+                    course.until_rest(flights, *of)
+                });
+                let landed = landed.map_err(given_up)?.into_iter();
+                worst = landed.fold(worst, |worst, (landed, _)| worst.worse(landed));
+                break;
+            };
+            let flown = side_by_side(&mut flights, &parts, |flights, of| {
+                course.through(flights, *of, next.from_sample)
+            });
+            let flown = flown.map_err(given_up)?.into_iter();
+            let patches = parts.iter().map(|(_, patch)| *patch);
+            let sets: Vec<Set> = patches.zip(flown.map(|(flight, _)| flight)).collect();
+            starts = next.starts(&flights, &sets)?;
         }
         Ok(Ended {
             setpoint_rad: commands.setpoint_rad,
@@ -427,14 +438,16 @@ impl Commanded {
 
 impl Leg {
     /// What its groups begin with, each set of the leg before in one of them.
-    fn starts(&self, course: &Course<'_>, sets: &[Set]) -> Result<Vec<Start>, &'static str> {
+    fn starts(&self, flights: &Flights<'_>, sets: &[Set]) -> Result<Vec<Start>, &'static str> {
         let mut places: Vec<usize> = self.groups.iter().flat_map(|it| it.of.clone()).collect();
         places.sort_unstable();
         if !places.into_iter().eq(0..sets.len()) {
             return Err("flights: a set is in no group, or in two, or is not there");
         }
-        let starts =
-            self.groups.iter().map(|group| course.next(sets, group.of.clone(), self.from_sample));
+        let starts = self
+            .groups
+            .iter()
+            .map(|group| Course::next(flights, sets, group.of.clone(), self.from_sample));
         starts.collect::<Option<_>>().ok_or("flights: a group of no set")
     }
 }

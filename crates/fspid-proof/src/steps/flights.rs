@@ -40,6 +40,7 @@ const SHARES: [f64; 7] = [0.001, 0.01, 0.05, 0.1, 0.25, 0.5, 1.0];
 const FAR: f64 = 30.0;
 
 /// The loop made ready for sets of flights.
+#[derive(Clone)]
 pub(super) struct Ready<'a> {
     flown: Flown<'a>,
     /// In which the ball is counted.
@@ -217,7 +218,7 @@ impl<'a> Ready<'a> {
     pub(super) fn apart_rad(&self, flight: &Flight) -> f64 {
         let mut pitch = flight.values[0].clone();
         pitch.of_ball += self.flown.reach[0] * flight.ball;
-        pitch.parts.iter_mut().take(OWN).for_each(|part| *part = 0.0);
+        pitch.parts = pitch.parts.each().iter().skip(OWN).copied().collect();
         pitch.radius()
     }
 
@@ -285,11 +286,7 @@ impl<'a> Ready<'a> {
     fn absorb(&self, flight: &mut Flight) {
         let own = OWN..flight.symbols;
         let column = |flight: &Flight, symbol: usize| -> Vec<f64> {
-            flight
-                .values
-                .iter()
-                .map(|value| value.parts.get(symbol).copied().unwrap_or(0.0))
-                .collect()
+            flight.values.iter().map(|value| value.parts.of(symbol)).collect()
         };
         let mut sizes: Vec<(f64, usize)> =
             own.map(|symbol| (self.norm.size_of(&column(flight, symbol)), symbol)).collect();
@@ -301,7 +298,7 @@ impl<'a> Ready<'a> {
             (0..OWN).chain(sizes.iter().map(|(_, symbol)| *symbol)).collect();
         kept.sort_unstable();
         let gone: Vec<usize> = absorbed.iter().map(|(_, symbol)| *symbol).collect();
-        let part = |value: &Affine, symbol: usize| value.parts.get(symbol).copied().unwrap_or(0.0);
+        let part = |value: &Affine, symbol: usize| value.parts.of(symbol);
         let lost = gone.iter().map(|symbol| part(&flight.last, *symbol).abs()).sum::<f64>();
         flight.last.off = raised(flight.last.off + lost, gone.len() + 2);
         for value in flight.values.iter_mut().chain([&mut flight.last]) {
@@ -312,7 +309,7 @@ impl<'a> Ready<'a> {
 
     /// Makes the smallest unknowns one of its own for each number.
     fn gather(&self, flight: &mut Flight) {
-        let part = |value: &Affine, symbol: usize| value.parts.get(symbol).copied().unwrap_or(0.0);
+        let part = |value: &Affine, symbol: usize| value.parts.of(symbol);
         let size = |symbol: usize| -> f64 {
             let column: Vec<f64> = flight.values.iter().map(|value| part(value, symbol)).collect();
             let tuned = flight.tuned.iter().flat_map(Tuned::each);
@@ -389,10 +386,7 @@ impl<'a> Ready<'a> {
             if size > self.within {
                 return false;
             }
-            let column: Vec<f64> = values
-                .iter()
-                .map(|value| value.parts.get(symbol).copied().unwrap_or(0.0))
-                .collect();
+            let column: Vec<f64> = values.iter().map(|value| value.parts.of(symbol)).collect();
             size += self.near.size_of(&column);
         }
         let slewed = self
@@ -444,12 +438,8 @@ impl<'a> Ready<'a> {
             return false;
         };
         for symbol in [SETPOINT, LOAD] {
-            let by: Vec<[f64; 1]> = pushed
-                .flight
-                .values
-                .iter()
-                .map(|value| [value.parts.get(symbol).copied().unwrap_or(0.0)])
-                .collect();
+            let by: Vec<[f64; 1]> =
+                pushed.flight.values.iter().map(|value| [value.parts.of(symbol)]).collect();
             let solved = Matrix::from_rows(&by).and_then(|right| left.solve(&right));
             let Ok(solved) = solved else { return false };
             self.rest[symbol] = solved.data().to_vec();
@@ -474,8 +464,7 @@ impl<'a> Ready<'a> {
             / (Interval::ONE - Interval::point(rate)))
         .upper();
         let command = &moved.flight.last;
-        self.rest_command =
-            [SETPOINT, LOAD].map(|symbol| command.parts.get(symbol).copied().unwrap_or(0.0));
+        self.rest_command = [SETPOINT, LOAD].map(|symbol| command.parts.of(symbol));
         self.off_rest.is_finite()
     }
 
@@ -496,7 +485,7 @@ impl<'a> Ready<'a> {
         };
         if let Some([by_setpoint, by_load]) = at {
             for (place, value) in flight.values.iter_mut().enumerate() {
-                value.parts = vec![by_setpoint[place], by_load[place]];
+                value.parts = vec![by_setpoint[place], by_load[place]].into();
             }
         }
         flight
@@ -564,14 +553,13 @@ fn forced(flown: &Flown<'_>, shares: [f64; PLACES], gains: Between) -> Option<In
         limited: false,
     };
     for (place, value) in flight.values.iter_mut().enumerate() {
-        value.parts = vec![0.0; size];
-        value.parts[place] = 1.0;
+        value.parts = (0..size).map(|at| if at == place { 1.0 } else { 0.0 }).collect();
     }
     let still = Between { radius: [0.0; 3], ..gains };
     let moved = flown.pass(&flight, Moment::Later, Judge::Forced(shares, still)).ok()?;
     let row = |value: &Affine| -> Vec<Interval> {
         let off = Interval::between(-value.off, value.off);
-        let entry = |place: usize| value.parts.get(place).copied().unwrap_or(0.0);
+        let entry = |place: usize| value.parts.of(place);
         (0..size).map(|place| Interval::point(entry(place)) + off).collect()
     };
     let rows: Vec<Vec<Interval>> = moved.flight.values.iter().map(row).collect();

@@ -1,6 +1,7 @@
 //! A step from rest, at any time.
 
 use super::commands::Commands;
+use super::crew::side_by_side;
 use super::flights::{Beginning, Landed, Patch, Way};
 use super::sample::Stop;
 use super::terminal::Terminal;
@@ -63,20 +64,23 @@ struct Boxes<'a> {
 }
 
 impl Boxes<'_> {
-    /// Flies all loads of a piece of set-points, the first sample being the controller's own or not.
-    fn piece(&mut self, setpoint: [f64; 2]) -> Result<Landed, Stop> {
-        let mut worst = Landed::default();
+    /// Flies all loads of pieces of set-points, the first sample being the controller's own or not.
+    fn pieces(&mut self, setpoints: impl IntoIterator<Item = [f64; 2]>) -> Result<Landed, Stop> {
+        let Self { flights, beginnings, load_rad, loads } = self;
+        let at = |part: usize| *load_rad * (2.0 * part as f64 / *loads as f64 - 1.0);
+        let loads = (0..*loads).map(|part| [at(part), at(part + 1)]);
+        let patches = setpoints
+            .into_iter()
+            .flat_map(|setpoint| loads.clone().map(move |load| Patch { setpoint, load }));
+        let sets: Vec<(Patch, Beginning)> =
+            patches.flat_map(|patch| beginnings.iter().map(move |from| (patch, *from))).collect();
         let commands = Commands::step();
-        for part in 0..self.loads {
-            let at = |part: usize| self.load_rad * (2.0 * part as f64 / self.loads as f64 - 1.0);
-            let patch = Patch { setpoint, load: [at(part), at(part + 1)] };
-            for &from in self.beginnings {
-                let way = Way { commands: &commands, patch, from };
-                let begun = self.flights.begun(from);
-                worst = worst.worse(self.flights.landed(&way, begun, 0)?);
-            }
-        }
-        Ok(worst)
+        let landed = side_by_side(flights, &sets, |flights, &(patch, from)| {
+            let way = Way { commands: &commands, patch, from };
+            let begun = flights.begun(from);
+            flights.landed(&way, begun, 0)
+        })?;
+        Ok(landed.into_iter().fold(Landed::default(), |worst, (landed, _)| worst.worse(landed)))
     }
 
     /// Boxes from zero outwards to one side, as far as they are flown within the work of a re-check.
@@ -87,7 +91,7 @@ impl Boxes<'_> {
             let next = if (at + width).abs() >= to.abs() { to } else { at + width };
             let piece = if to < 0.0 { [next, at] } else { [at, next] };
             let before = self.flights.flown;
-            let landed = self.piece(piece);
+            let landed = self.pieces([piece]);
             if landed.is_ok() {
                 of_check += self.flights.flown - before;
                 if of_check > allowed {
@@ -167,10 +171,8 @@ impl Steps {
         let rested_s = flights.rests_s();
         let (load_rad, loads) = (self.load_rad, self.loads);
         let mut boxes = Boxes { flights, beginnings: beginnings(certificate), load_rad, loads };
-        let mut worst = Landed::default();
-        for pair in self.ends.windows(2) {
-            worst = worst.worse(boxes.piece([pair[0], pair[1]]).map_err(given_up)?);
-        }
+        let setpoints = self.ends.windows(2).map(|pair| [pair[0], pair[1]]);
+        let worst = boxes.pieces(setpoints).map_err(given_up)?;
         Ok(Stepped {
             setpoint_rad: self.setpoint_rad,
             load_rad: self.load_rad,

@@ -13,6 +13,8 @@ use crate::gain_set::{GainCell, GainSet, GainsOver};
 pub(super) struct SeenGains<'a> {
     /// The same for any bounds of the inputs, where the law has no memory.
     over: Option<RefCell<Asked<'a>>>,
+    /// Whose gains are asked for.
+    of: Option<(&'a Fspid<f64>, Option<&'a System>)>,
     /// Cells row by row: those of a row have the errors that stand beside them.
     rows: Vec<([f64; 2], Vec<GainCell>)>,
     /// None for fixed gains.
@@ -75,6 +77,19 @@ impl Between {
     }
 }
 
+fn asked<'a>((fspid, system): (&'a Fspid<f64>, Option<&'a System>)) -> Option<RefCell<Asked<'a>>> {
+    let gains = GainsOver::of(fspid.tuner(), system)?;
+    Some(RefCell::new(Asked { gains, last: None }))
+}
+
+/// With nothing asked yet.
+impl Clone for SeenGains<'_> {
+    fn clone(&self) -> Self {
+        let Self { of, ref rows, equations, rest, .. } = *self;
+        Self { over: of.and_then(asked), of, rows: rows.clone(), equations, rest }
+    }
+}
+
 impl<'a> SeenGains<'a> {
     pub(super) fn of(
         set: &GainSet,
@@ -89,13 +104,8 @@ impl<'a> SeenGains<'a> {
             }
         }
         let equations = fspid.map(|fspid| *fspid.tuner_equations());
-        let over = fspid.and_then(|fspid| GainsOver::of(fspid.tuner(), system));
-        Self {
-            over: over.map(|gains| RefCell::new(Asked { gains, last: None })),
-            rows,
-            equations,
-            rest: set.rest,
-        }
+        let of = fspid.map(|fspid| (fspid, system));
+        Self { over: of.and_then(asked), of, rows, equations, rest: set.rest }
     }
 
     /// Forgets what was asked, so that a set of flights does not depend on those before.

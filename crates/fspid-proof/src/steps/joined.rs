@@ -42,8 +42,7 @@ fn numbers<'a>(flown: &'a Flown<'_>, flight: &'a Flight) -> impl Iterator<Item =
 
 /// By how much a number moves with one that is known by a symbol.
 fn slope(of: &Affine, by: &Affine, symbol: usize) -> Option<f64> {
-    let part = |number: &Affine| number.parts.get(symbol).copied().unwrap_or(0.0);
-    let (over, under) = (part(of), part(by));
+    let (over, under) = (of.parts.of(symbol), by.parts.of(symbol));
     (under > 0.0).then(|| over / under)
 }
 

@@ -12,6 +12,7 @@ mod affine;
 mod ball;
 mod commanded;
 mod commands;
+mod crew;
 mod cut;
 mod flights;
 mod flown;

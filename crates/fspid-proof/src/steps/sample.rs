@@ -45,6 +45,7 @@ pub(super) struct Layout {
 }
 
 /// The loop as its samples are flown.
+#[derive(Clone)]
 pub(super) struct Flown<'a> {
     pub(super) layout: Layout,
     /// Rows of the plant over its states, with the command's entry behind.
@@ -454,9 +455,10 @@ impl Pass<'_, '_> {
         }
         let loaded = target.plus(&self.now.load);
         let states = flown.layout.plant;
-        let values: Vec<Affine> = (0..states).map(|place| self.now.values[place].clone()).collect();
+        let now = self.now;
+        let values = &now.values[..states];
         let all = |row: &Vec<Interval>, command: Option<&Affine>| {
-            let own = row.iter().copied().zip(&values);
+            let own = row.iter().copied().zip(values);
             let by_command = row.get(states).copied();
             Affine::sum(own.chain(by_command.zip(command)))
         };

@@ -106,9 +106,7 @@ fn a_set_of_flights_holds_every_flight_of_a_self_tuner_that_remembers() {
             let begun = flights::begun(&loop_, first);
             let tuned = begun.tuned.as_ref().expect("remembers");
             // What is left of one gain's way says nothing of another's.
-            let own = |gain: usize, symbol: usize| {
-                tuned.gains[gain].parts.get(symbol).copied().unwrap_or(0.0) > 0.0
-            };
+            let own = |gain: usize, symbol: usize| tuned.gains[gain].parts.of(symbol) > 0.0;
             let shared = |symbol: &usize| (0..3).filter(|gain| own(*gain, *symbol)).count() > 1;
             assert_eq!((0..begun.symbols).find(shared), None, "{seed} {first:?}");
             let (samples, ended) = held(&loop_, &scenario, patch, (first, at));

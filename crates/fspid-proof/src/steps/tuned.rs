@@ -40,6 +40,7 @@ impl Tuned {
 }
 
 /// The tuner of a loop.
+#[derive(Clone)]
 pub(super) struct Tuner<'a> {
     lines: Lines<'a>,
     equations: TunerEquations<f64>,

@@ -1,5 +1,9 @@
 //! Sets of flights with an account of their work, which a search and a check may not exceed.
 
+use std::num::NonZero;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use fspid_fuzzy::system::System;
 use fspid_numeric::scalar::Interval;
 use fspid_sim::Controller;
@@ -26,6 +30,7 @@ const MOST_CHECKED_REMEMBERED: usize = 16 * MOST_CHECKED;
 const SEARCHED: usize = 6;
 
 /// Sets of flights of a loop with its forms near rest.
+#[derive(Clone)]
 pub(super) struct Flights<'a> {
     ready: Ready<'a>,
     longest: usize,
@@ -35,6 +40,10 @@ pub(super) struct Flights<'a> {
     pub(super) flown: usize,
     pub(super) most: usize,
     pub(super) stops: fn() -> bool,
+    /// Nobody waits for them any more.
+    pub(super) halted: Arc<AtomicBool>,
+    /// As many as that may fly side by side.
+    pub(super) threads: usize,
 }
 
 impl<'a> Flights<'a> {
@@ -57,7 +66,15 @@ impl<'a> Flights<'a> {
             Controller::Fixed(_) => 1,
             Controller::SelfTuning(_) => MOVING,
         };
-        Some(Self { ready, longest, each, flown, most, stops: crate::solve::never })
+        let stops = crate::solve::never;
+        let halted = Arc::new(AtomicBool::new(false));
+        let threads = std::thread::available_parallelism().map_or(1, NonZero::get);
+        Some(Self { ready, longest, each, flown, most, stops, halted, threads })
+    }
+
+    /// The same on another thread, which is told when to stop by `halted` alone.
+    pub(super) fn another(&self) -> Self {
+        Self { stops: crate::solve::never, ..self.clone() }
     }
 
     /// For a search, which may take a part of all that searches may.
@@ -134,9 +151,14 @@ impl<'a> Flights<'a> {
         self.ready.gains_of_reach(flight)
     }
 
+    /// True where who asked does not wait any more.
+    pub(super) fn is_stopped(&self) -> bool {
+        self.halted.load(Ordering::Relaxed) || (self.stops)()
+    }
+
     /// Samples that may still be flown: one flight may go beyond the most work by its own length, and no further.
     fn left(&self) -> Result<usize, Stop> {
-        if (self.stops)() || self.flown > self.most {
+        if self.is_stopped() || self.flown > self.most {
             return Err(Stop::Lost);
         }
         Ok(((self.most - self.flown) / self.each).max(self.longest))
