@@ -236,7 +236,7 @@ impl Legs<'_> {
             let divided = side_by_side(flights, &starts, |flights, start| {
                 self.divided(flights, start, along, to)
             });
-            for ((group, own), _) in divided.ok()? {
+            for (group, own) in divided.ok()? {
                 groups.push(group);
                 sets.extend(own);
             }
@@ -398,15 +398,14 @@ impl Commanded {
                     course.until_rest(flights, *of)
                 });
                 let landed = landed.map_err(given_up)?.into_iter();
-                worst = landed.fold(worst, |worst, (landed, _)| worst.worse(landed));
+                worst = landed.fold(worst, Landed::worse);
                 break;
             };
             let flown = side_by_side(&mut flights, &parts, |flights, of| {
                 course.through(flights, *of, next.from_sample)
             });
-            let flown = flown.map_err(given_up)?.into_iter();
             let patches = parts.iter().map(|(_, patch)| *patch);
-            let sets: Vec<Set> = patches.zip(flown.map(|(flight, _)| flight)).collect();
+            let sets: Vec<Set> = patches.zip(flown.map_err(given_up)?).collect();
             starts = next.starts(&flights, &sets)?;
         }
         Ok(Ended {

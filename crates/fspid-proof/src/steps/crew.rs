@@ -33,13 +33,15 @@ impl<Answer> Board<Answer> {
         self.answers[job] = Some((answer, flown));
         while self.ended.is_none() {
             let Some(Some((answer, flown))) = self.answers.get(self.counted) else { break };
+            if self.flown > self.most {
+                self.ended = Some(Stop::Lost);
+                break;
+            }
+            // What was given up has taken its work too.
+            self.flown += flown;
             match answer {
-                _ if self.flown > self.most => self.ended = Some(Stop::Lost),
                 Err(stop) => self.ended = Some(*stop),
-                Ok(_) => {
-                    self.counted += 1;
-                    self.flown += flown;
-                }
+                Ok(_) => self.counted += 1,
             }
         }
     }
@@ -49,7 +51,7 @@ fn locked<T>(board: &Mutex<T>) -> MutexGuard<'_, T> {
     board.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Does all jobs; their answers in their order, with the work that each has taken.
+/// Does all jobs; their answers in their order. `own` has then flown what those have that count.
 ///
 /// # Errors
 /// The first job that was given up, or that all before it had left no work for.
@@ -57,7 +59,7 @@ pub(super) fn side_by_side<'a, Job: Sync, Answer: Send>(
     own: &mut Flights<'a>,
     jobs: &[Job],
     work: impl Fn(&mut Flights<'a>, &Job) -> Result<Answer, Stop> + Sync,
-) -> Result<Vec<(Answer, usize)>, Stop> {
+) -> Result<Vec<Answer>, Stop> {
     let begun = own.flown;
     let board = Board {
         answers: jobs.iter().map(|_| None).collect(),
@@ -106,8 +108,7 @@ pub(super) fn side_by_side<'a, Job: Sync, Answer: Send>(
     if ended.is_some() || counted < jobs.len() {
         return Err(ended.unwrap_or(Stop::Lost));
     }
-    let all = answers.into_iter().flatten();
-    all.map(|(answer, flown)| answer.map(|answer| (answer, flown))).collect()
+    answers.into_iter().flatten().map(|(answer, _)| answer).collect()
 }
 
 #[cfg(test)]
@@ -137,7 +138,7 @@ mod tests {
         board.tell(1, Err(Stop::Guard), 1);
         assert_eq!(board.ended, None, "the first is not there yet");
         board.tell(0, Ok('a'), 1);
-        assert_eq!((board.ended, board.flown), (Some(Stop::Guard), 1));
+        assert_eq!((board.ended, board.flown), (Some(Stop::Guard), 2), "with its own work");
     }
 
     #[test]
@@ -150,7 +151,7 @@ mod tests {
         assert_eq!((board.ended, board.flown, board.counted), (Some(Stop::Lost), 11, 2));
     }
 
-    /// The Navion with a PID behind a servo of 20 deg.
+    /// The Navion with a PID behind a servo of 20 deg/s.
     fn navion() -> (LoopDescription, Gains<f64>) {
         let gains = Gains { kp: 0.82, ki: 0.43, kd: 0.165 };
         let limits = Limits::new(ControllerSetting::OutputLimits, -0.35, 0.35).expect("allowed");
@@ -200,7 +201,7 @@ mod tests {
         for (largest_rad, most, flies) in
             [(fly, all, true), (fly, 700, false), (guarded, all, false)]
         {
-            let alone: (Result<Vec<(Landed, usize)>, Stop>, usize) = flown(&largest_rad, 1, most);
+            let alone: (Result<Vec<Landed>, Stop>, usize) = flown(&largest_rad, 1, most);
             for threads in [2, 3, 8] {
                 assert_eq!(flown(&largest_rad, threads, most), alone, "{threads} threads");
             }

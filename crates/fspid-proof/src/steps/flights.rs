@@ -298,22 +298,22 @@ impl<'a> Ready<'a> {
             (0..OWN).chain(sizes.iter().map(|(_, symbol)| *symbol)).collect();
         kept.sort_unstable();
         let gone: Vec<usize> = absorbed.iter().map(|(_, symbol)| *symbol).collect();
-        let part = |value: &Affine, symbol: usize| value.parts.of(symbol);
-        let lost = gone.iter().map(|symbol| part(&flight.last, *symbol).abs()).sum::<f64>();
+        let lost = gone.iter().map(|symbol| flight.last.parts.of(*symbol).abs()).sum::<f64>();
         flight.last.off = raised(flight.last.off + lost, gone.len() + 2);
         for value in flight.values.iter_mut().chain([&mut flight.last]) {
-            value.parts = kept.iter().map(|symbol| part(value, *symbol)).collect();
+            value.parts = kept.iter().map(|symbol| value.parts.of(*symbol)).collect();
         }
         flight.symbols = kept.len();
     }
 
     /// Makes the smallest unknowns one of its own for each number.
     fn gather(&self, flight: &mut Flight) {
-        let part = |value: &Affine, symbol: usize| value.parts.of(symbol);
         let size = |symbol: usize| -> f64 {
-            let column: Vec<f64> = flight.values.iter().map(|value| part(value, symbol)).collect();
+            let column: Vec<f64> =
+                flight.values.iter().map(|value| value.parts.of(symbol)).collect();
             let tuned = flight.tuned.iter().flat_map(Tuned::each);
-            self.near.size_of(&column) + tuned.map(|value| part(value, symbol).abs()).sum::<f64>()
+            self.near.size_of(&column)
+                + tuned.map(|value| value.parts.of(symbol).abs()).sum::<f64>()
         };
         let mut sizes: Vec<(f64, usize)> =
             (OWN..flight.symbols).map(|symbol| (size(symbol), symbol)).collect();
@@ -330,9 +330,9 @@ impl<'a> Ready<'a> {
         flight.ball = 0.0;
         let tuned = flight.tuned.iter_mut().flat_map(Tuned::each_mut);
         for value in flight.values.iter_mut().chain([&mut flight.last]).chain(tuned) {
-            let sum = gone.iter().map(|(_, symbol)| part(value, *symbol).abs()).sum::<f64>();
+            let sum = gone.iter().map(|(_, symbol)| value.parts.of(*symbol).abs()).sum::<f64>();
             let sum = raised(sum + value.off + value.of_ball, gone.len() + 2);
-            let parts = kept.iter().map(|symbol| part(value, *symbol)).collect();
+            let parts = kept.iter().map(|symbol| value.parts.of(*symbol)).collect();
             let whole = Affine { centre: value.centre, parts, off: 0.0, of_ball: 0.0 };
             *value = whole.and_noise(sum, symbols);
             symbols += 1;
@@ -559,8 +559,7 @@ fn forced(flown: &Flown<'_>, shares: [f64; PLACES], gains: Between) -> Option<In
     let moved = flown.pass(&flight, Moment::Later, Judge::Forced(shares, still)).ok()?;
     let row = |value: &Affine| -> Vec<Interval> {
         let off = Interval::between(-value.off, value.off);
-        let entry = |place: usize| value.parts.of(place);
-        (0..size).map(|place| Interval::point(entry(place)) + off).collect()
+        (0..size).map(|place| Interval::point(value.parts.of(place)) + off).collect()
     };
     let rows: Vec<Vec<Interval>> = moved.flight.values.iter().map(row).collect();
     IntervalMatrix::from_rows(&rows).ok()

@@ -80,7 +80,7 @@ impl Boxes<'_> {
             let begun = flights.begun(from);
             flights.landed(&way, begun, 0)
         })?;
-        Ok(landed.into_iter().fold(Landed::default(), |worst, (landed, _)| worst.worse(landed)))
+        Ok(landed.into_iter().fold(Landed::default(), Landed::worse))
     }
 
     /// Boxes from zero outwards to one side, as far as they are flown within the work of a re-check.
