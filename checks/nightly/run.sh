@@ -24,7 +24,7 @@ firmware|core for a Cortex-M4F|checks/firmware/check.sh
 exports|C on six emulated processors and an AVR|checks/export/check.sh --long
 fmu|FMUs in FMPy, under sanitizers|checks/export/fmu.sh
 evidence|evidence of exports, its verdicts held|checks/export/evidence.sh
-properties|property tests with numbers of this night|PROPTEST_RNG_SEED="$(date +%Y%m%d)" PROPTEST_CASES=2000 cargo test --workspace --locked
+properties|all tests, those that are cut short by day as long as they are, property tests with numbers of this night|FSPID_LONG_TESTS=1 PROPTEST_RNG_SEED="$(date +%Y%m%d)" PROPTEST_CASES=2000 cargo test --workspace --locked
 accepted|1500 drawn scenarios, every command|FSPID_ACCEPTED_DRAWS=1500 cargo test --workspace --locked --test all accepted
 whole-program|laws of every command over 1000 scenarios drawn from the schema, their exports flown, their answers held against schemas|FSPID_WHOLE_DRAWS=1000 FSPID_WHOLE_FIRST="$(date +%Y%m%d)000" cargo test -p fspid-cli --locked --test all whole_program
 false-safe|100 000 loops that are bad by construction, none called good|cargo run --release --locked -p fspid-cli --example false_safe -- 100000 "$(date +%Y%m%d)"

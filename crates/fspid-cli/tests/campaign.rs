@@ -44,7 +44,7 @@ fn done(arguments: &[&str], folder: &Path) -> String {
 const SMALL: [&str; 9] =
     ["campaign", "run", "pitch.toml", "--runs", "40", "--seed", "5", "--shard-runs", "7"];
 /// Enough work that it is still going on when it is interrupted.
-const LARGE: [&str; 7] = ["campaign", "run", "pitch.toml", "--runs", "3000", "--shard-runs", "50"];
+const LARGE: [&str; 7] = ["campaign", "run", "pitch.toml", "--runs", "1200", "--shard-runs", "30"];
 
 fn with<'a>(arguments: &[&'a str], more: &[&'a str]) -> Vec<&'a str> {
     arguments.iter().chain(more).copied().collect()

@@ -198,7 +198,7 @@ fn a_contest_tells_how_near_its_designs_come() {
 #[test]
 fn a_front_holds_a_contest_at_every_effort_and_tells_of_all() {
     let folder = folder_with_contest();
-    let words = contest("12", "2", "front", &["--front", "travel=12,24"]);
+    let words = contest("6", "2", "front", &["--front", "travel=12,24"]);
     let output = fspid(&words, folder.path());
     assert_eq!(code(&output), 0, "{}", text(&output.stderr));
     let answer = json(&output);

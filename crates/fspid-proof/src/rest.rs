@@ -329,8 +329,12 @@ mod tests {
     /// Rest is derived twice, here with bounds and in the simulator for margins: the one holds the other.
     #[test]
     fn what_moving_gains_make_of_a_held_command_lies_within_its_bounds() {
+        // Scenarios of a law that does not remember and that holds a command; the first four are quick.
+        let seeds = [8, 11, 12, 16, 6, 7, 15, 18];
+        let is_long = std::env::var_os("FSPID_LONG_TESTS").is_some();
+        let seeds = if is_long { &seeds[..] } else { &seeds[..4] };
         let mut compared = 0;
-        for seed in 0..200 {
+        for &seed in seeds {
             let scenario = drawn::scenario(&mut Dice::new(seed));
             let (plant, named) = (scenario.plant.linear(), &scenario.controllers[0]);
             let Controller::SelfTuning(fspid) = &named.controller else { continue };
@@ -360,10 +364,7 @@ mod tests {
                 assert!(by_change <= change + slack, "{seed}: {by_change} {change}");
             }
             compared += 1;
-            if compared == 8 {
-                break;
-            }
         }
-        assert_eq!(compared, 8);
+        assert_eq!(compared, seeds.len());
     }
 }

@@ -133,7 +133,7 @@ mod tests {
 
     #[test]
     fn nothing_that_is_bad_by_construction_is_called_good_by_anybody() {
-        let found = battery(20_261_123, 300);
+        let found = battery(20_261_123, 150);
         assert!(found.called_good.is_empty(), "{}", found.called_good.join("\n"));
         assert!(found.refused.is_empty(), "{}", found.refused.join("\n"));
         assert_eq!(found.families.len(), bad::FAMILIES.len(), "{:?}", found.families);

@@ -26,7 +26,7 @@ use schema::Schema;
 /// A proof takes seconds: it is looked for in one of so many.
 const CERTIFY_EVERY: u64 = 40;
 /// Draws of the tests.
-const USUAL: u64 = 8;
+const USUAL: u64 = 5;
 
 /// What `analyse` says where it gives no numbers: too many samples on their way, no equations, an aircraft that leaves its trim.
 const UNANSWERED: [&str; 3] = ["on their way", "no equations", "begun at its trim"];

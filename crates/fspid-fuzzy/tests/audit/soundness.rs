@@ -183,11 +183,16 @@ fn check(system: &System, proved: &OutputSurface, point: &[f64]) -> Result<(), T
     Ok(())
 }
 
+/// How many systems are drawn: the first of those of the long checks.
+fn systems() -> u32 {
+    if std::env::var_os("FSPID_LONG_TESTS").is_some() { 60 } else { 15 }
+}
+
 proptest! {
     // The same systems at each run; other seeds belong to the long checks.
     #![proptest_config(ProptestConfig {
         rng_seed: RngSeed::Fixed(60),
-        ..ProptestConfig::with_cases(60)
+        ..ProptestConfig::with_cases(systems())
     })]
 
     #[test]

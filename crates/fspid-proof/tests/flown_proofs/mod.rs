@@ -12,7 +12,7 @@ use flown::Answer;
 use fspid_sim::Scenario;
 
 /// With these numbers fixed and moving gains, refutations, and claims over a range come up, quickly.
-const SCENARIOS: [u64; 6] = [1, 5, 9, 13, 22, 24];
+const SCENARIOS: [u64; 6] = [0, 2, 4, 5, 9, 11];
 
 /// With these numbers gains that remember, reference models, numbers and followers are proved, over a range as well.
 const STRUCTURES: [u64; 4] = [1, 4, 9, 10];

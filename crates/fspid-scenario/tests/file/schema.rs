@@ -1,7 +1,12 @@
+use std::sync::LazyLock;
+
 use fspid_scenario::file;
 use serde_json::Value;
 
 use crate::file::shipped;
+
+/// Built once: it is asked for every value of every text.
+pub(crate) static SCHEMA: LazyLock<Value> = LazyLock::new(file::schema);
 
 /// Whether a value is valid: the part of draft 2020-12 that the schema uses. `None` where it is,
 /// or the first thing that is not. A word of the schema that is not known here fails the test.
@@ -23,7 +28,7 @@ fn word_fault(
         // Within the document only.
         "$ref" => {
             let name = rule.as_str().expect("a text").trim_start_matches("#/$defs/");
-            return fault(&file::schema()["$defs"][name], value, path);
+            return fault(&SCHEMA["$defs"][name], value, path);
         }
         "properties" => return properties_fault(rule, value, path),
         "allOf" => return list().iter().find_map(|rule| fault(rule, value, path)),
