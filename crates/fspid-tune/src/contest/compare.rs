@@ -281,3 +281,6 @@ impl Pair<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
