@@ -27,6 +27,13 @@ const LONG: [&str; 1] = ["campaign search"];
 const CODES: [(&str, i32); 2] =
     [("aircraft trim navion --speed 60kt", 2), ("verify pitch.toml --library mine.so", 1)];
 
+fn is_skipped(command: &str) -> bool {
+    let is_one_of = |start: &str| command.starts_with(start);
+    let is_long = LONG.into_iter().any(is_one_of);
+    NOT_RUN.iter().any(|(start, _)| is_one_of(start))
+        || (is_long && std::env::var_os("FSPID_LONG_TESTS").is_none())
+}
+
 /// Blocks between fences: language and lines.
 fn blocks(page: &str) -> Vec<(&str, Vec<&str>)> {
     let mut found: Vec<(&str, Vec<&str>)> = Vec::new();
@@ -62,7 +69,6 @@ fn compile(line: &str, folder: &Path) {
 fn run(page: &Path, folder: &Path) -> usize {
     let document = std::fs::read_to_string(page).expect("a page");
     let (mut printed, mut ran, mut skipped) = (String::new(), 0, false);
-    let is_long = std::env::var_os("FSPID_LONG_TESTS").is_some();
     for (language, lines) in blocks(&document) {
         if language == "text" && !skipped {
             for line in lines.iter().filter(|line| !line.is_empty() && !line.contains('→')) {
@@ -85,9 +91,7 @@ fn run(page: &Path, folder: &Path) -> usize {
             }
             let Some(command) = line.strip_prefix(PROGRAM) else { continue };
             let command = command.split(" #").next().unwrap_or_default().trim();
-            skipped =
-                NOT_RUN.iter().map(|(start, _)| start).any(|start| command.starts_with(start))
-                    || (!is_long && LONG.iter().any(|start| command.starts_with(start)));
+            skipped = is_skipped(command);
             if skipped {
                 continue;
             }
