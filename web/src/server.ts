@@ -16,7 +16,7 @@ export class Conflict extends Error {}
 /** What the server does not do, with its sentence. */
 export class Refused extends Error {}
 
-export type JobKind = "tune" | "campaign" | "contest" | "certify";
+export type JobKind = "tune" | "campaign" | "contest" | "certify" | "check";
 export type JobState = "waiting" | "running" | "done" | "failed" | "cancelled";
 
 /** A job as the list of them has it. */

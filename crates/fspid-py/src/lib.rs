@@ -7,6 +7,7 @@ mod aircraft;
 mod answer;
 mod array;
 mod campaign;
+mod certify;
 mod contest;
 mod controller;
 mod crew;
@@ -31,6 +32,8 @@ mod _core {
     use super::array::Column;
     #[pymodule_export]
     use super::campaign::Campaign;
+    #[pymodule_export]
+    use super::certify::{check_certificate, read_certificate};
     #[pymodule_export]
     use super::controller::Controller;
     #[pymodule_export]

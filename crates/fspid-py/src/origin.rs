@@ -63,6 +63,8 @@ impl Origin {
         let written = py.detach(|| {
             let _protected = self.protected();
             output::make_folder(folder)?;
+            // Names may have folders of their own in them.
+            paths.iter().filter_map(|path| path.parent()).try_for_each(output::make_folder)?;
             output::write_all(&whole)
         });
         written.map(|()| paths).map_err(|found| refused(py, &found))

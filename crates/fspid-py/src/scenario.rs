@@ -6,7 +6,6 @@ use std::sync::{Arc, OnceLock};
 use fspid::scenario::count::MAP_POINTS;
 use fspid::scenario::file::{self, STARTERS, Study};
 use fspid::study::analysis::{Analysis, BreakPoint, Question};
-use fspid::study::certify::{self, Certification, Effort};
 use fspid::study::report;
 use fspid::study::simulation::Simulation;
 use fspid::study::verify;
@@ -74,7 +73,7 @@ impl Scenario {
     }
 
     /// Asks something of its text.
-    fn written<T>(&self, ask: impl FnOnce(&Written<'_>) -> T) -> T {
+    pub(crate) fn written<T>(&self, ask: impl FnOnce(&Written<'_>) -> T) -> T {
         let (text, name, folder) = self.origin();
         ask(&Written { text, name: &name, folder, overrides: &self.overrides })
     }
@@ -244,38 +243,6 @@ impl Scenario {
             let page = report::of_analysis(&study, &analysis)?;
             let answer = Answer::new(analysis.text(), &analysis.json(), analysis.all_held());
             Ok::<_, fspid::sim::SimError>(answer.with_page(page).with_curves(analysis.open_loops()))
-        })?;
-        let answer = answer.map_err(|found| error::input(py, found))?;
-        Ok(answer.from(self.made_of()))
-    }
-
-    /// Proofs that its loops stay stable while gains move, with what is asked beside; the files are certificates.
-    fn certify(
-        &self,
-        py: Python<'_>,
-        controller: Option<String>,
-        disturbances: bool,
-        family: bool,
-        nonlinear: bool,
-    ) -> PyResult<Answer> {
-        let names = self.controllers();
-        if let Some(name) = controller.as_ref().filter(|name| !names.contains(name)) {
-            let known: Vec<&str> = names.iter().map(String::as_str).collect();
-            let known = file::known_words(name, &known);
-            return Err(error::input(py, format_args!("there is no controller `{name}`{known}")));
-        }
-        let template = py.detach(|| self.written(|written| written.template()));
-        let template = template.map_err(|found| error::problems(py, &found))?;
-        let answer = interrupt::run(py, move || {
-            let (only, effort) = (controller.as_deref(), &Effort::default());
-            let question = certify::Question { only, disturbances, family, nonlinear, effort };
-            let found = Certification::answering(&template, question, &mut |_| {})?;
-            let files = found.results.iter().filter_map(|it| {
-                Some((found.file_name(it), certify::to_text(it.certificate()?, &it.origin)))
-            });
-            let files = files.collect();
-            let answer = Answer::new(found.text(), &found.json(), found.all_proved());
-            Ok::<_, fspid::sim::SimError>(answer.with_files(files))
         })?;
         let answer = answer.map_err(|found| error::input(py, found))?;
         Ok(answer.from(self.made_of()))

@@ -106,6 +106,63 @@ def test_what_is_asked_beside_stability_is_answered_as_by_the_program(asked, cli
     assert ("family" in controller) == ("family" in asked)
 
 
+CASES = {
+    **NAVION,
+    "tuning": {"case": [{"name": "quick servo"}, {"name": "slow servo", "set": ["actuator.time_constant_s=0.2"]}]},
+}
+
+
+@pytest.mark.parametrize("steps", [False, True])
+def test_cases_are_certified_as_by_the_program_and_each_certificate_is_proved_anew(steps, cli, tmp_path):
+    scenario = fspid.Scenario.from_dict(CASES).with_(loop={"duration_s": 6.0})
+    path = written(scenario, tmp_path)
+    answer = scenario.certify(cases="tuning", steps=steps)
+    words = ["--cases", "tuning", *(["--steps"] if steps else []), "--set", "loop.duration_s=6.0"]
+    assert answer.to_dict() == json.loads(cli("certify", path, *words, "--out", "certificates", "--format", "json"))
+    assert str(answer) == cli("certify", path, *words)
+    assert answer.good and sorted(answer.certificates) == [
+        "quick servo/PID.certificate.json",
+        "slow servo/PID.certificate.json",
+    ]
+    answer.save(tmp_path / "ours")
+    for name, text in answer.certificates.items():
+        assert (tmp_path / "certificates" / name).read_text() == (tmp_path / "ours" / name).read_text() == text
+    slow = scenario.with_(actuator={"time_constant_s": 0.2})
+    certificate = fspid.Certificate.from_file(tmp_path / "ours" / "slow servo" / "PID.certificate.json")
+    assert certificate.check(slow) and certificate.check().verdict == "holds"
+    assert certificate.check(scenario).verdict == "another loop"
+
+
+def test_a_certificate_is_checked_as_by_the_program(step, cli, tmp_path):
+    path = written(step, tmp_path)
+    step.certify().save(tmp_path / "certificates")
+    for file in sorted((tmp_path / "certificates").iterdir()):
+        certificate = fspid.Certificate.from_file(file)
+        for against, words in ((None, ()), (step, ("--against", path))):
+            answer = certificate.check(against)
+            theirs = cli("certify", "--check", file, *words, "--format", "json")
+            assert answer.to_dict() == json.loads(theirs)
+            assert str(answer) == cli("certify", "--check", file, *words)
+        edited = fspid.Certificate.from_text(certificate.text.replace('"program"', '"programme"'))
+        with pytest.raises(fspid.InputError, match="certificate: .*program"):
+            edited.check()
+        edited = fspid.Certificate.from_text(certificate.text.replace(step.digest, "0" * 64))
+        assert not edited.check() and edited.check().verdict == "edited"
+
+
+def test_what_cannot_be_certified_or_checked_is_told_with_what_is_allowed(step, tmp_path):
+    with pytest.raises(fspid.InputError, match="no cases `tunings`.*`tuning`"):
+        step.certify(cases="tunings")
+    with pytest.raises(fspid.InputError, match=r"the scenario has no cases of \[contest\]"):
+        step.certify(cases="contest")
+    with pytest.raises(fspid.InputError, match="steps=True goes with cases"):
+        step.certify(steps=True)
+    with pytest.raises(fspid.FileError, match="none"):
+        fspid.Certificate.from_file(tmp_path / "none")
+    with pytest.raises(fspid.InputError, match="certificate: "):
+        fspid.Certificate.from_text("{}").check()
+
+
 def test_a_tuned_design_is_that_of_the_program(cli, tmp_path):
     path = ROOT / "scenarios" / "gallery" / "tune-navion.toml"
     design = fspid.Scenario.from_file(path).tune(budget=40, out=tmp_path / "ours.toml")

@@ -216,6 +216,49 @@ fn a_proof_answers_what_is_asked_beside_stability_and_its_certificates_hold_alon
 }
 
 #[test]
+fn a_proof_of_all_cases_tells_each_and_its_certificates_are_proved_anew_against_what_flies() {
+    let served = Served::new();
+    let text = include_str!("data/navion.toml").to_owned()
+        + "\n[[tuning.case]]\nname = \"as it is\"\n[[tuning.case]]\nname = \"slow servo\"\nset = [\"actuator.time_constant_s=0.2\"]\n";
+    std::fs::write(served.path("mine.toml"), text).expect("written");
+    let done = |kind: &str, options: Value| {
+        let events = served.followed(&served.begin(kind, options));
+        assert_eq!(ended(&events).0, "done", "{events:?}");
+        (ended(&events).1.clone(), events)
+    };
+    let (found, events) = done("certify", json!({ "cases": "tuning" }));
+    let told = found["text"].as_str().expect("a text");
+    assert!(told.contains("PID: PROVED at all 2 cases of [tuning]"), "{told}");
+    let progress = events.iter().rfind(|(_, name, _)| name == "progress").map(|it| &it.2);
+    let progress = progress.expect("progress");
+    assert_eq!((&progress["done"], &progress["total"]), (&json!(1), &json!(2)));
+    assert!(progress["text"].as_str().is_some_and(|it| it.ends_with("PID at slow servo")));
+    let names: Vec<_> = found["certificates"].as_array().expect("a list").iter().collect();
+    let of = |place: usize, key: &str| names[place][key].as_str().expect("a text").to_owned();
+    assert_eq!(
+        [of(0, "name"), of(1, "name")],
+        ["as it is/PID.certificate.json", "slow servo/PID.certificate.json"]
+    );
+    let slow = json!(["actuator.time_constant_s=0.2"]);
+    let (checked, _) = done("check", json!({ "certificate": of(1, "text"), "set": slow }));
+    assert_eq!((&checked["holds"], &checked["json"]["answer"]), (&json!(true), &json!("holds")));
+    let (checked, _) = done("check", json!({ "certificate": of(1, "text") }));
+    assert_eq!(checked["json"]["answer"], "another loop");
+    let listed = served.json("/api/jobs")[0]["options"].clone();
+    assert!(listed["certificate"].is_null() && listed["certificate_digest"].is_string());
+    let events = served.followed(&served.begin("check", json!({ "certificate": "{}" })));
+    assert_eq!(ended(&events).0, "failed", "{events:?}");
+    let refused = |options: Value| {
+        let asked = json!({ "kind": "certify", "id": served.id("mine.toml"), "options": options });
+        served.ask("POST", "/api/jobs", Some(asked)).error(400)
+    };
+    let told = refused(json!({ "cases": "tunning" }));
+    assert!(told.contains("`tuning`"), "{told}");
+    let told = refused(json!({ "steps": true }));
+    assert!(told.contains("`steps` goes with `cases`"), "{told}");
+}
+
+#[test]
 fn a_question_that_there_is_not_is_refused_with_those_that_there_are() {
     let served = Served::new();
     let asked =

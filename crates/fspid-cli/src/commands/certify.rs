@@ -1,6 +1,6 @@
 //! `fspid certify`: stability while the gains move.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
 use clap::Args;
@@ -12,7 +12,8 @@ use crate::argument::{Folder, InFile};
 use crate::exit::{Failure, note, print};
 use fspid_scenario::file::{self, Study, Template};
 use fspid_study::certify::{
-    self, Answer, Cases, Certification, CertifiedCases, Change, CheckedFile, Effort, Question,
+    self, Answer, Cases, CertificateFile, Certification, CertifiedCases, CheckedFile, Effort,
+    NotWritable, Question,
 };
 use fspid_study::output;
 
@@ -127,7 +128,8 @@ fn prove(path: &Path, arguments: &Arguments) -> Result<(), Failure> {
     }
     let certification = certification.map_err(Failure::input)?;
     if let Some(folder) = &arguments.out {
-        write(&certification, folder)?;
+        certification.changed_names().iter().for_each(note);
+        write(folder, certification.certificate_files())?;
     }
     let answer = || (certification.text(), certification.json());
     told(answer, study, arguments)?;
@@ -169,36 +171,22 @@ fn prove_cases(
     arguments: &Arguments,
 ) -> Result<(), Failure> {
     let study = template.study();
-    let mut cases = CertifiedCases::new(study, which).map_err(Failure::input)?;
+    let effort = Effort { long_flights: arguments.steps, ..Effort::default() };
+    let source = (path, arguments.overrides.as_slice());
     let telling = Telling::for_standard_error();
-    for change in cases.changes().to_vec() {
-        let changed = changed(path, &change, arguments)?;
-        let effort = Effort { long_flights: arguments.steps, ..Effort::default() };
-        let question = question(arguments, &effort);
-        let added = certifying(telling, |tell| {
-            let mut tell = |name: &str| tell(&format!("{name} at {}", change.name));
-            cases.add(&change, &changed, question, &mut tell)
-        });
-        added.map_err(Failure::input)?;
-    }
+    let cases = certifying(telling, |tell| {
+        CertifiedCases::answering(source, study, which, question(arguments, &effort), tell)
+    });
     if telling == Telling::Line {
         tell(telling, "");
     }
+    let cases = cases.map_err(Failure::input)?;
     if let Some(folder) = &arguments.out {
-        output::make_folder(folder)?;
-        for case in cases.cases() {
-            write(&case.certification, &folder.join(cases.folder(&case.change)))?;
-        }
+        cases.changed_names().iter().for_each(note);
+        write(folder, cases.certificate_files())?;
     }
     told(|| (cases.text(), cases.json()), study, arguments)?;
     met(cases.all_proved())
-}
-
-/// The scenario with a change, and with what was set for all of them.
-fn changed(path: &Path, change: &Change, arguments: &Arguments) -> Result<Template, Failure> {
-    let overrides: Vec<String> = change.set.iter().chain(&arguments.overrides).cloned().collect();
-    Template::load(path, &overrides)
-        .map_err(|problems| Failure::input(format_args!("{}: {problems}", change.name)))
 }
 
 /// What is asked of the scenario, or of each of its cases.
@@ -226,23 +214,16 @@ fn certifying<T>(telling: Telling, work: impl FnOnce(&mut dyn FnMut(&str)) -> T)
     })
 }
 
-fn write(certification: &Certification, folder: &Path) -> Result<(), Failure> {
+/// Writes certificates into a folder, all of them or none.
+fn write(folder: &Path, files: Result<Vec<CertificateFile>, NotWritable>) -> Result<(), Failure> {
+    let files = files.map_err(Failure::input)?;
+    let paths: Vec<PathBuf> = files.iter().map(|file| folder.join(&file.name)).collect();
     output::make_folder(folder)?;
-    let mut files = Vec::new();
-    for certified in &certification.results {
-        let Some(certificate) = certified.certificate() else { continue };
-        certification.changed_name(certified).iter().for_each(note);
-        let text = certify::to_text(certificate, &certified.origin);
-        // What cannot be read again is not written: a number of the scenario is beyond all ranges.
-        certify::from_text(&text).map_err(|refused| {
-            let name = &certified.controller;
-            Failure::input(format_args!("no certificate can be written of {name}:\n{refused}"))
-        })?;
-        files.push((folder.join(certification.file_name(certified)), text));
-    }
-    let whole: Vec<_> = files.iter().map(|(path, text)| (path.clone(), text.as_bytes())).collect();
+    paths.iter().filter_map(|path| path.parent()).try_for_each(output::make_folder)?;
+    let texts = files.iter().map(|file| file.text.as_bytes());
+    let whole: Vec<(PathBuf, &[u8])> = paths.iter().cloned().zip(texts).collect();
     output::write_all(&whole)?;
-    for (path, _) in files {
+    for path in paths {
         note(format_args!("wrote {0}; verify it with `fspid certify --check {0}`", path.display()));
     }
     Ok(())

@@ -166,7 +166,15 @@ impl Certificate {
     /// # Errors
     /// [`RecheckError`] with the first inequality that is not proved.
     pub fn check(&self) -> Result<Rechecked, RecheckError> {
-        Recheck::of(self)?.run()
+        self.check_until(never)
+    }
+
+    /// As [`check`](Self::check) for somebody who may not want the answer any more: where `stops` says so, nothing is proved.
+    ///
+    /// # Errors
+    /// As [`check`](Self::check).
+    pub fn check_until(&self, stops: fn() -> bool) -> Result<Rechecked, RecheckError> {
+        Recheck::of(self)?.until(stops).run()
     }
 }
 

@@ -14,8 +14,21 @@ from typing import Any
 from . import aircraft, lti
 from ._core import VERSION as __version__
 from ._core import Column
-from .answers import Absent, Analysis, Answer, Certification, Columns, Contest, Design, Flight, Trace, Verification
+from .answers import (
+    Absent,
+    Analysis,
+    Answer,
+    CertificateCheck,
+    Certification,
+    Columns,
+    Contest,
+    Design,
+    Flight,
+    Trace,
+    Verification,
+)
 from .campaign import Campaign, CampaignSummary
+from .certificate import Certificate
 from .controllers import Controller, Fspid, Pid
 from .errors import Error, FileError, InputError, Problem, ScenarioError
 from .fuzzy import Audit, Explanation, FuzzySystem, Increments, Supervisor, Surface
@@ -28,6 +41,8 @@ __all__ = [
     "Audit",
     "Campaign",
     "CampaignSummary",
+    "Certificate",
+    "CertificateCheck",
     "Certification",
     "Column",
     "Columns",

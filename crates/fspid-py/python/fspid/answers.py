@@ -368,14 +368,21 @@ class Certification(Answer):
 
     @property
     def certificates(self) -> dict[str, str]:
-        """Certificates by file name: ``fspid certify --check`` verifies them without trust in who wrote them."""
+        """Certificates by file name, with the name of the case before it where there are cases.
+
+        :meth:`fspid.Certificate.check` and ``fspid certify --check`` verify them without trust in who wrote them.
+        """
         return dict(self._native.files)
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the gains that each verdict is about with matplotlib, each over the middle of its range."""
         from .plot import boxes
 
-        return boxes(ax, self.to_dict()["controllers"])
+        answer = self.to_dict()
+        if "cases" not in answer:
+            return boxes(ax, answer["controllers"])
+        each = [(case["name"], it) for case in answer["cases"] for it in case["controllers"]]
+        return boxes(ax, [{**it, "name": f"{it['name']} at {case}"} for case, it in each])
 
     def save(self, folder: str | PathLike[str]) -> list[Path]:
         """Write the certificates into a folder, which is made if it is not there: all of them, or none.
@@ -388,6 +395,16 @@ class Certification(Answer):
             One would be written over a file that it is made of.
         """
         return [Path(path) for path in self._native.save_files(Path(folder))]
+
+
+class CertificateCheck(Answer):
+    """A certificate that was proved anew, or why it does not hold."""
+
+    @property
+    def verdict(self) -> str:
+        """``holds``, or what it comes to in place of that: ``refutes``, ``not proved``, ``edited``, ``another loop``, …"""
+        answer: str = self.to_dict()["answer"]
+        return answer
 
 
 class Design(Answer):

@@ -184,6 +184,8 @@ class Scenario:
         disturbances: bool = False,
         family: bool = False,
         nonlinear: bool = False,
+        cases: str | None = None,
+        steps: bool = False,
     ) -> Certification:
         """Prove that loops stay stable while their gains move; takes up to half a minute a controller.
 
@@ -197,14 +199,28 @@ class Scenario:
             Certify as well, at once, all plants and actuators that the scenario's dispersions can draw.
         nonlinear : bool
             Certify as well the nonlinear aircraft in a box around its trim. Takes some seconds more.
+        cases : {"tuning", "contest", "choices"}, optional
+            Certify each of these cases in place of the scenario as it stands: those it is tuned on, those its contest judges
+            by, or every combination of what its dispersions choose among. Its changes hold in every case.
+        steps : bool
+            With ``cases``: fly in sets what each case commands, and the steps of self-tuners that remember, as is done without
+            ``cases``. Takes a minute or two for each case.
 
         Returns
         -------
         Certification
             True in a condition where all that was asked is proved. Its certificates have it all, and
-            ``fspid certify --check`` believes nothing of it without proving it anew.
+            :meth:`Certificate.check` believes nothing of it without proving it anew.
         """
-        return Certification(self._core.certify(controller, disturbances, family, nonlinear))
+        wanted = {
+            "controller": controller,
+            "disturbances": disturbances,
+            "family": family,
+            "nonlinear": nonlinear,
+            "cases": cases,
+            "steps": steps,
+        }
+        return Certification(self._core.certify(wanted))
 
     def verify(
         self,

@@ -5,6 +5,7 @@ use serde_json::Value;
 
 use super::campaign::Campaign;
 use super::certify::Certify;
+use super::check::Check;
 use super::contest::Contest;
 use super::tune::Tune;
 use crate::answer::Refusal;
@@ -15,7 +16,7 @@ use crate::request::Fields;
 pub(crate) struct Asked {
     /// Id of the scenario.
     pub(crate) scenario: String,
-    /// The options as they came.
+    /// The options as they came, but for a whole certificate.
     pub(super) options: Value,
     pub(super) work: Work,
 }
@@ -27,10 +28,11 @@ pub(super) enum Work {
     Campaign(Campaign),
     Contest(Contest),
     Certify(Certify),
+    Check(Check),
 }
 
 /// Their names.
-const KINDS: [&str; 4] = ["tune", "campaign", "contest", "certify"];
+const KINDS: [&str; 5] = ["tune", "campaign", "contest", "certify", "check"];
 
 impl Asked {
     /// Reads `{kind, id, options}`.
@@ -44,13 +46,18 @@ impl Asked {
             "campaign" => Work::Campaign(Campaign::read(&mut options)?),
             "contest" => Work::Contest(Contest::read(&mut options)?),
             "certify" => Work::Certify(Certify::read(&mut options)?),
+            "check" => Work::Check(Check::read(&mut options)?),
             other => {
                 let known = fspid_diagnostics::known_words(other, &KINDS);
                 return Err(Refusal::wrong(format_args!("there is no job `{other}`{known}")));
             }
         };
         options.end()?;
-        Ok(Self { scenario, options: as_asked, work })
+        let options = match &work {
+            Work::Check(check) => check.told(),
+            _ => as_asked,
+        };
+        Ok(Self { scenario, options, work })
     }
 }
 
@@ -61,6 +68,7 @@ impl Work {
             Self::Campaign(_) => "campaign",
             Self::Contest(_) => "contest",
             Self::Certify(_) => "certify",
+            Self::Check(_) => "check",
         }
     }
 
@@ -71,6 +79,7 @@ impl Work {
             Self::Campaign(campaign) => &campaign.overrides,
             Self::Contest(contest) => &contest.overrides,
             Self::Certify(certify) => &certify.overrides,
+            Self::Check(check) => &check.overrides,
         }
     }
 }

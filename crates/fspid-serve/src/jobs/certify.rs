@@ -1,24 +1,15 @@
 //! Proofs of stability.
 
-use std::cell::RefCell;
-
 use fspid_scenario::file::Template;
-use fspid_study::certify::{self, Certification, Effort, Question};
+use fspid_study::certify::{
+    Cases, CertificateFile, Certification, CertifiedCases, Effort, NotWritable, Question,
+};
 use serde_json::{Value, json};
 
-use super::task::{Ended, Stopping, Task};
+use super::proof::{stopped_with, stops};
+use super::task::{Ended, Task};
 use crate::answer::Refusal;
 use crate::request::Fields;
-
-thread_local! {
-    /// The job that this thread works on. A search for a proof asks a plain function whether it shall stop, and stays on the
-    /// thread that it began on.
-    static STOPPING: RefCell<Option<Stopping>> = const { RefCell::new(None) };
-}
-
-fn stops() -> bool {
-    STOPPING.with_borrow(|stopping| stopping.as_ref().is_some_and(Stopping::is_asked))
-}
 
 /// The options of `fspid certify`.
 #[derive(Clone, Debug)]
@@ -28,41 +19,62 @@ pub(super) struct Certify {
     disturbances: bool,
     family: bool,
     nonlinear: bool,
+    cases: Option<Cases>,
+    steps: bool,
 }
 
 impl Certify {
     pub(super) fn read(options: &mut Fields) -> Result<Self, Refusal> {
-        Ok(Self {
+        let cases = options.text("cases")?.map(|name| Cases::named(&name));
+        let found = Self {
             overrides: options.texts("set")?,
             controller: options.text("controller")?,
             disturbances: options.flag("disturbances")?,
             family: options.flag("family")?,
             nonlinear: options.flag("nonlinear")?,
-        })
+            cases: cases.transpose().map_err(Refusal::wrong)?,
+            steps: options.flag("steps")?,
+        };
+        if found.steps && found.cases.is_none() {
+            return Err(Refusal::wrong(
+                "`steps` goes with `cases`: without them, steps are asked in any case",
+            ));
+        }
+        Ok(found)
     }
 
     pub(super) fn work(&self, task: &Task<'_>) -> Result<Value, Ended> {
-        let template = &task.template;
-        let effort = Effort { stops, ..Effort::default() };
-        let question = self.question(&effort);
-        let asked = self.asked(template)?;
-        let total = (asked.len() * question.parts()) as u64;
+        let asked = self.asked(&task.template)?;
         task.tell("begun", &json!({ "controllers": asked }));
-        let mut done = 0;
-        let mut tell = |what: &str| {
-            // A controller whose plant changes is asked some things more than once.
-            task.progress(done.min(total), total, &format!("answers; certifying {what}"));
-            done += 1;
+        let each = asked.len() * self.question(&Effort::default()).parts();
+        let answer = match self.cases {
+            None => self.as_it_stands(task, each),
+            Some(which) => self.in_cases(which, task, each),
         };
-        STOPPING.replace(Some(task.stopping.clone()));
-        let certification = Certification::answering(template, question, &mut tell);
-        STOPPING.replace(None);
-        let certification = certification.map_err(Ended::failed)?;
-        if task.is_stopped() {
-            return Err(Ended::Cancelled);
-        }
-        let (text, json) = (certification.text(), certification.json());
-        Ok(json!({ "text": text, "json": json, "certificates": certificates(&certification) }))
+        // What was stopped has no answer, and its sentence says no more than that.
+        if task.is_stopped() { Err(Ended::Cancelled) } else { answer }
+    }
+
+    fn as_it_stands(&self, task: &Task<'_>, total: usize) -> Result<Value, Ended> {
+        let effort = Effort { stops, ..Effort::default() };
+        let (question, mut tell) = (self.question(&effort), telling(task, total));
+        let found =
+            stopped_with(task, || Certification::answering(&task.template, question, &mut tell));
+        let found = found.map_err(Ended::failed)?;
+        answer((found.text(), found.json()), found.certificate_files())
+    }
+
+    fn in_cases(&self, which: Cases, task: &Task<'_>, each: usize) -> Result<Value, Ended> {
+        let study = task.template.study();
+        let effort = Effort { stops, long_flights: self.steps, ..Effort::default() };
+        let (question, mut tell) =
+            (self.question(&effort), telling(task, which.found(study).saturating_mul(each)));
+        let source = (task.source.path.as_path(), task.source.overrides.as_slice());
+        let found = stopped_with(task, || {
+            CertifiedCases::answering(source, study, which, question, &mut tell)
+        });
+        let found = found.map_err(Ended::failed)?;
+        answer((found.text(), found.json()), found.certificate_files())
     }
 
     fn question<'a>(&'a self, effort: &'a Effort) -> Question<'a> {
@@ -85,11 +97,21 @@ impl Certify {
     }
 }
 
-/// Every certificate with the name of its file.
-fn certificates(certification: &Certification) -> Vec<Value> {
-    let files = certification.results.iter().filter_map(|certified| {
-        let text = certify::to_text(certified.certificate()?, &certified.origin);
-        Some(json!({ "name": certification.file_name(certified), "text": text }))
-    });
-    files.collect()
+/// Tells what is certified next, and how much of the whole is done.
+fn telling<'a>(task: &'a Task<'_>, total: usize) -> impl FnMut(&str) + 'a {
+    let (mut done, total) = (0, total as u64);
+    move |what| {
+        // A controller whose plant changes is asked some things more than once.
+        task.progress(done.min(total), total, &format!("answers; certifying {what}"));
+        done += 1;
+    }
+}
+
+fn answer(
+    (text, json): (String, Value),
+    files: Result<Vec<CertificateFile>, NotWritable>,
+) -> Result<Value, Ended> {
+    let file = |it: CertificateFile| json!({ "name": it.name, "text": it.text });
+    let certificates: Vec<Value> = files.map_err(Ended::failed)?.into_iter().map(file).collect();
+    Ok(json!({ "text": text, "json": json, "certificates": certificates }))
 }

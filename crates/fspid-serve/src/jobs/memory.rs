@@ -23,7 +23,7 @@ pub(super) fn check(work: &Work, study: &Study, most: u64) -> Result<(), Ended> 
     let flights = Needed::for_flights(study.scenario.timing.rows(), rayon::current_num_threads());
     let needed = match work {
         // A proof flies nothing, and asks for no more than its states.
-        Work::Certify(_) => return Ok(()),
+        Work::Certify(_) | Work::Check(_) => return Ok(()),
         Work::Contest(_) => flights,
         Work::Tune(tune) => flights.with_candidates(tune.population()),
         Work::Campaign(campaign) => {

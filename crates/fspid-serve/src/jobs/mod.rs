@@ -3,10 +3,12 @@
 mod asked;
 mod campaign;
 mod certify;
+mod check;
 mod contest;
 mod job;
 mod memory;
 mod place;
+mod proof;
 mod rest;
 mod run;
 mod task;

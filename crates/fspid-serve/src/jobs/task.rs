@@ -154,6 +154,7 @@ impl<'a> Task<'a> {
             Work::Campaign(campaign) => campaign.work(self),
             Work::Contest(contest) => contest.work(self),
             Work::Certify(certify) => certify.work(self),
+            Work::Check(check) => check.work(self),
         });
         match done {
             Err(Ended::Cancelled) if self.job.is_cancelled() => Err(Ended::Cancelled),

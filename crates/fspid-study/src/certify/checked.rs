@@ -99,7 +99,15 @@ impl CheckedFile {
 /// # Errors
 /// [`NoCertificate`] for a text that is none; a claim that does not hold is a result.
 pub fn check_text(text: &str) -> Result<CheckedFile, NoCertificate> {
+    check_text_until(text, || false)
+}
+
+/// As [`check_text`] for somebody who may not want the answer any more: where `stops` says so, nothing is proved.
+///
+/// # Errors
+/// As [`check_text`].
+pub fn check_text_until(text: &str, stops: fn() -> bool) -> Result<CheckedFile, NoCertificate> {
     let file::Read { certificate, origin, seal } = file::read(text)?;
-    let result = certificate.check();
+    let result = certificate.check_until(stops);
     Ok(CheckedFile { certificate, origin, seal, result, against: None })
 }

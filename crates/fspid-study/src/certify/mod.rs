@@ -6,6 +6,7 @@
 mod against;
 mod around;
 mod cases;
+mod certificate_files;
 mod checked;
 mod checked_text;
 mod commanded_file;
@@ -49,8 +50,9 @@ use fspid_scenario::file::{Study, Template};
 pub use fspid_proof::Effort;
 
 pub use around::Around;
-pub use cases::{Cases, CertifiedCase, CertifiedCases, Change, MOST_CASES, NoCases};
-pub use checked::{Answer, CheckedFile, check_text};
+pub use cases::{Cases, CasesError, CertifiedCase, CertifiedCases, Change, MOST_CASES, NoCases};
+pub use certificate_files::{CertificateFile, NotWritable};
+pub use checked::{Answer, CheckedFile, check_text, check_text_until};
 pub use comparison::{Comparison, Difference};
 pub use coverage::{COVERAGE, KeyCoverage, Treatment, coverage_table};
 pub use disturbances::DisturbanceAnswer;
@@ -282,15 +284,8 @@ impl Certification {
     }
 
     /// A file name for a certificate, which no other controller of the scenario has.
-    #[must_use]
-    pub fn file_name(&self, certified: &Certified) -> String {
+    fn file_name(&self, certified: &Certified) -> String {
         format!("{}.certificate.json", self.files.name(&certified.subject()))
-    }
-
-    /// That it is not called as its controller is, in a sentence, if so.
-    #[must_use]
-    pub fn changed_name(&self, certified: &Certified) -> Option<String> {
-        self.files.told(&certified.subject())
     }
 
     /// True if every loop is proved stable.

@@ -2,6 +2,7 @@
 //! dispersions choose among. One answer about all of them, and a certificate for each loop.
 
 mod answer;
+mod asked;
 mod choices;
 mod disturbed;
 mod near_trim;
@@ -16,6 +17,7 @@ use super::nonlinear::Prove;
 use super::{Certification, Certified, Question};
 use crate::output::{Names, Place};
 
+pub use asked::CasesError;
 pub(super) use choices::{is_chosen_apart, only_choices_differ};
 
 /// Most changes that are certified as one answer.
@@ -33,6 +35,60 @@ pub enum Cases {
 }
 
 impl Cases {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Tuning, Self::Contest, Self::Choices];
+
+    /// What they are asked for by, as behind `--cases`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Tuning => "tuning",
+            Self::Contest => "contest",
+            Self::Choices => "choices",
+        }
+    }
+
+    /// Those of a name.
+    ///
+    /// # Errors
+    /// A sentence with the names that there are.
+    pub fn named(name: &str) -> Result<Self, String> {
+        let names = Self::ALL.map(Self::name);
+        Self::ALL.into_iter().find(|it| it.name() == name).ok_or_else(|| {
+            let known = fspid_diagnostics::known_words(name, &names);
+            format!("there are no cases `{name}`{known}")
+        })
+    }
+
+    /// The changes of a scenario.
+    fn changes(self, study: &Study) -> Result<Vec<Change>, NoCases> {
+        let of = self.words();
+        match self.found(study) {
+            0 => return Err(NoCases::None(of)),
+            found if found > MOST_CASES => return Err(NoCases::TooMany { found, of }),
+            _ => {}
+        }
+        Ok(match self {
+            Self::Tuning => {
+                study.tuning.iter().flat_map(|it| &it.cases).map(Change::from).collect()
+            }
+            Self::Contest => {
+                study.contest.iter().flat_map(|it| &it.cases).map(Change::from).collect()
+            }
+            Self::Choices => choices::all(study),
+        })
+    }
+
+    /// How many a scenario has.
+    #[must_use]
+    pub fn found(self, study: &Study) -> usize {
+        match self {
+            Self::Tuning => study.tuning.iter().map(|it| it.cases.len()).sum(),
+            Self::Contest => study.contest.iter().map(|it| it.cases.len()).sum(),
+            Self::Choices => choices::count(study),
+        }
+    }
+
     /// What they are, after a number of them.
     #[must_use]
     pub const fn words(self) -> &'static str {
@@ -111,24 +167,7 @@ impl CertifiedCases {
     /// # Errors
     /// [`NoCases`].
     pub fn new(study: &Study, which: Cases) -> Result<Self, NoCases> {
-        let of = which.words();
-        let changes: Vec<Change> = match which {
-            Cases::Tuning => {
-                study.tuning.iter().flat_map(|it| &it.cases).map(Change::from).collect()
-            }
-            Cases::Contest => {
-                study.contest.iter().flat_map(|it| &it.cases).map(Change::from).collect()
-            }
-            Cases::Choices => match choices::count(study) {
-                found if found > MOST_CASES => return Err(NoCases::TooMany { found, of }),
-                _ => choices::all(study),
-            },
-        };
-        match changes.len() {
-            0 => return Err(NoCases::None(of)),
-            found if found > MOST_CASES => return Err(NoCases::TooMany { found, of }),
-            _ => {}
-        }
+        let changes = which.changes(study)?;
         let folders = Names::of(Place::PlainFile, changes.iter().map(|it| &it.name));
         let scenario = study.scenario.name.clone();
         let (cases, known, nonlinear) = (Vec::new(), Vec::new(), Prove::default());
@@ -148,8 +187,7 @@ impl CertifiedCases {
     }
 
     /// A name for the folder of a change's certificates, which no other change has.
-    #[must_use]
-    pub fn folder(&self, change: &Change) -> String {
+    pub(super) fn folder(&self, change: &Change) -> String {
         self.folders.name(&change.name)
     }
 
