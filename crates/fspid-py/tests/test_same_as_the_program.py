@@ -108,7 +108,10 @@ def test_what_is_asked_beside_stability_is_answered_as_by_the_program(asked, cli
 
 CASES = {
     **NAVION,
-    "tuning": {"case": [{"name": "quick servo"}, {"name": "slow servo", "set": ["actuator.time_constant_s=0.2"]}]},
+    "tuning": {
+        "objective": [{"measure": "iae_deg_s"}],
+        "case": [{"name": "quick servo", "set": []}, {"name": "slow servo", "set": ["actuator.time_constant_s=0.2"]}],
+    },
 }
 
 
@@ -121,14 +124,14 @@ def test_cases_are_certified_as_by_the_program_and_each_certificate_is_proved_an
     assert answer.to_dict() == json.loads(cli("certify", path, *words, "--out", "certificates", "--format", "json"))
     assert str(answer) == cli("certify", path, *words)
     assert answer.good and sorted(answer.certificates) == [
-        "quick servo/PID.certificate.json",
-        "slow servo/PID.certificate.json",
+        "quick-servo/pid.certificate.json",
+        "slow-servo/pid.certificate.json",
     ]
     answer.save(tmp_path / "ours")
     for name, text in answer.certificates.items():
         assert (tmp_path / "certificates" / name).read_text() == (tmp_path / "ours" / name).read_text() == text
     slow = scenario.with_(actuator={"time_constant_s": 0.2})
-    certificate = fspid.Certificate.from_file(tmp_path / "ours" / "slow servo" / "PID.certificate.json")
+    certificate = fspid.Certificate.from_file(tmp_path / "ours" / "slow-servo" / "pid.certificate.json")
     assert certificate.check(slow) and certificate.check().verdict == "holds"
     assert certificate.check(scenario).verdict == "another loop"
 
@@ -146,7 +149,7 @@ def test_a_certificate_is_checked_as_by_the_program(step, cli, tmp_path):
         edited = fspid.Certificate.from_text(certificate.text.replace('"program"', '"programme"'))
         with pytest.raises(fspid.InputError, match="certificate: .*program"):
             edited.check()
-        edited = fspid.Certificate.from_text(certificate.text.replace(step.digest, "0" * 64))
+        edited = fspid.Certificate.from_text(certificate.text.replace(step.digest, "1" * 64))
         assert not edited.check() and edited.check().verdict == "edited"
 
 

@@ -219,7 +219,7 @@ fn a_proof_answers_what_is_asked_beside_stability_and_its_certificates_hold_alon
 fn a_proof_of_all_cases_tells_each_and_its_certificates_are_proved_anew_against_what_flies() {
     let served = Served::new();
     let text = include_str!("data/navion.toml").to_owned()
-        + "\n[[tuning.case]]\nname = \"as it is\"\n[[tuning.case]]\nname = \"slow servo\"\nset = [\"actuator.time_constant_s=0.2\"]\n";
+        + "\n[[tuning.objective]]\nmeasure = \"iae_deg_s\"\n[[tuning.case]]\nname = \"as it is\"\nset = []\n[[tuning.case]]\nname = \"slow servo\"\nset = [\"actuator.time_constant_s=0.2\"]\n";
     std::fs::write(served.path("mine.toml"), text).expect("written");
     let done = |kind: &str, options: Value| {
         let events = served.followed(&served.begin(kind, options));
@@ -237,7 +237,7 @@ fn a_proof_of_all_cases_tells_each_and_its_certificates_are_proved_anew_against_
     let of = |place: usize, key: &str| names[place][key].as_str().expect("a text").to_owned();
     assert_eq!(
         [of(0, "name"), of(1, "name")],
-        ["as it is/PID.certificate.json", "slow servo/PID.certificate.json"]
+        ["as-it-is/pid.certificate.json", "slow-servo/pid.certificate.json"]
     );
     let slow = json!(["actuator.time_constant_s=0.2"]);
     let (checked, _) = done("check", json!({ "certificate": of(1, "text"), "set": slow }));

@@ -7,7 +7,7 @@ use fspid_proof::{Bearing, Claim};
 use serde_json::{Value, json};
 
 use super::{
-    Answer, Certification, CheckedFile, Effort, Seal, check_text,
+    Answer, Certification, CheckedFile, Effort, Seal, check_text, check_text_until,
     file::{Read, read, resealed},
     from_text, to_text,
 };
@@ -423,6 +423,13 @@ fn a_scenario_without_the_certified_controller_is_told() {
     let told = checked.text();
     assert!(told.contains("origin.controller: certified Autopilot, flown "), "{told}");
     assert_eq!(checked.answer(), Answer::AnotherLoop);
+}
+
+#[test]
+fn a_check_that_nobody_waits_for_any_more_proves_nothing() {
+    let checked = check_text_until(good(), || true).expect("a certificate");
+    assert_eq!(checked.answer(), Answer::NotProved);
+    assert!(!checked.holds() && check_text_until(good(), || false).expect("one").holds());
 }
 
 #[test]
