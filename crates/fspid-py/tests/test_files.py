@@ -113,11 +113,11 @@ def test_certificates_campaigns_and_contests_write_over_nothing_that_they_are_ma
             campaign.summary().save(own)
     assert Path(campaign.file).read_bytes() == rows and path.read_bytes() == before
 
-    light = tmp_path / "contest.json"
-    light.write_text((ROOT / "scenarios/contest/light.toml").read_text())
+    contest = tmp_path / "contest.json"
+    contest.write_text(text := fspid.Scenario.preset("contest").toml)
     with pytest.raises(fspid.Error, match="which was read"):
-        fspid.Scenario.from_file(light).contest(tmp_path, seeds=1, budget=2)
-    assert light.read_text() == (ROOT / "scenarios/contest/light.toml").read_text()
+        fspid.Scenario.from_file(contest).contest(tmp_path, seeds=1, budget=2)
+    assert contest.read_text() == text
 
 
 def test_design_and_history_need_a_file_each(tmp_path: Path) -> None:

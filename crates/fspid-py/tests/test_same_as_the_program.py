@@ -191,7 +191,7 @@ def test_a_campaign_leaves_the_file_of_the_program(cli, tmp_path):
 
 
 def test_a_contest_answers_as_the_program(cli, tmp_path):
-    path = ROOT / "scenarios" / "contest" / "light.toml"
+    path = written(fspid.Scenario.preset("contest"), tmp_path)
     ours = fspid.Scenario.from_file(path).contest(tmp_path / "contest", budget=4, seeds=1).to_dict()
     theirs = cli("contest", path, "--budget", 4, "--seeds", 1, "--quiet", "--out", "theirs/contest", "--format", "json")
     assert ours == json.loads(theirs)
