@@ -13,5 +13,6 @@ python3 -m venv "$work/python"
 "$work/python/bin/pip" install --quiet --disable-pip-version-check jsbsim==1.3.3
 export FSPID_PYTHON="$work/python/bin/python"
 "$FSPID_PYTHON" "$here/flights.py" "$fspid" "$work"
-(cd "$root" && cargo build --locked -p fspid-daveml --example jsbsim)
+# As the tests have built it: of its crate alone the features would be others, and all below it would be built anew.
+(cd "$root" && cargo build --locked --workspace --example jsbsim)
 "$FSPID_PYTHON" "$here/tables.py" "$root/target/debug/examples/jsbsim"

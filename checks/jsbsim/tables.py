@@ -2,7 +2,7 @@
 
 tables.py EXAMPLE [FILE.xml … | --fixture FILE.xml OUT.csv]
 
-EXAMPLE is the program of `cargo build --example jsbsim`. Without files the aircraft of the package are tried, and a table
+EXAMPLE is the program of `cargo build --workspace --example jsbsim`. Without files the aircraft of the package are tried, and a table
 is printed of those that convert and why others do not. JSBSim flies a copy of each file without its flight control system,
 engines and outside forces, so that surfaces stand where they are put; the state stands still while loads and the rate of
 the angle of attack settle. Lift by the rate of the angle of attack is taken out of both where drag goes with the square of

@@ -284,7 +284,8 @@ impl Certification {
     }
 
     /// A file name for a certificate, which no other controller of the scenario has.
-    fn file_name(&self, certified: &Certified) -> String {
+    #[must_use]
+    pub fn file_name(&self, certified: &Certified) -> String {
         format!("{}.certificate.json", self.files.name(&certified.subject()))
     }
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use fspid_scenario::count::MAP_POINTS;
 use fspid_study::analysis::{Analysis, Columns, Question as Asked};
-use fspid_study::certify::{Certification, Effort};
+use fspid_study::certify::{self, Certification, Effort};
 use fspid_study::verify::interval::{self, IntervalError};
 use fspid_study::verify::{self, verify_text};
 use serde_json::{Value, json};
@@ -81,8 +81,11 @@ pub(super) fn certify(question: &Question) -> Answered {
     let only = question.optional("controller");
     let only = (!only.is_empty()).then_some(only);
     let found = Certification::of(&study, only, &Effort::default()).map_err(Answer::refused)?;
-    let files = found.certificate_files().map_err(Answer::refused)?.into_iter();
-    let files = files.map(|file| json!({ "name": file.name, "text": file.text }));
+    // They are not read again, as `certificate_files` does: what reads them would be a fifteenth of the page.
+    let files = found.results.iter().filter_map(|it| {
+        let text = certify::to_text(it.certificate()?, &it.origin);
+        Some(json!({ "name": found.file_name(it), "text": text }))
+    });
     Ok(Answer::of(json!({
         "certification": found.json(), "text": found.text(), "proved": found.all_proved(),
         "files": files.collect::<Vec<_>>(),
