@@ -238,6 +238,7 @@ test("a proof and a contest tell how far they are and what they found", async ()
   await page.locator("[data-test=followed] h3", { hasText: "check" }).waitFor();
   await ended(page, "done");
   assert.match(await page.locator("[data-test=answer]").innerText(), /HOLDS, AND IS WHAT FLIES/);
+  assert.match(await page.locator("[data-test=followed] h3").innerText(), /^check \d+ on mine\.toml against the scenario$/);
   await shot(page, "check");
   await page.selectOption("[data-test=kind]", "certify");
   await page.selectOption("[data-test=cases]", "tuning");
