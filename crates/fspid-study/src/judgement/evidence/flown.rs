@@ -261,8 +261,8 @@ impl Flown<'_> {
         let mut largest = Case { value: 0.0, place: CasePlace::default() };
         for (sample, error_rad) in (first..).zip(self.errors_rad(time)) {
             let value = degrees(error_rad.abs());
-            // Written so that NaN is the largest.
-            if !(value <= largest.value) {
+            // Written so that NaN is the largest, whatever comes after it.
+            if !(value <= largest.value || largest.value.is_nan()) {
                 let place =
                     CasePlace { at_s: Some(self.timing.time_s(sample)), ..CasePlace::default() };
                 largest = Case { value, place };
@@ -275,3 +275,6 @@ impl Flown<'_> {
 fn at_step(step: StepAt) -> CasePlace {
     CasePlace { step: Some(step), ..CasePlace::default() }
 }
+
+#[cfg(test)]
+mod tests;
