@@ -307,6 +307,15 @@ kp = 0.8
         "[wind]\nkind = \"steady\"\nspeed_m_s = 5.0\nfrom_deg = 0.0",
     );
     assert!(one(&steady, &requirement("smooth"), &[]).met, "steady wind is smooth air");
+    let gust = windy.replace(
+        "[turbulence]\nintensity = \"light\"\nseed = 1",
+        "[[gust]]\nkind = \"full-cycle\"\nup_m_s = 6.0\ngradient_m = 30.0\nat_s = 0.5",
+    );
+    let gusty = one(&gust, &requirement("smooth"), &[]);
+    assert_eq!(gusty.value_in_words(), "asked for smooth air, but the flight has gusts");
+    let load = "measure = \"largest_load_factor_g\"\nleast = 0.99\nmost = 1.01";
+    assert!(one(&steady, load, &[]).met, "a level flight carries its weight");
+    assert!(!one(&gust, load, &[]).met);
 }
 
 /// A flight of 20 s at a gain of 5 looks wild, one of half a second does not: the loop is unstable in both.

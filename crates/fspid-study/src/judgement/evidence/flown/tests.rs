@@ -94,7 +94,7 @@ fn the_time_that_counts_has_the_samples_from_its_start_to_its_end_and_both() {
     assert_eq!(time(Some(0.25), Some(0.65)), Ok(3..=6));
     // A rounding before a sample is on it; more than that is before it.
     assert_eq!(time(Some(0.3), Some(0.6 - 1e-9)), Ok(3..=6));
-    assert_eq!(time(Some(0.3), Some(0.6 - 1e-5)), Ok(3..=5));
+    assert_eq!(time(Some(0.3), Some(0.6 - 5e-6)), Ok(3..=5));
     assert_eq!(time(Some(1.0), Some(1.0)), Ok(10..=10));
     assert_eq!(time(None, Some(0.0)), Ok(0..=0));
 }
@@ -110,12 +110,14 @@ fn a_time_that_was_not_flown_is_told_and_not_judged() {
         assert_eq!(time_that_counts(timing(), rows, &from_to(from_s, to_s)), Err(told));
     };
     refused(None, Some(1.1), 11);
+    refused(None, Some(1.05), 11);
     refused(Some(1.1), None, 11);
     refused(Some(0.6), Some(0.5), 11);
     // Between two samples there is none.
     refused(Some(0.62), Some(0.68), 11);
     // The flight was lost after five samples.
     refused(None, Some(0.6), 5);
+    refused(None, Some(0.5), 5);
     refused(Some(0.5), None, 5);
     assert_eq!(time_that_counts(timing(), 5, &from_to(None, Some(0.4))), Ok(0..=4));
     assert_eq!(time_that_counts(timing(), 5, &from_to(None, None)), Ok(0..=4));
