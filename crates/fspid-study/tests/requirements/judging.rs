@@ -318,6 +318,32 @@ kp = 0.8
     assert!(!one(&gust, load, &[]).met);
 }
 
+/// An aircraft that runs away by itself, held at rest, whose elevator does not suffice for the step: every linear loop is
+/// stable, and the flight is lost.
+#[test]
+fn a_flight_that_is_lost_meets_nothing_though_its_loop_is_stable_at_rest() {
+    let text = JUMBO
+        .replace(
+            "preset = \"b747-paper\"",
+            "numerator = [1.0]\ndenominator = [1.0, -1.0, 0.0]\nelevator_sign = \"nose-up-positive\"",
+        )
+        .replace("time_constant_s = 0.1", "time_constant_s = 0.01")
+        .replace(
+            "kind = \"pid\"\nkp = 1.0",
+            "kind = \"pid\"\nkp = 2.0\nkd = 3.0\noutput_limits_deg = [-0.5, 0.5]",
+        );
+    let of_step = |measure: &str, limit: &str, set: &[&str]| {
+        one(&text, &format!("controller = \"P\"\nmeasure = \"{measure}\"\n{limit}"), set)
+    };
+    let small = ["setpoint.amplitude_deg=0.01"];
+    for measure in ["rms_error_deg", "largest_error_deg", "elevator_travel_deg", "iae_deg_s"] {
+        let lost = of_step(measure, "most = 1e300", &[]);
+        assert!(!lost.met, "{measure}");
+        assert!(lost.value_in_words().contains("diverged"), "{}", lost.value_in_words());
+        assert!(of_step(measure, "most = 1e300", &small).met, "{measure}: near enough to rest");
+    }
+}
+
 /// A flight of 20 s at a gain of 5 looks wild, one of half a second does not: the loop is unstable in both.
 #[test]
 fn an_unstable_loop_meets_nothing_however_short_its_window() {
