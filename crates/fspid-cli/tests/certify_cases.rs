@@ -179,6 +179,25 @@ fn a_table_that_is_not_there_is_told() {
     }
 }
 
+/// The last of a hundred cases was told of after minutes of proofs, which were lost.
+#[test]
+fn all_cases_that_are_wrong_are_told_before_anything_is_proved() {
+    let case =
+        |name: &str, set: &str| format!("[[tuning.case]]\nname = \"{name}\"\nset = [\"{set}\"]\n");
+    let cases = case("good", "actuator.delay_samples=0")
+        + &case("slow", "loop.duration_s=-1")
+        + &case("odd", "controller.PID.kpp=1");
+    let objective = "\n[[tuning.objective]]\nmeasure = \"iae_deg_s\"\n";
+    let folder = folder(&format!("{objective}{cases}"));
+    let words = ["certify", "chosen.toml", "--cases", "tuning", "--out", "c"];
+    let output = fspid(&words, folder.path());
+    assert_eq!(code(&output), 2);
+    let told = text(&output.stderr);
+    assert!(told.contains("slow: ") && told.contains("odd: ") && told.contains("kpp"), "{told}");
+    assert!(!told.contains("certifying"), "{told}");
+    assert!(!folder.path().join("c").exists());
+}
+
 #[test]
 fn what_disturbances_do_is_bounded_in_every_case_and_told_of_all_together() {
     let folder = folder(TUNING);

@@ -7,7 +7,7 @@ use fspid::study::certify::{
     self, Cases, CasesError, CertificateFile, Certification, CertifiedCases, CheckedFile, Effort,
     NotWritable, Question,
 };
-use fspid::tune::Source;
+use fspid::tune::{NotRight, Source, WrongCase};
 use pyo3::prelude::*;
 
 use crate::answer::Answer;
@@ -36,8 +36,7 @@ impl Wanted {
 
     /// Which cases, if any are asked for; else what is wrong.
     fn which(&self, scenario: &Scenario) -> Result<Option<Cases>, String> {
-        let names: Vec<String> =
-            scenario.study().scenario.flyers().map(|it| it.name().to_owned()).collect();
+        let names = scenario.controllers();
         if let Some(name) = self.controller.as_ref().filter(|name| !names.contains(name)) {
             let known: Vec<&str> = names.iter().map(String::as_str).collect();
             let known = file::known_words(name, &known);
@@ -55,49 +54,47 @@ impl Wanted {
         let effort = Effort { long_flights: self.steps, ..Effort::default() };
         let source = (source.path.as_path(), source.overrides.as_slice());
         let question = self.question(&effort);
-        let found = CertifiedCases::answering(source, study, which, question, &mut |_| {})?;
-        let answer = Answer::new(found.text(), &found.json(), found.all_proved());
-        Ok(answer.with_files(named(found.certificate_files()?)))
+        let found = CertifiedCases::answering(source, study, which, question, &mut |_| {});
+        let found = found.map_err(Refused::Cases)?;
+        answer((found.text(), found.json()), found.all_proved(), found.certificate_files())
     }
 
     fn as_it_stands(&self, template: &file::Template) -> Result<Answer, Refused> {
         let effort = Effort::default();
         let found = Certification::answering(template, self.question(&effort), &mut |_| {});
-        let found = found.map_err(CasesError::Plant)?;
-        let answer = Answer::new(found.text(), &found.json(), found.all_proved());
-        Ok(answer.with_files(named(found.certificate_files()?)))
+        let found = found.map_err(|error| Refused::Otherwise(error.to_string()))?;
+        answer((found.text(), found.json()), found.all_proved(), found.certificate_files())
     }
 }
 
-fn named(files: Vec<CertificateFile>) -> Vec<(String, String)> {
-    files.into_iter().map(|file| (file.name, file.text)).collect()
-}
-
-/// Why there is no answer.
+/// Why there is no answer: as `check` tells it where the scenario is wrong in its cases.
 enum Refused {
     Cases(CasesError),
-    File(NotWritable),
-}
-
-impl From<CasesError> for Refused {
-    fn from(error: CasesError) -> Self {
-        Self::Cases(error)
-    }
-}
-
-impl From<NotWritable> for Refused {
-    fn from(error: NotWritable) -> Self {
-        Self::File(error)
-    }
+    Otherwise(String),
 }
 
 impl Refused {
-    fn raise(&self, py: Python<'_>) -> PyErr {
+    fn raise(self, py: Python<'_>) -> PyErr {
         match self {
-            Self::Cases(error) => error::input(py, error),
-            Self::File(error) => error::input(py, error),
+            Self::Cases(CasesError::Scenario(wrong)) => {
+                let wrong = wrong.into_iter().map(|(case, problems)| WrongCase { case, problems });
+                error::not_right(py, &NotRight::Cases(wrong.collect()))
+            }
+            Self::Cases(other) => error::input(py, other),
+            Self::Otherwise(why) => error::input(py, why),
         }
     }
+}
+
+/// The answer with its certificates as files.
+fn answer(
+    (text, json): (String, serde_json::Value),
+    good: bool,
+    files: Result<Vec<CertificateFile>, NotWritable>,
+) -> Result<Answer, Refused> {
+    let files = files.map_err(|found| Refused::Otherwise(found.to_string()))?;
+    let files = files.into_iter().map(|file| (file.name, file.text)).collect();
+    Ok(Answer::new(text, &json, good).with_files(files))
 }
 
 #[pymethods]

@@ -191,7 +191,7 @@ impl Scenario {
 
     /// Names of its controllers, in their order.
     #[getter]
-    fn controllers(&self) -> Vec<String> {
+    pub(crate) fn controllers(&self) -> Vec<String> {
         self.study.scenario.flyers().map(|flyer| flyer.name().to_owned()).collect()
     }
 

@@ -160,6 +160,11 @@ def test_what_cannot_be_certified_or_checked_is_told_with_what_is_allowed(step, 
         step.certify(cases="contest")
     with pytest.raises(fspid.InputError, match="steps=True goes with cases"):
         step.certify(steps=True)
+    cases = [{"name": f"case {key}", "set": [f"loop.{key}=-1.0"]} for key in ("sample_period_s", "duration_s")]
+    wrong = fspid.Scenario.from_dict({**NAVION, "tuning": {"objective": [{"measure": "iae_deg_s"}], "case": cases}})
+    with pytest.raises(fspid.ScenarioError) as refused:
+        wrong.certify(cases="tuning")
+    assert [problem.case for problem in refused.value.problems] == ["case sample_period_s", "case duration_s"]
     with pytest.raises(fspid.FileError, match="none"):
         fspid.Certificate.from_file(tmp_path / "none")
     with pytest.raises(fspid.InputError, match="certificate: "):

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
 use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use super::external_controller::leave_out;
 use super::progress::{Telling, alive, tell};
@@ -49,8 +50,8 @@ pub(crate) struct Arguments {
     /// Certify each case of a table in place of the scenario as it is: those it is tuned on, those its contest judges by, or
     /// every combination of what its dispersions choose among (other aircraft, other delays). What `--set` gives holds in
     /// every case.
-    #[arg(long, value_enum, value_name = "TABLE", conflicts_with = "check")]
-    cases: Option<Table>,
+    #[arg(long, value_parser = cases(), value_name = "TABLE", conflicts_with = "check")]
+    cases: Option<Cases>,
     /// Bound as well, from rest, what gusts and disturbances at the elevator do to pitch angle and command; with `--cases` in
     /// each case, and in all of them together.
     #[arg(long, conflicts_with = "check")]
@@ -71,25 +72,10 @@ pub(crate) struct Arguments {
     format: Format,
 }
 
-/// Which cases of a scenario.
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-enum Table {
-    /// Those that it is tuned on.
-    Tuning,
-    /// Those that its contest judges by.
-    Contest,
-    /// What its dispersions choose among.
-    Choices,
-}
-
-impl From<Table> for Cases {
-    fn from(table: Table) -> Self {
-        match table {
-            Table::Tuning => Self::Tuning,
-            Table::Contest => Self::Contest,
-            Table::Choices => Self::Choices,
-        }
-    }
+/// Reads which cases of a scenario are asked for.
+fn cases() -> impl TypedValueParser<Value = Cases> {
+    let named = |cases: Cases| PossibleValue::new(cases.name()).help(cases.words());
+    PossibleValuesParser::new(Cases::ALL.map(named)).try_map(|name| Cases::named(&name))
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -115,8 +101,8 @@ fn prove(path: &Path, arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::input(format_args!("there is no controller `{name}`{known}")));
     }
     let telling = Telling::for_standard_error();
-    if let Some(table) = arguments.cases {
-        return prove_cases(path, &template, table.into(), arguments);
+    if let Some(which) = arguments.cases {
+        return prove_cases(path, &template, which, arguments);
     }
     let effort = Effort::default();
     let certification = certifying(telling, |tell| {

@@ -225,8 +225,7 @@ fn steps_of_another_size_are_told_by_their_sizes() {
 }
 
 #[test]
-fn errors_of_the_time_that_counts_are_squared_and_their_largest_is_found_first_and_without_a_number_too()
- {
+fn the_largest_error_is_the_first_of_its_size_and_stays_one_that_is_no_number() {
     let flight = Whole::with_errors([9.0, 0.0, 3.0, 0.0, -4.0, 4.0, 0.0, 0.0, 0.0, 0.0, -8.0]);
     let of = |measure, from_s, to_s| {
         flight.flown().whole(&requirement(measure, from_to(from_s, to_s))).expect("a value")
