@@ -132,6 +132,76 @@ fn what_no_family_can_hold_is_refused_by_name() {
     assert!(steps.contains("a sensor resolves in steps"), "{steps}");
 }
 
+/// Sensors that see more or less than there is, each within a share of it.
+const SENSORS: &str = r#"
+[sensor]
+preset = "ideal"
+pitch = { delay_s = 0.03, scale_error_pct = 1.0 }
+rate = { delay_s = 0.01, scale_error_pct = -2.0 }
+
+[[dispersion]]
+name = "pitch sensor"
+path = "sensor.pitch.scale_error_pct"
+distribution = "uniform"
+lower = -15.0
+upper = 10.0
+
+[[dispersion]]
+name = "rate gyro"
+path = "sensor.rate.scale_error_pct"
+distribution = "normal"
+mean = 1.0
+standard_deviation = 1.0
+lower = -4.0
+upper = 6.0
+relative = true
+
+[[dispersion]]
+name = "servo"
+"#;
+
+#[test]
+fn sensors_of_any_scale_between_limits_are_proved_with_plants_and_compared() {
+    let scenario = SCENARIO.replacen("[[dispersion]]\nname = \"servo\"\n", SENSORS, 1);
+    let scenario = scenario.replace("kd = 0.5", "kd = 0.5\nrate_gain = 0.3");
+    let folder = folder(&scenario);
+    let output = fspid(&["certify", "drawn.toml", "--family", "--out", "proofs"], folder.path());
+    let told = text(&output.stdout);
+    assert_eq!(code(&output), 0, "{told}{}", text(&output.stderr));
+    let sensors = "pitch sensor (sensor.pitch.scale_error_pct) from -15 to 10; rate gyro (sensor.rate.scale_error_pct) from -4 to 6 times as large";
+    assert!(told.contains(sensors) && !told.contains("that a campaign draws"), "{told}");
+    let check = |more: &[&str]| {
+        let words = ["certify", "--check", "proofs/pid.certificate.json"];
+        let output = fspid(&[&words, more].concat(), folder.path());
+        (code(&output), text(&output.stdout).to_owned())
+    };
+    assert_eq!(check(&[]).0, 0);
+    assert_eq!(check(&["--against", "drawn.toml"]).0, 0);
+    let wider = check(&["--against", "drawn.toml", "--set", "dispersion[2].upper=12"]);
+    assert!(wider.0 == 1 && wider.1.contains("from -15 to 12"), "{}", wider.1);
+    // Twice the error at rest is twice of it at both ends.
+    let other = "sensor.rate.scale_error_pct=-4";
+    assert_eq!(check(&["--against", "drawn.toml", "--set", other]).0, 1);
+    // One draw of both, and one of a sensor and a plant.
+    let paths = "paths = [\"sensor.pitch.scale_error_pct\", \"sensor.rate.scale_error_pct\"]";
+    let both = scenario.replace("path = \"sensor.pitch.scale_error_pct\"", paths);
+    let both = both.replace("path = \"sensor.rate.scale_error_pct\"", "path = \"setpoint.at_s\"");
+    let both = both.replace(
+        "relative = true\n\n[[dispersion]]\nname = \"servo\"",
+        "\n[[dispersion]]\nname = \"servo\"",
+    );
+    let mixed = both.replace("\"sensor.rate.scale_error_pct\"]", "\"plant.denominator[2]\"]");
+    for (file, scenario) in [("both.toml", &both), ("mixed.toml", &mixed)] {
+        std::fs::write(folder.path().join(file), scenario.replace("LOOP\n", LOOP))
+            .expect("written");
+    }
+    let output = fspid(&["certify", "both.toml", "--family"], folder.path());
+    assert_eq!(code(&output), 0, "{}{}", text(&output.stdout), text(&output.stderr));
+    let output = fspid(&["certify", "mixed.toml", "--family"], folder.path());
+    let refused = text(&output.stdout);
+    assert!(code(&output) == 1 && refused.contains("a [[dispersion]] for each"), "{refused}");
+}
+
 #[test]
 fn a_family_with_an_unstable_member_is_refuted_with_the_member() {
     let slow = SCENARIO.replace("lower = 0.08\nupper = 0.12", "lower = 0.08\nupper = 2.5");

@@ -37,7 +37,7 @@ pub use disturbances::{
 };
 pub use family::{
     CheckedFamily, Family, FamilyError, FamilyVerdict, MOST_PARAMETERS, MOST_PARTS, Parameter,
-    Part as FamilyPart, Uncertain, numbers, prove_family,
+    Part as FamilyPart, ScaledSensor, Uncertain, numbers, prove_family,
 };
 pub use limits::{AtLimit, pitch_within};
 pub use nonlinear::{

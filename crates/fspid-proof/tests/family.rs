@@ -5,8 +5,8 @@ use fspid_lti::{Matrix, spectral_radius};
 use fspid_numeric::scalar::Interval;
 use fspid_proof::check::{ContinuousPlant, LagOf, NotProved, PlantSet, Sloped};
 use fspid_proof::{
-    Asked, Certificate, Effort, Family, FamilyVerdict, LoopDescription, Parameter, Verdict,
-    certify, numbers, prove_family,
+    Asked, Certificate, Effort, Family, FamilyVerdict, LoopDescription, Parameter, ScaledSensor,
+    Verdict, certify, numbers, prove_family,
 };
 use fspid_sim::actuator::{Actuator, Lag};
 use fspid_sim::loop_model::{LoopModel, SampledPlant, Sensing};
@@ -23,6 +23,7 @@ fn parameters(ends: [[f64; 2]; 4]) -> Vec<Parameter> {
         paths: vec![name.to_owned()],
         relative: name != "lag",
         inverse: name == "lag",
+        sensors: Vec::new(),
         ends,
     };
     NAMES.into_iter().zip(ends).map(parameter).collect()
@@ -201,6 +202,118 @@ fn a_loops_matrix_is_affine_in_what_its_plant_makes_of_a_sample_whatever_its_sen
         let [one, other, middle] = [closed(one), closed(other), closed(middle)];
         for ((one, other), middle) in one.data().iter().zip(other.data()).zip(middle.data()) {
             assert!((0.5 * (one + other) - middle).abs() < 1e-13, "{pitch:?} {rate:?}");
+        }
+    }
+}
+
+/// The scale of a sensor, %, between two ends.
+fn scale(name: &str, sensors: &[ScaledSensor], ends: [f64; 2]) -> Parameter {
+    Parameter {
+        name: name.to_owned(),
+        paths: vec![format!("sensor.{name}.scale_error_pct")],
+        relative: false,
+        inverse: false,
+        sensors: sensors.to_vec(),
+        ends,
+    }
+}
+
+/// A loop that sees the pitch rate as well, both through sensors that are late.
+fn seeing(scales: [f64; 2], at: [f64; 4]) -> LoopDescription {
+    let mut loop_ = member(at, GAINS);
+    let Controller::Fixed(pid) = &loop_.controller else { panic!("fixed gains") };
+    let config = PidConfig { rate_gain_s: 0.4, ..*pid.config() };
+    loop_.controller = Controller::Fixed(Pid::new(GAINS, config).expect("allowed"));
+    let [pitch, rate] = scales;
+    loop_.pitch = Sensing { samples: 1, part: 0.25, scale: pitch, ..Sensing::DIRECT };
+    loop_.rate = Sensing { samples: 0, part: 0.5, scale: rate, ..Sensing::DIRECT };
+    loop_
+}
+
+#[test]
+fn sensors_whose_scale_differs_are_proved_with_plants_and_every_member_is_stable() {
+    let scales = [[-20.0, 25.0], [-30.0, 10.0]];
+    let narrow = [[0.9, 1.1], [0.95, 1.05], [0.95, 1.05], [0.095, 0.105]];
+    let mut parameters = parameters(narrow);
+    // Among the others, so that a place among all is not one among those of the plant.
+    parameters.insert(0, scale("pitch", &[ScaledSensor::Pitch], scales[0]));
+    parameters.push(scale("rate", &[ScaledSensor::Rate], scales[1]));
+    let loop_ = seeing([1.0, 1.0], NOMINAL);
+    let found = prove_family(&loop_, &parameters, &Effort::default(), &plant).expect("provable");
+    let FamilyVerdict::Proved(family) = found else { panic!("{found:?}") };
+    for number in 0..300 {
+        let at = somewhere(narrow, number);
+        let shares = [share(7 * number + 1), share(11 * number + 4)];
+        let seen = core::array::from_fn(|sensor| {
+            let [from, to] = scales[sensor];
+            1.0 + (from + (to - from) * shares[sensor]) / 100.0
+        });
+        assert!(radius(&seeing(seen, at)) < 1.0, "{seen:?} {at:?}");
+    }
+    let outcome = certify(&loop_, &Asked::rest(), &Effort::default()).expect("provable");
+    let Verdict::Proved(certificate, _) = outcome.verdict else { panic!("{outcome:?}") };
+    let whole = |family: Family| Certificate { family: Some(family), ..certificate.clone() };
+    whole(family.clone()).check().expect("it holds");
+    let refused = |change: &dyn Fn(&mut Family), word: &str| {
+        let mut other = family.clone();
+        change(&mut other);
+        let refused = whole(other).check().expect_err(word).to_string();
+        assert!(refused.contains(word), "{refused}");
+    };
+    refused(&|it| it.parameters[0].ends[1] = 30.0, "leave a part");
+    refused(&|it| it.parameters[5].sensors = vec![ScaledSensor::Pitch], "scale of one sensor");
+    refused(&|it| it.parameters[5].sensors.push(ScaledSensor::Rate), "scale of one sensor");
+    // A sensor of three times the scale, and one that shows the other way.
+    for ends in [[-20.0, 900.0], [-300.0, 25.0]] {
+        let wide = |it: &mut Family| {
+            it.parameters[0].ends = ends;
+            it.parts.iter_mut().for_each(|part| part.ends[0] = ends);
+        };
+        refused(&wide, "of the family: at kp");
+    }
+}
+
+#[test]
+fn a_scale_at_which_a_loop_grows_refutes_the_family_at_it() {
+    let parameters = [scale("pitch", &[ScaledSensor::Pitch], [-10.0, 2000.0])];
+    let loop_ = seeing([1.0, 1.0], NOMINAL);
+    let still =
+        |_: &[Sloped]| plant(&[1.0, 1.0, 1.0, 10.0].map(|it| Sloped::fixed(Interval::point(it))));
+    let found = prove_family(&loop_, &parameters, &Effort::default(), &still).expect("provable");
+    let FamilyVerdict::Refuted { at, .. } = found else { panic!("{found:?}") };
+    assert!(radius(&seeing([1.0 + at[0] / 100.0, 1.0], NOMINAL)) > 1.0, "{at:?}");
+}
+
+#[test]
+fn scales_of_one_draw_are_proved_together_where_apart_they_would_grow() {
+    let both = [ScaledSensor::Pitch, ScaledSensor::Rate];
+    let loop_ = seeing([1.0, 1.0], NOMINAL);
+    let still =
+        |_: &[Sloped]| plant(&[1.0, 1.0, 1.0, 10.0].map(|it| Sloped::fixed(Interval::point(it))));
+    let found = |parameters: &[Parameter]| {
+        prove_family(&loop_, parameters, &Effort::default(), &still).expect("provable")
+    };
+    let ends = [-10.0, 780.0];
+    let together = found(&[scale("both", &both, ends)]);
+    assert!(matches!(together, FamilyVerdict::Proved(_)), "{together:?}");
+    let apart = found(&[scale("pitch", &both[..1], ends), scale("rate", &both[1..], ends)]);
+    assert!(matches!(apart, FamilyVerdict::Refuted { .. }), "{apart:?}");
+}
+
+#[test]
+fn the_ends_of_a_scale_hold_what_the_arithmetic_of_a_simulator_makes_of_every_draw() {
+    let mut relative = scale("pitch", &[ScaledSensor::Pitch], [0.3, 1.7]);
+    relative.relative = true;
+    for number in 0..2000 {
+        let nominal_pct = 40.0 * share(number) - 20.0;
+        let absolute = scale("pitch", &[ScaledSensor::Pitch], [nominal_pct, nominal_pct]);
+        let [least, most] = absolute.scales(absolute.ends, 1.0);
+        let nominal = 1.0 + nominal_pct / 100.0;
+        assert!(least < nominal && nominal < most && most - least < 1e-14);
+        let [least, most] = relative.scales(relative.ends, nominal);
+        for factor in [0.3, 0.3 + 1.4 * share(number + 1), 1.7] {
+            let drawn = 1.0 + nominal_pct * factor / 100.0;
+            assert!((least..=most).contains(&drawn), "{nominal_pct} times {factor}");
         }
     }
 }

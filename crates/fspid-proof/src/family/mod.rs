@@ -1,6 +1,7 @@
-//! A loop whose plant and actuator are known between bounds: one proof for all of them.
+//! A loop whose plant, actuator and sensors are known between bounds: one proof for all of them.
 //!
-//! What differs are numbers (a mass, a coefficient, a time constant), each anywhere between two ends and standing still.
+//! What differs are numbers (a mass, a coefficient, a time constant, a sensor's scale), each anywhere between two ends and
+//! standing still.
 //! The box of all of them is divided into parts; of each part the plant is enclosed, every entry between bounds, and a form
 //! of its own decreases for every matrix inside and every gain of the controller. A member lies in one part, and that
 //! part's form is its proof.
@@ -11,10 +12,11 @@
 //! encloses them anew and compares.
 
 mod cover;
+mod scales;
 mod search;
 
 use fspid_numeric::scalar::Interval;
-use fspid_sim::loop_model::LoopModel;
+use fspid_sim::loop_model::{LoopModel, SampledPlant};
 
 use crate::certificate::{Certificate, Claim};
 pub use crate::check::MOST_PARAMETERS;
@@ -24,6 +26,7 @@ use crate::gain_set::{GainSet, KnownSlopes};
 use crate::recheck::{Kept, Recheck, RecheckError, Rechecked};
 use crate::scope::Range;
 
+pub use scales::ScaledSensor;
 pub use search::{FamilyVerdict, Uncertain, prove_family};
 
 /// Most parts of a family.
@@ -40,11 +43,19 @@ pub struct Parameter {
     pub relative: bool,
     /// True where plants are made of one over it, in which they are nearly linear, such as of a time constant.
     pub inverse: bool,
+    /// Sensors whose scale error, %, it is; none for a number of plant and actuator.
+    pub sensors: Vec<ScaledSensor>,
     /// From where to where it goes, in the units of the scenario.
     pub ends: [f64; 2],
 }
 
 impl Parameter {
+    /// True for a number of plant and actuator.
+    #[must_use]
+    pub fn is_of_plant(&self) -> bool {
+        self.sensors.is_empty()
+    }
+
     /// What plants are made of where the parameter lies between two ends.
     #[must_use]
     pub fn number(&self, [from, to]: [f64; 2]) -> Interval {
@@ -53,10 +64,11 @@ impl Parameter {
     }
 }
 
-/// What plants of a box are made of.
+/// What plants of a box are made of: those parameters that are no sensor's.
 #[must_use]
 pub fn numbers(parameters: &[Parameter], ends: &[[f64; 2]]) -> Vec<Interval> {
-    parameters.iter().zip(ends).map(|(one, &ends)| one.number(ends)).collect()
+    let of_plant = parameters.iter().zip(ends).filter(|(one, _)| one.is_of_plant());
+    of_plant.map(|(one, &ends)| one.number(ends)).collect()
 }
 
 /// A part of the box with its proof.
@@ -151,7 +163,8 @@ impl Family {
         for (place, part) in self.parts.iter().enumerate() {
             let alone = part.alone(certificate);
             let proved = || -> Result<(), RecheckError> {
-                for model in models(&part.plants, &certificate.description)? {
+                let seen = (self.parameters.as_slice(), part.ends.as_slice());
+                for model in models(&part.plants, seen, &certificate.description)? {
                     let recheck = Recheck::with(&alone, model, set.clone(), &known)?;
                     if !bears(&alone.claim, &recheck.until(stops).run()?) {
                         let what = "the law is not shown to keep to the rate that is claimed";
@@ -174,6 +187,10 @@ impl Family {
         if !(1..=MOST_PARTS).contains(&self.parts.len()) {
             return Err("allowed are 1 to 4096 parts");
         }
+        if scales::is_twofold(&self.parameters) {
+            return Err("two parameters are the scale of one sensor");
+        }
+        let of_plant = self.parameters.iter().filter(|one| one.is_of_plant()).count();
         let states = |part: &Part| part.plants.middle.len();
         for part in &self.parts {
             if part.ends.len() != self.parameters.len() {
@@ -182,8 +199,11 @@ impl Family {
             if !part.claim.is_of_stability() {
                 return Err("a part does not claim stability");
             }
-            if states(part) != states(&self.parts[0]) || !part.plants.fits(self.parameters.len()) {
+            if states(part) != states(&self.parts[0]) || !part.plants.fits(of_plant) {
                 return Err("the plants of its parts have different states");
+            }
+            if !covers_scales(&part.claim, &self.parameters) {
+                return Err("a part's gains are tied to what a sensor shows whose scale differs");
             }
         }
         if !self.parts.iter().all(|part| part.reaches(&self.parameters)) {
@@ -206,13 +226,49 @@ fn bears(claim: &Claim, rechecked: &Rechecked) -> bool {
     !matches!(claim, Claim::BoundedRate(_)) || rechecked.kept == Some(Kept::Everywhere)
 }
 
-/// Loops between which those of plants lie. A loop's matrix is affine in what its plant makes of a sample, and
-/// $M^T P M$ is convex in M, so that what holds at each of them holds between.
+/// True if a claim about each of some loops is one about those between them, as far as sensors are concerned: what cells of
+/// gains are tied to is what the pitch sensor shows, and products of that do not lie between those of its ends.
+fn covers_scales(claim: &Claim, parameters: &[Parameter]) -> bool {
+    let differs = parameters.iter().any(|one| one.sensors.contains(&ScaledSensor::Pitch));
+    !(differs && matches!(claim, Claim::SProcedure { .. }))
+}
+
+/// Loops between which those of plants and of what sensors show of them lie. A loop's matrix is affine in what its plant
+/// makes of a sample, and in the scale of each sensor, and $M^T P M$ is convex in M, so that what holds at each of them
+/// holds between.
 fn models(
     plants: &PlantSet,
+    (parameters, ends): (&[Parameter], &[[f64; 2]]),
     description: &LoopDescription,
 ) -> Result<Vec<LoopModel<Interval>>, NotProved> {
     let sampled = plants.sampled(description.controller.config().dt_s)?;
-    let settings = description.settings();
-    Ok(sampled.into_iter().map(|plant| LoopModel::new(plant, settings.clone())).collect())
+    let seen = scales::corners(parameters, ends, description);
+    let with = |plant: &SampledPlant<Interval>| {
+        seen.iter().map(|settings| LoopModel::new(plant.clone(), settings.clone())).collect()
+    };
+    Ok(sampled.iter().flat_map(|plant| -> Vec<_> { with(plant) }).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fspid_lti::Matrix;
+
+    fn differing(sensors: &[ScaledSensor]) -> [Parameter; 1] {
+        let (name, paths) = (String::new(), Vec::new());
+        let (relative, inverse, sensors) = (false, false, sensors.to_vec());
+        [Parameter { name, paths, relative, inverse, sensors, ends: [0.0, 1.0] }]
+    }
+
+    #[test]
+    fn gains_that_are_tied_to_what_the_pitch_sensor_shows_cover_no_scale_of_it() {
+        let form = Matrix::identity(2);
+        let tied = Claim::SProcedure { form: form.clone(), rate: 0.9, multipliers: vec![1.0] };
+        let for_all = Claim::CommonQuadratic { form, rate: 0.9 };
+        let covers = |claim, sensors: &[ScaledSensor]| covers_scales(claim, &differing(sensors));
+        assert!(!covers(&tied, &[ScaledSensor::Pitch]));
+        assert!(!covers(&tied, &[ScaledSensor::Rate, ScaledSensor::Pitch]));
+        assert!(covers(&tied, &[ScaledSensor::Rate]) && covers(&tied, &[]));
+        assert!(covers(&for_all, &[ScaledSensor::Pitch, ScaledSensor::Rate]));
+    }
 }

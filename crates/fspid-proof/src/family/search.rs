@@ -3,7 +3,7 @@
 use fspid_numeric::scalar::Interval;
 use fspid_sim::loop_model::LoopModel;
 
-use super::{Family, MOST_PARTS, Parameter, Part, bears, models, numbers};
+use super::{Family, MOST_PARTS, Parameter, Part, bears, covers_scales, models, numbers};
 use crate::certificate::Claim;
 use crate::check::{MakesPlant, NotProved, PlantSet};
 use crate::description::{LoopDescription, NotProvable};
@@ -56,6 +56,11 @@ pub enum Uncertain {
         "a sensor resolves in steps, and what they leave of a motion is bounded for the loop as it is alone; families need resolution_deg and resolution_deg_s of 0"
     )]
     Resolution,
+    /// What proves the loop in the middle ties its gains to what the pitch sensor shows, whose scale differs.
+    #[error(
+        "no one form is found for all gains, and a proof in which gains are tied to what the pitch sensor shows covers no scale of it between ends; allowed there is a scale_error_pct that stands still"
+    )]
+    Tied,
     /// No plant can be enclosed there.
     #[error("{0}")]
     Plant(NotProved),
@@ -135,8 +140,9 @@ impl Search<'_> {
             Ok(found) => found,
             // A narrower piece may do.
             Err(reason) => {
-                let halves = self.halves(&piece).ok_or_else(|| open(Uncertain::Plant(reason)))?;
-                return Ok(Found::Halves(halves));
+                let side = self.roughest(&piece.ends);
+                let halves = side.map(|side| halves(&piece, side));
+                return halves.map(Found::Halves).ok_or_else(|| open(Uncertain::Plant(reason)));
             }
         };
         let part =
@@ -151,12 +157,18 @@ impl Search<'_> {
         if let Some(claim) = common.as_ref().filter(|claim| self.holds(claim, &loops)) {
             return Ok(part(claim.clone()));
         }
+        // Scales of sensors leave nothing of second order, and may be too far apart for one form all the same.
+        let is_wide = common.is_none() && !self.parameters.iter().all(Parameter::is_of_plant);
+        let side = if is_wide { self.widest(&piece.ends) } else { self.roughest(&piece.ends) };
         let claim = common.or_else(|| piece.claim.clone());
-        if let Some(halves) = self.halves(&Piece { ends: piece.ends.clone(), claim }) {
-            return Ok(Found::Halves(halves));
+        if let Some(side) = side {
+            return Ok(Found::Halves(halves(&Piece { ends: piece.ends.clone(), claim }, side)));
         }
         // Other claims than one form for all gains are looked for where there is no other way.
         let claim = self.claim_at_middle(&piece)?;
+        if !covers_scales(&claim, self.parameters) {
+            return Err(open(Uncertain::Tied));
+        }
         match self.holds(&claim, &loops) {
             true => Ok(part(claim)),
             false => Err(open(Uncertain::Narrow)),
@@ -166,7 +178,7 @@ impl Search<'_> {
     /// Plants of a box, and the loops between which theirs lie.
     fn loops(&self, ends: &[[f64; 2]]) -> Result<PlantsAndLoops, NotProved> {
         let plants = PlantSet::of(&numbers(self.parameters, ends), self.plant)?;
-        let loops = models(&plants, self.prover.description())?;
+        let loops = models(&plants, (self.parameters, ends), self.prover.description())?;
         Ok((plants, loops))
     }
 
@@ -231,29 +243,34 @@ impl Search<'_> {
         })
     }
 
-    /// A piece, cut across the side that leaves most of second order.
-    fn halves(&self, piece: &Piece) -> Option<[Piece; 2]> {
-        let wide = |side: &usize| {
-            let ([from, to], [first, last]) = (piece.ends[*side], self.whole[*side]);
-            to - from > SMALLEST * (last - first)
-        };
-        let sides = (0..piece.ends.len()).filter(wide);
-        let side = sides.min_by(|one, other| {
-            let width = |side: usize| self.width_without(piece, side);
-            width(*one).total_cmp(&width(*other))
-        })?;
-        let [from, to] = piece.ends[side];
-        let at = from + 0.5 * (to - from);
-        Some([[from, at], [at, to]].map(|half| {
-            let mut ends = piece.ends.clone();
-            ends[side] = half;
-            Piece { ends, claim: piece.claim.clone() }
-        }))
+    /// Sides of a piece that may be cut.
+    fn sides(&self, ends: &[[f64; 2]]) -> impl Iterator<Item = usize> {
+        let shares = self.shares(ends);
+        (0..shares.len()).filter(move |&side| shares[side] > SMALLEST)
+    }
+
+    /// How much of each side of the whole box a piece has.
+    fn shares(&self, ends: &[[f64; 2]]) -> Vec<f64> {
+        let sides = ends.iter().zip(&self.whole);
+        // Written so that a side that stands still has nothing.
+        sides.map(|([from, to], [first, last])| ((to - from) / (last - first)).max(0.0)).collect()
+    }
+
+    /// The side of a piece that has most of its whole side.
+    fn widest(&self, ends: &[[f64; 2]]) -> Option<usize> {
+        let shares = self.shares(ends);
+        self.sides(ends).max_by(|&one, &other| shares[one].total_cmp(&shares[other]))
+    }
+
+    /// The side of a piece that leaves most of second order.
+    fn roughest(&self, ends: &[[f64; 2]]) -> Option<usize> {
+        let left = |side: usize| self.width_without(ends, side);
+        self.sides(ends).min_by(|&one, &other| left(one).total_cmp(&left(other)))
     }
 
     /// What is left of second order in a piece where one side stands in its middle.
-    fn width_without(&self, piece: &Piece, side: usize) -> f64 {
-        let mut ends = piece.ends.clone();
+    fn width_without(&self, ends: &[[f64; 2]], side: usize) -> f64 {
+        let mut ends = ends.to_vec();
         let [from, to] = ends[side];
         ends[side] = [from + 0.5 * (to - from); 2];
         let widths = |model: &LoopModel<Interval>| {
@@ -267,6 +284,17 @@ impl Search<'_> {
 enum Found {
     Part(Part),
     Halves([Piece; 2]),
+}
+
+/// A piece, cut across a side.
+fn halves(piece: &Piece, side: usize) -> [Piece; 2] {
+    let [from, to] = piece.ends[side];
+    let at = from + 0.5 * (to - from);
+    [[from, at], [at, to]].map(|half| {
+        let mut ends = piece.ends.clone();
+        ends[side] = half;
+        Piece { ends, claim: piece.claim.clone() }
+    })
 }
 
 /// One of the corners of a box, by the bits of its number.

@@ -46,7 +46,7 @@ impl Dice {
         (self.next() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    fn between(&mut self, lower: f64, upper: f64) -> f64 {
+    pub(crate) fn between(&mut self, lower: f64, upper: f64) -> f64 {
         lower + (upper - lower) * self.part()
     }
 

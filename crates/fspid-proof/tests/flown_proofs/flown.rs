@@ -163,13 +163,13 @@ fn controller_config(scenario: &Scenario) -> &PidConfig<f64> {
 
 /// How a flight begins.
 #[derive(Clone, Copy, Debug)]
-struct Start {
-    setpoint_rad: f64,
-    load_rad: f64,
+pub(crate) struct Start {
+    pub(crate) setpoint_rad: f64,
+    pub(crate) load_rad: f64,
     /// At the servo for a second.
-    kick_rad: f64,
+    pub(crate) kick_rad: f64,
     /// Slowly, so that no limit acts on the way.
-    ramp: bool,
+    pub(crate) ramp: bool,
 }
 
 /// No limit keeps the loop from where it comes to rest: it ends where the same loop without limits does.
@@ -188,7 +188,7 @@ fn rests_as_without_limits(
 }
 
 /// Where the pitch angle ends, rad.
-fn settles(
+pub(crate) fn settles(
     scenario: &Scenario,
     (certificate, rechecked): &(Certificate, Rechecked),
     start: Start,

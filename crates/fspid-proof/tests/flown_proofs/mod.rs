@@ -5,6 +5,7 @@ mod disturbed;
 mod drawn;
 mod flown;
 mod moving_bounds;
+mod scaled;
 mod worst;
 
 use drawn::Dice;

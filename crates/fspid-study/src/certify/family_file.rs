@@ -2,7 +2,7 @@
 
 use fspid_numeric::scalar::Interval;
 use fspid_proof::check::PlantSet;
-use fspid_proof::{Claim, Family, FamilyPart, Parameter};
+use fspid_proof::{Claim, Family, FamilyPart, Parameter, ScaledSensor};
 use serde::{Deserialize, Serialize};
 
 use super::file::ClaimFile;
@@ -29,7 +29,34 @@ struct ParameterFile {
     paths: Vec<String>,
     relative: bool,
     inverse: bool,
+    /// Whose scale error, %, it is; left out where it is a number of plant and actuator.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    sensors: Vec<SensorWord>,
     ends: Ends,
+}
+
+/// A sensor whose scale differs.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum SensorWord {
+    Pitch,
+    Rate,
+}
+
+impl SensorWord {
+    fn of(sensor: ScaledSensor) -> Self {
+        match sensor {
+            ScaledSensor::Pitch => Self::Pitch,
+            ScaledSensor::Rate => Self::Rate,
+        }
+    }
+
+    fn build(self) -> ScaledSensor {
+        match self {
+            Self::Pitch => ScaledSensor::Pitch,
+            Self::Rate => ScaledSensor::Rate,
+        }
+    }
 }
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -60,6 +87,7 @@ impl FamilyFile {
             paths: one.paths.clone(),
             relative: one.relative,
             inverse: one.inverse,
+            sensors: one.sensors.iter().copied().map(SensorWord::of).collect(),
             ends: one.ends,
         });
         let mut claims: Vec<&Claim> = Vec::new();
@@ -94,6 +122,7 @@ impl FamilyFile {
             paths: one.paths,
             relative: one.relative,
             inverse: one.inverse,
+            sensors: one.sensors.into_iter().map(SensorWord::build).collect(),
             ends: one.ends,
         });
         Ok(Family {

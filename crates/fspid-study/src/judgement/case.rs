@@ -155,6 +155,10 @@ mod tests {
     #[test]
     fn a_place_is_told_in_words_and_only_as_far_as_there_is_one() {
         assert_eq!(CasePlace::default().to_string(), "");
+        assert!(CasePlace::default().is_empty());
+        let first = PlantAt { index: 0, from_s: 0.0 };
+        let place = CasePlace { plant: Some(first), ..CasePlace::default() };
+        assert!(!place.is_empty() && place.to_string() == "the first plant", "{place}");
         let step = StepAt { number: 2, at_s: 5.0, from_deg: 1.0, to_deg: -1.0 };
         let place = CasePlace { step: Some(step), ..CasePlace::default() };
         assert_eq!(place.to_string(), "step 2 at 5 s, 1 to -1 deg");

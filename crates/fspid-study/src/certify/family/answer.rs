@@ -28,7 +28,7 @@ pub(in super::super) fn box_in_words(parameters: &[Parameter]) -> String {
 fn proved(parameters: &[Parameter], parts: usize) -> String {
     let parts = if parts == 1 { "one form".to_owned() } else { format!("{parts} forms") };
     format!(
-        "every plant in all of this, each standing still, returns to its trim where the set-point is and no load acts, as long as no limit acts ({parts}); all else here is about the loop as it is: {}",
+        "every loop in all of this, each standing still, returns to its trim where the set-point is and no load acts, as long as no limit acts ({parts}); all else here is about the loop as it is: {}",
         box_in_words(parameters)
     )
 }

@@ -1,5 +1,6 @@
 //! Which number of a loop a place of a scenario is.
 
+use fspid_proof::ScaledSensor;
 use fspid_scenario::file::SettingPath;
 use fspid_scenario::units::{FOOT_M, KNOT_M_S, SLUG_KG};
 
@@ -16,6 +17,8 @@ pub(super) enum LoopNumber {
     NaturalFrequency,
     /// The actuator's damping ratio.
     Damping,
+    /// The scale error of a sensor, %.
+    Scale(ScaledSensor),
     /// A number of an aircraft of derivatives, and the size of its unit in SI.
     Aircraft(AircraftNumber, f64),
 }
@@ -53,6 +56,14 @@ pub(super) enum Derivative {
 }
 
 impl LoopNumber {
+    /// The sensor that it is the scale of.
+    pub(super) fn sensor(self) -> Option<ScaledSensor> {
+        match self {
+            Self::Scale(sensor) => Some(sensor),
+            _ => None,
+        }
+    }
+
     /// The number at a place; none for places that are none of these.
     pub(super) fn at(path: &SettingPath) -> Option<Self> {
         let (table, rest) = path.text().split_once('.')?;
@@ -60,6 +71,8 @@ impl LoopNumber {
             ("actuator", "time_constant_s") => Some(Self::TimeConstant),
             ("actuator", "natural_frequency_rad_s") => Some(Self::NaturalFrequency),
             ("actuator", "damping") => Some(Self::Damping),
+            ("sensor", "pitch.scale_error_pct") => Some(Self::Scale(ScaledSensor::Pitch)),
+            ("sensor", "rate.scale_error_pct") => Some(Self::Scale(ScaledSensor::Rate)),
             ("plant", _) => {
                 let last = rest.rsplit('.').next()?;
                 let (name, index) = last.strip_suffix(']')?.split_once('[')?;

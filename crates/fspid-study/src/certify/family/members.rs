@@ -4,7 +4,7 @@
 use fspid_numeric::Scalar;
 use fspid_numeric::scalar::Interval;
 use fspid_proof::check::{ContinuousPlant, NotProved, Sloped, printed};
-use fspid_proof::{LoopDescription, MOST_PARAMETERS, NotProvable, Parameter};
+use fspid_proof::{LoopDescription, MOST_PARAMETERS, NotProvable, Parameter, ScaledSensor};
 use fspid_scenario::dispersion::{Dispersion, Distribution};
 use fspid_scenario::file::{NewValue, SettingPath, Study, Template};
 use fspid_sim::LinearPlant;
@@ -88,10 +88,11 @@ impl Members {
         &self.parameters
     }
 
-    /// The plant of parameters, as [`Parameter::number`] has them.
+    /// The plant of parameters that are no sensor's, as [`fspid_proof::numbers`] has them.
     pub(super) fn plant(&self, at: &[Sloped]) -> Result<ContinuousPlant<Sloped>, NotProved> {
         let mut source = self.source.clone();
-        for (drawn, &value) in self.drawn.iter().zip(at) {
+        let of_plant = self.drawn.iter().filter(|one| one.parameter.is_of_plant());
+        for (drawn, &value) in of_plant.zip(at) {
             drawn.put(&mut source, value);
         }
         source.plant()
@@ -99,6 +100,27 @@ impl Members {
 }
 
 impl Drawn {
+    /// Puts what a value between two ends is of a loop.
+    fn put_between(
+        &self,
+        source: &mut Source,
+        ends: [f64; 2],
+        own: &LoopDescription,
+    ) -> Option<()> {
+        let Parameter { sensors, .. } = &self.parameter;
+        for &sensor in sensors {
+            let nominal = match sensor {
+                ScaledSensor::Pitch => own.pitch.scale,
+                ScaledSensor::Rate => own.rate.scale,
+            };
+            source.put_scale(sensor, self.parameter.scales(ends, nominal));
+        }
+        if sensors.is_empty() {
+            return self.put(source, Sloped::fixed(self.parameter.number(ends)));
+        }
+        Some(())
+    }
+
     /// Puts the numbers that follow from a value into a loop's; none where the loop has no such number.
     fn put(&self, source: &mut Source, value: Sloped) -> Option<()> {
         self.numbers.iter().try_for_each(|(number, factor_of)| {
@@ -134,16 +156,22 @@ impl Asking<'_> {
                 if target.paths.iter().all(is_outside) {
                     continue;
                 }
-                let why = "families know coefficients of a [plant]; mass, inertia in pitch, centre of gravity, airspeed, altitude and longitudinal derivatives of an [aircraft] of derivatives to which nothing is added; time constant, natural frequency and damping of the [actuator]; other values are certified one by one: with --set, or, where a dispersion chooses among them, with --cases choices";
+                let why = "families know coefficients of a [plant]; mass, inertia in pitch, centre of gravity, airspeed, altitude and longitudinal derivatives of an [aircraft] of derivatives to which nothing is added; time constant, natural frequency and damping of the [actuator]; scale errors of sensors; other values are certified one by one: with --set, or, where a dispersion chooses among them, with --cases choices";
                 return Err(NoFamily::NotBounded { path: first.to_owned(), why });
             };
             let why = "what it draws has no ends; allowed are lower and upper of a normal distribution, or a uniform one";
             let ends = ends.ok_or(NoFamily::NotBounded { path: first.to_owned(), why })?;
+            let sensors: Vec<ScaledSensor> = numbers.iter().filter_map(|it| it.sensor()).collect();
+            if !sensors.is_empty() && sensors.len() < numbers.len() {
+                let why = "one draw changes the scale of a sensor and a number of the plant or the actuator; allowed is a [[dispersion]] for each";
+                return Err(NoFamily::NotBounded { path: first.to_owned(), why });
+            }
             let parameter = Parameter {
                 name: target.name.clone(),
                 paths: target.paths.iter().map(|path| path.text().to_owned()).collect(),
                 relative: dispersion.relative,
                 inverse: numbers.iter().all(|it| *it == LoopNumber::TimeConstant),
+                sensors,
                 ends,
             };
             let nominal = |path: &SettingPath| {
@@ -171,9 +199,8 @@ impl Asking<'_> {
                 .collect();
             let flown = self.described(&values, paths)?;
             let mut source = Source::of(self.template.study(), self.description);
-            let number = Sloped::fixed(drawn.parameter.number([end; 2]));
             let follows = drawn
-                .put(&mut source, number)
+                .put_between(&mut source, [end; 2], self.description)
                 .is_some_and(|()| source.is_of(&flown, self.description));
             if !follows {
                 return Err(NoFamily::NotBounded {

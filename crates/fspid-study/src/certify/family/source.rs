@@ -5,10 +5,11 @@ use fspid_aircraft::data::Moment;
 use fspid_aircraft::enclosure::{EnclosedFlight, EnclosedModel};
 use fspid_lti::{Matrix, StateSpace};
 use fspid_numeric::scalar::Interval;
-use fspid_proof::LoopDescription;
 use fspid_proof::check::{ActuatorLag, ContinuousPlant, LagOf, NotProved, Sloped, printed};
+use fspid_proof::{LoopDescription, ScaledSensor};
 use fspid_scenario::file::{FlownDerivatives, Study};
 use fspid_sim::ElevatorSign;
+use fspid_sim::loop_model::Sensing;
 
 use super::loop_number::{AircraftNumber, Coefficient, Derivative, LoopNumber};
 
@@ -22,6 +23,8 @@ pub(super) struct Source {
     plant: PlantSource,
     elevator_sign: ElevatorSign,
     lag: LagOf<Sloped>,
+    /// Between what the scales of the sensors of pitch and of pitch rate lie, where they differ.
+    scales: [Option<[f64; 2]>; 2],
 }
 
 #[derive(Clone, Debug)]
@@ -56,7 +59,12 @@ impl Source {
                 LagOf::Second(fixed(natural_frequency_rad_s), fixed(damping))
             }
         };
-        Self { plant, elevator_sign: description.elevator_sign, lag }
+        Self { plant, elevator_sign: description.elevator_sign, lag, scales: [None; 2] }
+    }
+
+    /// Puts the ends of a sensor's scale.
+    pub(super) fn put_scale(&mut self, sensor: ScaledSensor, ends: [f64; 2]) {
+        self.scales[usize::from(sensor == ScaledSensor::Rate)] = Some(ends);
     }
 
     /// Puts a number, if the loop has it. A time constant comes as one over it.
@@ -142,9 +150,16 @@ impl Source {
             numerator: own.numerator.clone(),
             denominator: own.denominator.clone(),
             actuator: flown.actuator.with_lag(own.actuator.lag()),
+            pitch: Sensing { scale: own.pitch.scale, ..flown.pitch },
+            rate: Sensing { scale: own.rate.scale, ..flown.rate },
             ..flown.clone()
         } == *own;
-        rest_is_own && self.lag_is_of(flown) && self.plant_is_of(flown).unwrap_or(false)
+        let scales = [(flown.pitch, own.pitch), (flown.rate, own.rate)];
+        let is_seen = scales.into_iter().zip(self.scales).all(|((flown, own), ends)| {
+            let [least, most] = ends.unwrap_or([own.scale; 2]);
+            (least..=most).contains(&flown.scale)
+        });
+        rest_is_own && is_seen && self.lag_is_of(flown) && self.plant_is_of(flown).unwrap_or(false)
     }
 
     fn lag_is_of(&self, flown: &LoopDescription) -> bool {

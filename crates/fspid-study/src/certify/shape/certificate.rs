@@ -113,6 +113,7 @@ const PARAMETER: Shape = Object(&[
     key("paths", List(&Text(NAME), [1, COEFFICIENTS])),
     key("relative", Truth),
     key("inverse", Truth),
+    optional("sensors", List(&Word(&["pitch", "rate"]), [1, 2])),
     key("ends", BOTH_ENDS),
 ]);
 
@@ -130,8 +131,8 @@ const PART: Shape = Object(&[
 const PLANTS: Shape = Object(&[
     key("middle", ROWS),
     key("all", ROWS),
-    key("slopes", List(&ROWS, [1, MOST_PARAMETERS])),
-    key("reach", List(&NOT_NEGATIVE, [1, MOST_PARAMETERS])),
+    key("slopes", List(&ROWS, [0, MOST_PARAMETERS])),
+    key("reach", List(&NOT_NEGATIVE, [0, MOST_PARAMETERS])),
     key("pitch_rate", ROW),
     key("without_lag", Truth),
 ]);
