@@ -2,10 +2,13 @@
 
 use fspid_scenario::file;
 use fspid_scenario::measure::{Family, Measure};
-use fspid_sim::Trace;
+use fspid_scenario::requirement::Requirement;
 use fspid_sim::gradient::{Flown, Slopes};
+use fspid_sim::{External, ExternalSource, Flyer, NamedExternal, Trace};
 use fspid_study::analysis::{Analysis, Question};
-use fspid_study::judgement::{Judgement, NotEvaluated, SlopeOf, Sloped, add_slopes};
+use fspid_study::judgement::{
+    Evidence, Judgement, NotEvaluated, SlopeOf, Sloped, add_slopes, of_loop,
+};
 use fspid_study::metrics::Absent;
 use fspid_study::simulation::Simulation;
 
@@ -506,4 +509,82 @@ fn a_measure_that_is_differentiated_has_the_value_that_is_judged() {
         }
     }
     assert!(compared >= 50, "{compared} values compared");
+}
+
+/// The jumbo with one of its controllers and a requirement.
+fn alone(controller: usize, requirement: &str) -> file::Study {
+    let mut study = study(&format!("{JUMBO}\n[[requirement]]\n{requirement}\n"), &[]);
+    study.scenario.controllers = vec![study.scenario.controllers.remove(controller)];
+    study
+}
+
+#[test]
+fn a_measure_of_a_loop_without_a_flight_is_the_one_that_is_judged() {
+    let mut compared = 0;
+    for measure in Measure::ALL {
+        if SlopeOf::measure(measure) != Some(SlopeOf::Loop) {
+            continue;
+        }
+        for controller in [0, 1] {
+            let limit = format!("measure = \"{}\"\nleast = 0.0", measure.name());
+            let study = alone(controller, &limit);
+            let judged = Simulation::of(&study).expect("it flies").judgements.remove(0);
+            let theirs = judged.found.map(|case| measure.compared(case.value));
+            let ours = of_loop(&study, &study.requirements[0]);
+            assert_eq!(ours, theirs, "{} of controller {controller}", measure.name());
+            compared += usize::from(ours.is_ok());
+        }
+    }
+    assert!(compared >= 20, "{compared} values compared");
+}
+
+#[test]
+fn of_no_controller_with_equations_a_loop_has_no_measure() {
+    let mut study = alone(0, "measure = \"phase_margin_deg\"\nleast = 0.0");
+    study.scenario.controllers.clear();
+    assert_eq!(of_loop(&study, &study.requirements[0]), Err(NotEvaluated::External));
+}
+
+/// Of fixed gains without limits the flight itself says that the loop is unstable, and of one loop alone.
+#[test]
+fn an_unstable_loop_of_fixed_gains_is_told_by_its_flight() {
+    let judgement = of("P", "measure = \"iae_deg_s\"\nmost = 1e300", &["controller.P.kp=5.0"]);
+    let Err(NotEvaluated::Absent(Absent::Unstable { spectral_radius })) = judgement.found else {
+        panic!("{judgement:?}")
+    };
+    assert!(spectral_radius > 1.0 && judgement.place().is_empty(), "{spectral_radius}");
+}
+
+#[test]
+fn what_an_external_controller_says_of_its_own_limits_is_no_measure() {
+    let study = alone(0, "measure = \"saturated_pct\"\nmost = 1.0");
+    let result = Simulation::of(&study).expect("it flies").results.remove(0);
+    let source = ExternalSource::Library("controller.so".into());
+    let (contents, renamed) = (None, Vec::new());
+    let external = External { source, contents, answer_limit_s: 1.0, dt_s: 0.01, renamed };
+    let external = NamedExternal { name: "theirs".to_owned(), external };
+    let evidence = Evidence::new(&study, Flyer::External(&external), &result);
+    assert_eq!(evidence.cases(&study.requirements[0]), Err(NotEvaluated::OwnWord));
+    // What is measured of it counts, and what its equations would say does not.
+    let asked = |measure| Requirement { measure, ..study.requirements[0].clone() };
+    let travel = evidence.cases(&asked(Measure::ElevatorTravel)).expect("it was flown");
+    assert_eq!(travel.len(), 1);
+    let margin = evidence.cases(&asked(Measure::PhaseMargin));
+    assert_eq!(margin, Err(NotEvaluated::External));
+    let own = study.scenario.flyers().next().expect("a controller");
+    let evidence = Evidence::new(&study, own, &result);
+    assert!(evidence.cases(&study.requirements[0]).is_ok());
+}
+
+#[test]
+fn the_aircraft_alone_is_judged_once_and_says_that_it_is() {
+    let limit = "least = 0.0";
+    let damping = format!("[[requirement]]\nmeasure = \"short_period_damping\"\n{limit}\n");
+    let judgements = judged(JUMBO, &damping, &[]);
+    assert_eq!(judgements.len(), 1);
+    assert!(judgements[0].is_of_aircraft() && judgements[0].controller == "(aircraft)");
+    let margin = format!("[[requirement]]\nmeasure = \"phase_margin_deg\"\n{limit}\n");
+    let judgements = judged(JUMBO, &margin, &[]);
+    assert_eq!(judgements.len(), 2);
+    assert!(judgements.iter().all(|one| !one.is_of_aircraft()));
 }
