@@ -2,11 +2,13 @@
 # Fuzzes every reader for so many seconds (20 if nothing is said), as many at once as there are cores. Ends with 1 where
 # one was brought down, whose input is then in target/fuzz/found, or where one reads none of its seeds. FSPID names the
 # program that makes seeds.
+#   --build   builds the readers and runs none
 #
 # cargo-fuzz is not needed: these are the flags that it gives the stable compiler when it leaves the sanitizer out.
 set -euo pipefail
 cd "$(dirname "$0")"
 seconds="${1:-20}"
+[[ "$seconds" == --build ]] && only_builds=1
 fspid="${FSPID:-$PWD/../target/release/fspid}"
 host="$(rustc -vV | sed -n 's/^host: //p')"
 export CARGO_TARGET_DIR="$PWD/../target/fuzz"
@@ -14,6 +16,7 @@ export CARGO_TARGET_DIR="$PWD/../target/fuzz"
 RUSTFLAGS="--cfg fuzzing -Cdebug-assertions -Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \
 -Cllvm-args=-sanitizer-coverage-inline-8bit-counters -Cllvm-args=-sanitizer-coverage-pc-table \
 -Cllvm-args=-sanitizer-coverage-trace-compares" cargo build --locked --profile quick --target "$host"
+[[ "${only_builds:-}" ]] && exit 0
 
 # Seeds: the fixtures of the tests, and what only the program writes.
 tests="$PWD/../crates"
