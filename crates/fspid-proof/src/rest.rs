@@ -22,7 +22,7 @@ pub(crate) struct Rest {
     pub(crate) integral_rad: f64,
     /// What the sensor then shows, rad: the set-point, and without an integral the error as well.
     pub(crate) seen_rad: f64,
-    /// The error, rad; 0 with an integral.
+    /// The error, rad; 0 with an integral, infinite where nothing bounds it.
     pub(crate) error_rad: f64,
     /// What rest depends on.
     pub(crate) any_setpoint: bool,
@@ -174,10 +174,10 @@ impl<'a> Holding<'a> {
     /// Gains that stand still: all is linear, whatever is held.
     fn still(&self) -> Rest {
         let [kp, ..] = self.set.rest;
-        let (command_rad, seen_rad) = match self.has_integral() {
-            true => (self.command_rad(), self.range.setpoint_rad),
+        let (command_rad, error_rad) = match self.has_integral() {
+            true => (self.command_rad(), 0.0),
             false => match self.proportional(kp) {
-                Some((command_rad, driven_rad)) => (command_rad, self.seen_at(driven_rad)),
+                Some(Proportional { command_rad, error_rad, .. }) => (command_rad, error_rad),
                 None => (f64::INFINITY, f64::INFINITY),
             },
         };
@@ -189,47 +189,48 @@ impl<'a> Holding<'a> {
                 + kp * self.by_weight()
                 + self.fed_forward())
             .upper(),
-            seen_rad,
-            error_rad: 0.0,
+            seen_rad: self.seen_at(error_rad),
+            error_rad,
             any_setpoint: true,
             any_load: true,
         }
     }
 
-    /// Command and error at rest without an integral, largest magnitudes:
+    /// What there is at rest without an integral:
     ///
-    /// $$ k_p (b r - y) + k_f r = y / G + d, \qquad b r - y = \frac{b r / G + d - k_f r}{k_p + 1 / G} $$
+    /// $$ k_p (b r - y) + k_f r = y / G + d, \qquad b r - y = \frac{b r / G + d - k_f r}{k_p + 1 / G}, \qquad
+    ///    r - y = \frac{(1 / G - k_f + k_p (1 - b)) r + d}{k_p + 1 / G} $$
     ///
     /// with G the pitch per command. Some rest there is, as kp is a continuous function of the error.
-    fn proportional(&self, kp: Interval) -> Option<(f64, f64)> {
+    fn proportional(&self, kp: Interval) -> Option<Proportional> {
         if self.holds_nothing() {
-            return Some((0.0, 0.0));
+            return Some(Proportional { command_rad: 0.0, driven_rad: 0.0, error_rad: 0.0 });
         }
         let per = self.per_pitch?;
         let sum = kp + per;
         let weight = self.description.controller.config().setpoint_weights.proportional;
         let size = |value: Interval| Interval::point(value.magnitude());
         let known = !sum.contains(0.0) && sum.is_bounded();
-        let beyond = size(per) * Interval::point(weight.abs()) * self.setpoint
-            + self.load
-            + self.fed_forward();
-        let driven = beyond / size_least(sum);
+        let weight = Interval::point(weight);
+        let fed = Interval::point(self.description.controller.config().feedforward);
+        let driven = (size(per * weight - fed) * self.setpoint + self.load) / size_least(sum);
+        let error = size((per - fed + kp * (Interval::ONE - weight)) / sum) * self.setpoint
+            + self.load / size_least(sum);
         let command = size(kp) * driven + self.fed_forward();
-        known.then_some((command.upper(), driven.upper()))
+        known.then_some(Proportional {
+            command_rad: command.upper(),
+            driven_rad: driven.upper(),
+            error_rad: error.upper(),
+        })
     }
 
     fn holds_nothing(&self) -> bool {
         self.range == Range::REST && self.load == Interval::ZERO
     }
 
-    /// The error, rad, where the gain kp sees so much: $e = (b r - y) - (b - 1) r$.
-    fn error_at(&self, driven_rad: f64) -> f64 {
-        (Interval::point(driven_rad) + self.by_weight()).upper()
-    }
-
-    /// The pitch that is seen there, rad.
-    fn seen_at(&self, driven_rad: f64) -> f64 {
-        (self.setpoint + Interval::point(self.error_at(driven_rad))).upper()
+    /// The pitch that is seen with an error, rad.
+    fn seen_at(&self, error_rad: f64) -> f64 {
+        (self.setpoint + Interval::point(error_rad)).upper()
     }
 
     fn tuned(&self, fspid: &Fspid<f64>) -> Result<Rest, NoRest> {
@@ -297,13 +298,22 @@ impl<'a> Holding<'a> {
             return Err(NoRest::NoIntegral);
         }
         let [kp, ..] = self.set.bounds();
-        let (command_rad, driven_rad) = self.proportional(kp).ok_or(NoRest::NoIntegral)?;
-        let error_rad = self.error_at(driven_rad);
+        let Proportional { command_rad, driven_rad, error_rad } =
+            self.proportional(kp).ok_or(NoRest::NoIntegral)?;
         let at_origin = error_rad == 0.0;
         let held = HeldCommand { by_kp: driven_rad, by_ki: 0.0, at_origin };
-        let seen_rad = self.seen_at(driven_rad);
+        let seen_rad = self.seen_at(error_rad);
         Ok(Rest { held, command_rad, integral_rad: 0.0, seen_rad, error_rad, ..rest })
     }
+}
+
+/// Rest without an integral, largest magnitudes, rad.
+struct Proportional {
+    command_rad: f64,
+    /// What kp multiplies.
+    driven_rad: f64,
+    /// How far the pitch that is seen is from the set-point.
+    error_rad: f64,
 }
 
 /// The smallest magnitude in an interval, as a number that divides.

@@ -74,7 +74,7 @@ pub struct Scope {
     pub any_setpoint: bool,
     /// The claim is about every constant load, as long as no limit acts.
     pub any_load: bool,
-    /// How far rest may be from the set-point, rad: without an integral an error stays.
+    /// How far rest may be from the set-point, rad: without an integral an error stays; infinite where nothing bounds it.
     pub rest_error_rad: f64,
     /// How far from rest the pitch angle may stay, rad: 0 where every deviation decreases for ever; above where
     /// resolution, or what is not known of the rules to the last digit, leaves something.

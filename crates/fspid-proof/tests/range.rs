@@ -45,6 +45,10 @@ fn loop_of(controller: Controller) -> LoopDescription {
     }
 }
 
+fn pitch_per_command() -> f64 {
+    0.0099096 / 0.0072771
+}
+
 fn fixed(config: PidConfig<f64>) -> LoopDescription {
     loop_of(Controller::Fixed(Pid::new(NOMINAL, config).expect("allowed")))
 }
@@ -177,6 +181,33 @@ fn without_an_integral_the_error_that_stays_is_stated() {
     // 1 deg over 1 + kp G with a pitch of 1.36 per command.
     assert!(rechecked.rest_error_rad > 0.2 * DEG && rechecked.rest_error_rad < 0.6 * DEG);
     assert!(!rechecked.any_setpoint);
+}
+
+/// A certificate of fixed gains without an integral used to say nothing of the error that stays, as if there were none.
+#[test]
+fn fixed_gains_without_an_integral_state_the_error_that_stays_and_what_is_fed_forward_takes_away() {
+    let nominal = Gains { ki: 0.0, ..NOMINAL };
+    let error = |config: PidConfig<f64>, range: (f64, f64)| {
+        let pid = Pid::new(nominal, config).expect("allowed");
+        let description = LoopDescription { controller: Controller::Fixed(pid), ..fixed(config) };
+        let (_, rechecked) = proved(answer(&description, &asked(range.0, range.1)));
+        assert!(rechecked.any_setpoint && rechecked.any_load);
+        rechecked.rest_error_rad / DEG
+    };
+    let near = |found: f64, expected: f64| {
+        assert!(found >= expected && found <= expected * (1.0 + 1e-9), "{found} {expected}");
+    };
+    let per = pitch_per_command().recip();
+    let open = nominal.kp + per;
+    near(error(config(), (2.0, 0.0)), 2.0 * per / open);
+    near(error(config(), (2.0, 0.5)), (2.0 * per + 0.5) / open);
+    near(error(weighted(0.5), (2.0, 0.0)), 2.0 * (per + 0.5 * nominal.kp) / open);
+    let fed = |feedforward| PidConfig { feedforward, ..config() };
+    near(error(fed(0.25 * per), (2.0, 0.0)), 2.0 * 0.75 * per / open);
+    assert!(error(fed(per), (2.0, 0.0)) < 1e-9, "all of it is fed forward");
+    assert!(error(config(), (0.0, 0.0)) == 0.0, "nothing is held");
+    let integral = proved(answer(&fixed(config()), &asked(2.0, 0.5))).1;
+    assert!(integral.rest_error_rad == 0.0);
 }
 
 /// It used to be proved that every deviation falls, and a step of half the resolution left a command that

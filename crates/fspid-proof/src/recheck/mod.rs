@@ -46,7 +46,8 @@ pub struct Rechecked {
     pub any_setpoint: bool,
     /// The claim is about every constant load, likewise.
     pub any_load: bool,
-    /// How far rest may be from the set-point, rad: without an integral an error stays.
+    /// How far rest may be from the set-point, rad, at the set-points and loads of the range: without an integral an error
+    /// stays; infinite where nothing bounds it.
     pub rest_error_rad: f64,
     /// How far from rest the pitch angle may stay, rad; 0 where every deviation decreases for ever.
     pub remains_rad: f64,

@@ -101,6 +101,9 @@ fn fly_all(scenario: &Scenario, proved: &(Certificate, Rechecked), whole: bool) 
         .max(0.0);
     let loads = if rechecked.any_load { [0.0, 5.0_f64.to_radians()] } else { [0.0, room] };
     let (mut flights, mut stepped) = (0, false);
+    if let Err(reason) = rests_near_its_setpoint(&free, proved, room) {
+        return Answer::Contradicted(reason);
+    }
     for (setpoint_rad, load_rad, kick_rad) in [
         (any, 0.0, 0.0),
         (-any, loads[1], 0.0),
@@ -131,6 +134,33 @@ fn fly_all(scenario: &Scenario, proved: &(Certificate, Rechecked), whole: bool) 
     }
     let held = far > 0.0 && !rechecked.any_setpoint;
     Answer::Settled { whole, flights, held, stepped }
+}
+
+/// At the edge of the range a loop comes to rest no further from its set-point than is told.
+fn rests_near_its_setpoint(
+    free: &Scenario,
+    proved: &(Certificate, Rechecked),
+    room: f64,
+) -> Result<(), String> {
+    let (Certificate { range, .. }, rechecked) = proved;
+    let sensor = free.surroundings.pitch_sensor.as_ref();
+    // A bias is a load to the certificate, and an error to whoever looks at the pitch angle.
+    if sensor.is_some_and(|it| it.bias() != 0.0) {
+        return Ok(());
+    }
+    let scale = sensor.map_or(1.0, |it| 1.0 + it.model().scale_error);
+    for load_rad in [0.0, room, -room] {
+        let setpoint_rad = range.setpoint_rad;
+        let start = Start { setpoint_rad, load_rad, kick_rad: 0.0, ramp: false };
+        let end = settles(free, proved, start)?;
+        let off = (scale * end - setpoint_rad).abs();
+        let slack = 2.0 * LEFT * (setpoint_rad + end.abs()) + 2.0 * rechecked.remains_rad;
+        if !(off <= rechecked.rest_error_rad + slack + ROUNDING) {
+            let told = rechecked.rest_error_rad;
+            return Err(format!("{start:?}: rests {off:e} rad off, told are {told:e}"));
+        }
+    }
+    Ok(())
 }
 
 /// Steps up to the edge of what is claimed, either way, with loads.

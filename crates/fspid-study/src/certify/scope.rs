@@ -182,18 +182,20 @@ pub fn in_short(certificate: &Certificate, rechecked: &Rechecked) -> String {
 }
 
 fn rest_error(scope: &Scope) -> String {
+    if !scope.rest_error_rad.is_finite() {
+        return "nothing bounds how far rest is from the set-point: there is no integral"
+            .to_owned();
+    }
     let most = short(degrees(scope.rest_error_rad));
-    format!("rest is up to {most} deg from the set-point: there is no integral")
+    let at = held(scope.range);
+    format!("REST IS UP TO {most} deg FROM THE SET-POINT, at {at}: there is no integral")
 }
 
 fn remains(scope: &Scope) -> String {
     let angle = |most: f64| if most < 1e-3 { format!("{most:.1e}") } else { short(most) };
-    let rest = match degrees(scope.rest_error_rad) {
-        0.0 => "rest".to_owned(),
-        most => format!(
-            "rest, which without an integral may be up to {} deg off the set-point",
-            angle(most)
-        ),
+    let rest = match scope.rest_error_rad {
+        0.0 => "rest",
+        _ => "rest, which without an integral is not the set-point",
     };
     match degrees(scope.remains_rad) {
         0.0 => format!("nothing: every deviation dies out towards {rest}"),
