@@ -13,12 +13,15 @@ Ends with 1 where a change survives that equivalent.txt does not explain.
 """
 
 import argparse
+import contextlib
 import json
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
+import threading
 from collections import Counter, defaultdict
 from pathlib import Path
 from typing import NamedTuple
@@ -179,12 +182,27 @@ def asked(programs: list[str], folder: Path, filters: list[str], number: int, lo
     """What tests make of a change: caught, missed or too long."""
     # One seed, so that a change that is noticed is noticed again.
     environment = {**os.environ, "MUTANT": str(number), "PROPTEST_RNG_SEED": "1"}
+    begin = {"cwd": folder, "env": environment, "start_new_session": True, "text": True}
     for program in programs:
-        try:
-            done = subprocess.run([program, *filters], cwd=folder, env=environment, capture_output=True, timeout=longest_s)
-        except subprocess.TimeoutExpired:
+        is_too_long = threading.Event()
+        with subprocess.Popen([program, *filters], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, **begin) as run:
+
+            def end() -> None:
+                # Programs that a test has begun are of its group.
+                with contextlib.suppress(ProcessLookupError):
+                    os.killpg(run.pid, signal.SIGKILL)
+
+            watch = threading.Timer(longest_s, lambda: (is_too_long.set(), end()))
+            watch.start()
+            # The first test that fails is enough: the others need not be waited for.
+            fails = any(line.rstrip().endswith("... FAILED") for line in run.stdout)
+            watch.cancel()
+            if fails:
+                end()
+                return "caught"
+        if is_too_long.is_set():
             return "too long"
-        if done.returncode:
+        if run.returncode:
             return "caught"
     return "missed"
 
