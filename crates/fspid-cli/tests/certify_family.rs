@@ -179,7 +179,7 @@ fn sensors_of_any_scale_between_limits_are_proved_with_plants_and_compared() {
     assert_eq!(check(&["--against", "drawn.toml"]).0, 0);
     let wider = check(&["--against", "drawn.toml", "--set", "dispersion[2].upper=12"]);
     assert!(wider.0 == 1 && wider.1.contains("from -15 to 12"), "{}", wider.1);
-    // Twice the error at rest is twice of it at both ends.
+    // Factors are of the loop's own error: with another it is another loop.
     let other = "sensor.rate.scale_error_pct=-4";
     assert_eq!(check(&["--against", "drawn.toml", "--set", other]).0, 1);
     // One draw of both, and one of a sensor and a plant.

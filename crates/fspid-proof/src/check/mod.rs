@@ -41,6 +41,6 @@ pub use lyapunov::{
 pub use matrix::IntervalMatrix;
 pub use moving::{Ends, Moving, MovingProof, NotProvedAt, falls_while_moving};
 pub(crate) use plant::Passed;
-pub use plant::{ActuatorLag, ContinuousPlant, LagOf, PrintedPlant, printed};
+pub use plant::{ActuatorLag, ContinuousPlant, LagOf, PrintedPlant, ROUNDED, printed};
 pub(crate) use plant_set::from_middle;
 pub use plant_set::{MOST_PARAMETERS, MakesPlant, PlantSet, Sloped};

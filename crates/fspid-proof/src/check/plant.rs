@@ -84,6 +84,9 @@ pub(crate) struct Passed {
     pub(crate) ramp: Vec<Interval>,
 }
 
+/// A number that arithmetic has rounded up to nine times, each by a share of $2^{-53}$ at most, over the number itself.
+pub const ROUNDED: Interval = Interval::between(1.0 - 1e-15, 1.0 + 1e-15);
+
 /// All decimals that a printed number can stand for, and then some: from the float below it to the one
 /// above. Zero is zero.
 #[must_use]

@@ -4,11 +4,8 @@ use fspid_numeric::scalar::Interval;
 use fspid_sim::loop_model::LoopSettings;
 
 use super::Parameter;
-use crate::check::printed;
+use crate::check::{ROUNDED, printed};
 use crate::description::LoopDescription;
-
-/// A number that was rounded a few times, over it.
-const ROUNDED: Interval = Interval::between(1.0 - 1e-15, 1.0 + 1e-15);
 
 /// A sensor whose scale may differ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

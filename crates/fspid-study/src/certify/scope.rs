@@ -169,7 +169,7 @@ pub(super) fn asked_in_words(range: Range) -> String {
     )
 }
 
-/// For a cell of a table: set-points, loads, and whether limits are covered.
+/// For a cell of a table: set-points, loads, what error stays, and whether limits are covered.
 #[must_use]
 pub fn in_short(certificate: &Certificate, rechecked: &Rechecked) -> String {
     let scope = certificate.scope(rechecked);
@@ -178,7 +178,11 @@ pub fn in_short(certificate: &Certificate, rechecked: &Rechecked) -> String {
         (false, Some(_)) => "; near enough to rest that no limit acts",
         (false, None) => "; saturation is not covered",
     };
-    format!("for {}{limits}", range_in_words(&scope))
+    let off = match scope.rest_error_rad {
+        0.0 => String::new(),
+        _ => format!("; {}", rest_error(&scope)),
+    };
+    format!("for {}{off}{limits}", range_in_words(&scope))
 }
 
 fn rest_error(scope: &Scope) -> String {

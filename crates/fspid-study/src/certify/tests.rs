@@ -3,13 +3,13 @@
 use std::path::Path;
 use std::sync::OnceLock;
 
-use fspid_proof::{Bearing, Claim};
+use fspid_proof::{Bearing, Claim, Verdict};
 use serde_json::{Value, json};
 
 use super::{
     Answer, Certification, CheckedFile, Effort, Seal, check_text, check_text_until,
     file::{Read, read, resealed},
-    from_text, to_text,
+    from_text, scope_in_short, to_text,
 };
 use fspid_scenario::file::{self, Study};
 
@@ -341,6 +341,21 @@ fn a_check_says_what_the_proof_said_of_its_scope() {
     let sentences = check["scope"]["sentences"].as_array().expect("sentences");
     let told = checked(good()).text();
     assert!(sentences.iter().all(|it| told.contains(it.as_str().expect("text"))), "{told}");
+}
+
+/// A step of 1 deg, and a proportional controller of 3.5287 on a plant that needs 0.73436 of elevator for each of pitch.
+#[test]
+fn an_error_that_stays_is_told_in_sentences_in_numbers_and_in_a_cell_of_a_table() {
+    let study = load("scenarios/747-pitch-step.toml", &[]);
+    let certification = Certification::of(&study, Some("PC"), &effort()).expect("certified");
+    let told = "REST IS UP TO 0.172259 deg FROM THE SET-POINT, at set-points up to 1 deg";
+    assert!(certification.text().contains(told), "{}", certification.text());
+    let off_deg = &certification.json()["controllers"][0]["scope"]["rest_error_deg"];
+    assert!((off_deg.as_f64().expect("a number") - 0.172_259_0).abs() < 1e-7, "{off_deg}");
+    let Ok(outcome) = &certification.results[0].outcome else { panic!("an answer") };
+    let Verdict::Proved(certificate, rechecked) = &outcome.verdict else { panic!("proved") };
+    let cell = scope_in_short(certificate, rechecked);
+    assert!(cell.contains("every constant set-point") && cell.contains(told), "{cell}");
 }
 
 #[test]

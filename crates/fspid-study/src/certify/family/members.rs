@@ -2,8 +2,7 @@
 //! it.
 
 use fspid_numeric::Scalar;
-use fspid_numeric::scalar::Interval;
-use fspid_proof::check::{ContinuousPlant, NotProved, Sloped, printed};
+use fspid_proof::check::{ContinuousPlant, NotProved, ROUNDED, Sloped, printed};
 use fspid_proof::{LoopDescription, MOST_PARAMETERS, NotProvable, Parameter, ScaledSensor};
 use fspid_scenario::dispersion::{Dispersion, Distribution};
 use fspid_scenario::file::{NewValue, SettingPath, Study, Template};
@@ -43,9 +42,6 @@ pub enum NoFamily {
         why: String,
     },
 }
-
-/// A number that was rounded, over it.
-const ROUNDED: Interval = Interval::between(1.0 - 1e-15, 1.0 + 1e-15);
 
 /// A drawn number with the numbers of the loop that follow it.
 struct Drawn {
@@ -107,16 +103,15 @@ impl Drawn {
         ends: [f64; 2],
         own: &LoopDescription,
     ) -> Option<()> {
-        let Parameter { sensors, .. } = &self.parameter;
-        for &sensor in sensors {
+        if self.parameter.is_of_plant() {
+            return self.put(source, Sloped::fixed(self.parameter.number(ends)));
+        }
+        for &sensor in &self.parameter.sensors {
             let nominal = match sensor {
                 ScaledSensor::Pitch => own.pitch.scale,
                 ScaledSensor::Rate => own.rate.scale,
             };
             source.put_scale(sensor, self.parameter.scales(ends, nominal));
-        }
-        if sensors.is_empty() {
-            return self.put(source, Sloped::fixed(self.parameter.number(ends)));
         }
         Some(())
     }
