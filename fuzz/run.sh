@@ -2,11 +2,17 @@
 # Fuzzes every reader for so many seconds (20 if nothing is said), as many at once as there are cores. Ends with 1 where
 # one was brought down, whose input is then in target/fuzz/found, or where one reads none of its seeds. FSPID names the
 # program that makes seeds.
+#   --quick   before it: only readers of files that people hand on, which are built in half of the time
 #   --build   builds the readers and runs none
 #
 # cargo-fuzz is not needed: these are the flags that it gives the stable compiler when it leaves the sanitizer out.
 set -euo pipefail
 cd "$(dirname "$0")"
+features=()
+if [[ "${1:-}" == --quick ]]; then
+    features=(--no-default-features)
+    shift
+fi
 seconds="${1:-20}"
 [[ "$seconds" == --build ]] && only_builds=1
 fspid="${FSPID:-$PWD/../target/release/fspid}"
@@ -15,7 +21,7 @@ export CARGO_TARGET_DIR="$PWD/../target/fuzz"
 # With a target, build scripts and macros are left as they are.
 RUSTFLAGS="--cfg fuzzing -Cdebug-assertions -Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \
 -Cllvm-args=-sanitizer-coverage-inline-8bit-counters -Cllvm-args=-sanitizer-coverage-pc-table \
--Cllvm-args=-sanitizer-coverage-trace-compares" cargo build --locked --profile quick --target "$host"
+-Cllvm-args=-sanitizer-coverage-trace-compares" cargo build --locked --profile quick "${features[@]}" --target "$host"
 [[ "${only_builds:-}" ]] && exit 0
 
 # Seeds: the fixtures of the tests, and what only the program writes.
@@ -34,45 +40,49 @@ packets="$tests/fspid-mavlink/tests/data/packets.jsonl" at=0
 for digits in $(grep -o '"packets": \[[^]]*' "$packets" | grep -o '[0-9a-f]\{16,\}' | sort -u); do
     printf "$(sed 's/../\\x&/g' <<<"$digits")" >"$made/mavlink/$((at += 1))"
 done
-# What the page asks, of the one scenario that the target's server has; its id is that of its name.
-token=0123456789abcdef0123456789abcdef
-id="$(printf mine.toml | sha256sum | cut -c1-32)"
-digest="$(printf 'schema = 1\nname = "KEPT-TO-ITSELF"\n[[controller]]\nname = "PID"\n' | sha256sum | cut -c1-64)"
-asks() {
-    printf '%s HTTP/1.1\r\nHost: 127.0.0.1:8000\r\nX-Fspid-Token: %s\r\nContent-Type: application/json\r\nContent-Length: %d\r\n\r\n%s' \
-        "$1" "$token" "${#2}" "$2"
-}
-printf 'GET / HTTP/1.1\r\nHost: localhost:8000\r\n\r\n' >"$made/server/page"
-for path in health scenarios "scenarios/$id" jobs jobs/1/events jobs/1/runs/0 jobs/1/report telemetry/events; do
-    asks "GET /api/$path" "" >"$made/server/${path//\//-}"
-done
-job="{\"kind\":\"tune\",\"id\":\"$id\",\"options\":{\"budget\":8,\"seed\":3,\"set\":[\"loop.duration_s=4.0\"]}}"
-campaign="{\"kind\":\"campaign\",\"id\":\"$id\",\"options\":{\"runs\":8,\"measures\":[\"iae_deg_s\"],\"sampling\":\"random\"}}"
-asks "PUT /api/scenarios/$id" "{\"text\":\"schema = 1\",\"digest\":\"$digest\"}" >"$made/server/save"
-{
-    asks "POST /api/jobs" "$job"
-    asks "POST /api/jobs" "$campaign"
-    asks "GET /api/jobs" ""
-    asks "DELETE /api/jobs/1" ""
-    asks "GET /api/jobs/1/events" ""
-} >"$made/server/jobs-of-a-person"
 scenarios="$PWD/../scenarios"
-"$fspid" certify "$scenarios/747-pitch-step.toml" --out "$made/certificate" >/dev/null || true
-"$fspid" campaign plan "$scenarios/campaign.toml" --runs 50 --out "$made/plan" >/dev/null
-# A merged file and a part, small enough for an input.
-"$fspid" campaign run "$scenarios/campaign.toml" --runs 3 --shard-runs 3 --threads 1 --quiet --out "$made/whole" >/dev/null
-cp "$made/whole/campaign.parquet" "$made/part/whole"
-cp "$made"/whole/shards/*.parquet "$made/part/part"
-for optimiser in cma-es de l-shade pso ga nelder-mead bfgs nsga-ii; do
-    # A search that is killed leaves its first state, which is small. Without blanks more of it fits into an input.
-    state="$made/$optimiser.toml.state.json"
-    "$fspid" tune "$scenarios/gallery/tune-navion.toml" --optimiser "$optimiser" --budget 1000000 --quiet \
-        --out "$made/$optimiser.toml" >/dev/null 2>&1 &
-    while kill -0 $! 2>/dev/null && [[ ! -e "$state" ]]; do sleep 0.05; done
-    kill -KILL $! 2>/dev/null || true
-    wait $! 2>/dev/null || true
-    if [[ -e "$state" ]]; then tr -d ' \n' <"$state" >"$made/state/${state##*/}"; fi
-done
+# For readers that are built with the whole program.
+of_the_whole_program() {
+    # What the page asks, of the one scenario that the target's server has; its id is that of its name.
+    token=0123456789abcdef0123456789abcdef
+    id="$(printf mine.toml | sha256sum | cut -c1-32)"
+    digest="$(printf 'schema = 1\nname = "KEPT-TO-ITSELF"\n[[controller]]\nname = "PID"\n' | sha256sum | cut -c1-64)"
+    asks() {
+        printf '%s HTTP/1.1\r\nHost: 127.0.0.1:8000\r\nX-Fspid-Token: %s\r\nContent-Type: application/json\r\nContent-Length: %d\r\n\r\n%s' \
+            "$1" "$token" "${#2}" "$2"
+    }
+    printf 'GET / HTTP/1.1\r\nHost: localhost:8000\r\n\r\n' >"$made/server/page"
+    for path in health scenarios "scenarios/$id" jobs jobs/1/events jobs/1/runs/0 jobs/1/report telemetry/events; do
+        asks "GET /api/$path" "" >"$made/server/${path//\//-}"
+    done
+    job="{\"kind\":\"tune\",\"id\":\"$id\",\"options\":{\"budget\":8,\"seed\":3,\"set\":[\"loop.duration_s=4.0\"]}}"
+    campaign="{\"kind\":\"campaign\",\"id\":\"$id\",\"options\":{\"runs\":8,\"measures\":[\"iae_deg_s\"],\"sampling\":\"random\"}}"
+    asks "PUT /api/scenarios/$id" "{\"text\":\"schema = 1\",\"digest\":\"$digest\"}" >"$made/server/save"
+    {
+        asks "POST /api/jobs" "$job"
+        asks "POST /api/jobs" "$campaign"
+        asks "GET /api/jobs" ""
+        asks "DELETE /api/jobs/1" ""
+        asks "GET /api/jobs/1/events" ""
+    } >"$made/server/jobs-of-a-person"
+    "$fspid" certify "$scenarios/747-pitch-step.toml" --out "$made/certificate" >/dev/null || true
+    "$fspid" campaign plan "$scenarios/campaign.toml" --runs 50 --out "$made/plan" >/dev/null
+    # A merged file and a part, small enough for an input.
+    "$fspid" campaign run "$scenarios/campaign.toml" --runs 3 --shard-runs 3 --threads 1 --quiet --out "$made/whole" >/dev/null
+    cp "$made/whole/campaign.parquet" "$made/part/whole"
+    cp "$made"/whole/shards/*.parquet "$made/part/part"
+    for optimiser in cma-es de l-shade pso ga nelder-mead bfgs nsga-ii; do
+        # A search that is killed leaves its first state, which is small. Without blanks more of it fits into an input.
+        state="$made/$optimiser.toml.state.json"
+        "$fspid" tune "$scenarios/gallery/tune-navion.toml" --optimiser "$optimiser" --budget 1000000 --quiet \
+            --out "$made/$optimiser.toml" >/dev/null 2>&1 &
+        while kill -0 $! 2>/dev/null && [[ ! -e "$state" ]]; do sleep 0.05; done
+        kill -KILL $! 2>/dev/null || true
+        wait $! 2>/dev/null || true
+        if [[ -e "$state" ]]; then tr -d ' \n' <"$state" >"$made/state/${state##*/}"; fi
+    done
+}
+[[ "${features[*]}" ]] || of_the_whole_program
 
 seeds_of() {
     case "$1" in
@@ -110,6 +120,11 @@ fuzz() {
 
 targets=(fuzz_targets/*.rs)
 targets=("${targets[@]##*/}")
+if [[ "${features[*]}" ]]; then
+    # Files of readers that are built only with the whole program.
+    whole="$(grep -A 1 'feature = "whole-program"' fuzz_targets/readers.rs | sed -n 's/^mod \(.*\);/\1.rs/p')"
+    mapfile -t targets < <(printf '%s\n' "${targets[@]}" | grep -vxF "$whole")
+fi
 export -f fuzz seeds_of
 export seconds host made found tests scenarios
 printf '%s\n' "${targets[@]%.rs}" | grep -vx readers |

@@ -35,6 +35,8 @@ rare|intervals of rare failures|checks/rare/coverage.sh
 flood|the server, flooded for ten minutes|checks/serve/flood.sh
 slow-loops|margins of 10 000 loops with slow modes, refuted from outside|cargo run --release --locked -p fspid-lti --example slow_loops -- 10000 "$(date +%Y%m%d)" >target/nightly/loops.csv && python3 oracles/check_slow_loops.py target/nightly/loops.csv
 proofs|flights against proofs|cargo run --release --locked -p fspid-proof --example refute_proofs -- --count 100
+book|the guide as a book|cargo install mdbook --version 0.5.4 --locked --no-default-features --debug --quiet --root target/tools && target/tools/bin/mdbook build docs/guide
+cockpit|the page as it is handed out, in a browser|FSPID="$PWD/target/release/fspid" web/test.sh
 fuzz|every reader for 10 minutes|fuzz/run.sh 600
 coverage|lines and branches of every crate|checks/coverage/check.sh
 mutation|changes of what flies that no test notices|checks/mutation/check.sh

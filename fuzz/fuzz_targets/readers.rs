@@ -2,21 +2,28 @@
 
 #![no_main]
 
+#[cfg(feature = "whole-program")]
 mod certificate;
+#[cfg(feature = "whole-program")]
 mod csv;
 mod daveml;
 mod fcl;
 mod fis;
 mod fll;
+#[cfg(feature = "whole-program")]
 mod fly;
 mod fml;
 mod formula;
 mod mavlink;
+#[cfg(feature = "whole-program")]
 mod part;
+#[cfg(feature = "whole-program")]
 mod plan;
 mod scenario;
+#[cfg(feature = "whole-program")]
 mod server;
 mod set;
+#[cfg(feature = "whole-program")]
 mod state;
 mod toml;
 
@@ -26,22 +33,29 @@ use std::sync::OnceLock;
 type Reader = fn(&[u8]) -> Option<()>;
 
 /// A module for each file in this folder but this one, by its name.
-const READERS: [(&str, Reader); 17] = [
+const READERS: &[(&str, Reader)] = &[
+    #[cfg(feature = "whole-program")]
     ("certificate", certificate::read),
+    #[cfg(feature = "whole-program")]
     ("csv", csv::read),
     ("daveml", daveml::read),
     ("fcl", fcl::read),
     ("fis", fis::read),
     ("fll", fll::read),
+    #[cfg(feature = "whole-program")]
     ("fly", fly::read),
     ("fml", fml::read),
     ("formula", formula::read),
     ("mavlink", mavlink::read),
+    #[cfg(feature = "whole-program")]
     ("part", part::read),
+    #[cfg(feature = "whole-program")]
     ("plan", plan::read),
     ("scenario", scenario::read),
+    #[cfg(feature = "whole-program")]
     ("server", server::read),
     ("set", set::read),
+    #[cfg(feature = "whole-program")]
     ("state", state::read),
     ("toml", toml::read),
 ];
@@ -52,8 +66,8 @@ fn chosen() -> (Reader, bool) {
     *CHOSEN.get_or_init(|| {
         let name = std::env::var("FSPID_FUZZ_TARGET").unwrap_or_default();
         let found = READERS.iter().find(|(reader, _)| *reader == name);
-        let names = READERS.map(|(reader, _)| reader).join(", ");
-        let (_, reader) = found.unwrap_or_else(|| panic!("FSPID_FUZZ_TARGET is one of {names}"));
+        let names: Vec<&str> = READERS.iter().map(|(reader, _)| *reader).collect();
+        let (_, reader) = found.unwrap_or_else(|| panic!("FSPID_FUZZ_TARGET is one of {}", names.join(", ")));
         (*reader, std::env::var_os("FSPID_FUZZ_TELL").is_some())
     })
 }

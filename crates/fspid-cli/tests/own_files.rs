@@ -202,8 +202,7 @@ fn what_a_killed_process_left_keeps_nobody_out_and_is_cleared_by_every_command_t
     done("init a.toml", home);
     done("init --template tuning t.toml", home);
     done("init --template campaign c.toml", home);
-    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/contest/light.toml");
-    fs::copy(root, home.join("l.toml")).expect("copied");
+    done("init --template contest who.toml", home);
     let left = leftover(home);
     let name = left.file_name().expect("a name").to_owned();
     let lines = [
@@ -211,7 +210,7 @@ fn what_a_killed_process_left_keeps_nobody_out_and_is_cleared_by_every_command_t
         ("out", "simulate a.toml --trace out/a.csv"),
         ("out", "certify a.toml --controller PID --out out"),
         ("out", "tune t.toml --budget 4 --quiet --out out/d.toml"),
-        ("out", "contest l.toml --budget 4 --seeds 1 --quiet --out out"),
+        ("out", "contest who.toml --budget 4 --seeds 1 --quiet --out out"),
         ("out/shards", "campaign run c.toml --runs 4 --quiet --out out"),
         ("out", "campaign run c.toml --runs 4 --quiet --out out"),
     ];

@@ -90,11 +90,13 @@ impl Respondent<'_> {
             }
             Self::External(external) => {
                 let mut started = external.start()?;
-                let answer = |seen: &Seen, aircraft: Option<&AircraftSample>| {
+                let mut answer = |seen: &Seen, aircraft: Option<&AircraftSample>| {
                     let step = started.answer_aboard(seen, aircraft)?;
                     Ok((step, started.asked()))
                 };
-                watch_answers(prepared, answer, perturbation, |instant, _| observer(instant))
+                watch_answers(prepared, &mut answer, perturbation, &mut |instant, _| {
+                    observer(instant)
+                })
             }
         }
     }
@@ -110,12 +112,12 @@ pub fn fly_commanded(
     mut command_rad: impl FnMut(Sample<f64>) -> f64,
     mut observer: impl FnMut(Instant) -> ControlFlow<()>,
 ) -> Result<Outcome, SimError> {
-    let answer = |seen: &Seen, _: Option<&AircraftSample>| {
+    let mut answer = |seen: &Seen, _: Option<&AircraftSample>| {
         let command_rad = command_rad(seen.sample());
         let (gains, saturated, faults) = (Gains::ZERO, false, Faults::NONE);
         Ok((Step { command_rad, gains, saturated, faults }, Asked::default()))
     };
-    watch_answers(prepared, answer, &Perturbation::NONE, |instant, _| observer(instant))
+    watch_answers(prepared, &mut answer, &Perturbation::NONE, &mut |instant, _| observer(instant))
 }
 
 /// What is about to happen between a sample and the next.
@@ -132,24 +134,28 @@ pub(crate) fn watch(
     prepared: &Prepared,
     controller: &Controller,
     perturbation: &Perturbation,
-    observer: impl FnMut(Instant, &Coming<'_>) -> ControlFlow<()>,
+    mut observer: impl FnMut(Instant, &Coming<'_>) -> ControlFlow<()>,
 ) -> Result<Outcome, SimError> {
     let mut memory = State::new();
-    let answer = |seen: &Seen, _: Option<&AircraftSample>| {
+    let mut answer = |seen: &Seen, _: Option<&AircraftSample>| {
         Ok((controller.step(&mut memory, seen.sample()), Asked::default()))
     };
-    watch_answers(prepared, answer, perturbation, observer)
+    watch_answers(prepared, &mut answer, perturbation, &mut observer)
 }
 
 /// An answer, and what it asks for beside the command.
 pub(crate) type Answered = (Step<f64>, Asked);
 
-#[inline]
+/// Who answers a sample.
+type Answer<'a> =
+    dyn FnMut(&Seen, Option<&AircraftSample>) -> Result<Answered, ControllerLoss> + 'a;
+
+// Built once, and not anew for everybody who answers or watches.
 pub(crate) fn watch_answers(
     prepared: &Prepared,
-    mut answer: impl FnMut(&Seen, Option<&AircraftSample>) -> Result<Answered, ControllerLoss>,
+    answer: &mut Answer<'_>,
     perturbation: &Perturbation,
-    mut observer: impl FnMut(Instant, &Coming<'_>) -> ControlFlow<()>,
+    observer: &mut dyn FnMut(Instant, &Coming<'_>) -> ControlFlow<()>,
 ) -> Result<Outcome, SimError> {
     let mut course = Course::start(prepared, perturbation)?;
     loop {

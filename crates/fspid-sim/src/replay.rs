@@ -39,7 +39,7 @@ pub fn fly_replayed(
     mut observer: impl FnMut(Instant) -> ControlFlow<()>,
 ) -> Result<Outcome, SimError> {
     let mut memory = State::new();
-    let answer = |seen: &Seen, _: Option<&AircraftSample>| {
+    let mut answer = |seen: &Seen, _: Option<&AircraftSample>| {
         let sample = seen.sample();
         let step = match replay {
             Replay::Gains(gains) => match at(gains, seen.k) {
@@ -53,7 +53,7 @@ pub fn fly_replayed(
         };
         Ok((step, Asked::default()))
     };
-    watch_answers(prepared, answer, &Perturbation::NONE, |instant, _| observer(instant))
+    watch_answers(prepared, &mut answer, &Perturbation::NONE, &mut |instant, _| observer(instant))
 }
 
 /// As [`fly`](crate::fly), with what the supervisor sees at each sample beside it; zeros where it sees nothing, at a
@@ -68,12 +68,12 @@ pub fn fly_watching_inputs(
 ) -> Result<Outcome, SimError> {
     let mut memory = State::new();
     let inputs = std::cell::Cell::new([0.0; 2]);
-    let answer = |seen: &Seen, _: Option<&AircraftSample>| {
+    let mut answer = |seen: &Seen, _: Option<&AircraftSample>| {
         let sample = seen.sample();
         inputs.set(controller.inputs(&memory, sample).unwrap_or_default());
         Ok((controller.step(&mut memory, sample), Asked::default()))
     };
-    watch_answers(prepared, answer, &Perturbation::NONE, |instant, _| {
+    watch_answers(prepared, &mut answer, &Perturbation::NONE, &mut |instant, _| {
         observer(instant, inputs.get())
     })
 }

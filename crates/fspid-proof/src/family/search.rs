@@ -150,29 +150,43 @@ impl Search<'_> {
         if let Some(claim) = piece.claim.as_ref().filter(|claim| self.holds(claim, &loops)) {
             return Ok(part(claim.clone()));
         }
-        let common = self.common(&loops);
-        if common.is_none() {
-            self.refuted_in_the_middle(&piece)?;
-        }
-        if let Some(claim) = common.as_ref().filter(|claim| self.holds(claim, &loops)) {
+        let found = self.found(&piece, &loops)?;
+        if let Some(claim) = found.claim().filter(|claim| self.holds(claim, &loops)) {
             return Ok(part(claim.clone()));
         }
         // Scales of sensors leave nothing of second order, and may be too far apart for one form all the same.
-        let is_wide = common.is_none() && !self.parameters.iter().all(Parameter::is_of_plant);
+        let is_wide =
+            !matches!(found, Near::All(_)) && !self.parameters.iter().all(Parameter::is_of_plant);
         let side = if is_wide { self.widest(&piece.ends) } else { self.roughest(&piece.ends) };
-        let claim = common.or_else(|| piece.claim.clone());
-        if let Some(side) = side {
-            return Ok(Found::Halves(halves(&Piece { ends: piece.ends.clone(), claim }, side)));
+        let because = if self.is_done() { Uncertain::Work } else { Uncertain::Narrow };
+        let side = side.ok_or_else(|| open(because))?;
+        let claim = found.claim().cloned().or(piece.claim);
+        Ok(Found::Halves(halves(&Piece { ends: piece.ends, claim }, side)))
+    }
+
+    /// What is found near a piece. That the member in its middle is open is an answer for all: it is one of them.
+    fn found(
+        &mut self,
+        piece: &Piece,
+        loops: &[LoopModel<Interval>],
+    ) -> Result<Near, FamilyVerdict> {
+        if self.is_done() {
+            return Ok(Near::Nothing);
         }
-        // Other claims than one form for all gains are looked for where there is no other way.
-        let claim = self.claim_at_middle(&piece)?;
-        if !covers_scales(&claim, self.parameters) {
-            return Err(open(Uncertain::Tied));
+        // A member without one form for all gains lies on the edge of both halves of its piece.
+        let has_common = |claim: &Claim| matches!(claim, Claim::CommonQuadratic { .. });
+        if piece.claim.as_ref().is_none_or(has_common)
+            && let Some(claim) = self.common(loops)
+        {
+            return Ok(Near::All(claim));
         }
-        match self.holds(&claim, &loops) {
-            true => Ok(part(claim)),
-            false => Err(open(Uncertain::Narrow)),
-        }
+        self.refuted_in_the_middle(piece)?;
+        self.claim_at_middle(piece).map(Near::Middle)
+    }
+
+    /// True if as many forms were looked for as may be: what was found before is asked of narrower pieces all the same.
+    fn is_done(&self) -> bool {
+        self.searches >= MOST_SEARCHES
     }
 
     /// Plants of a box, and the loops between which theirs lie.
@@ -185,13 +199,9 @@ impl Search<'_> {
     /// One form for all of some loops.
     fn common(&mut self, loops: &[LoopModel<Interval>]) -> Option<Claim> {
         self.searches += 1;
-        if self.searches > MOST_SEARCHES {
-            return None;
-        }
         let middles: Vec<LoopModel<f64>> = loops.iter().map(LoopModel::midpoint).collect();
         self.prover.common_of(&middles, &self.set)
     }
-
     /// A member in the middle of a piece that grows ends the search.
     fn refuted_in_the_middle(&self, piece: &Piece) -> Result<(), FamilyVerdict> {
         let at = middle(&piece.ends);
@@ -204,13 +214,18 @@ impl Search<'_> {
         }
     }
 
-    /// A claim about the member in the middle of a piece.
-    fn claim_at_middle(&self, piece: &Piece) -> Result<Claim, FamilyVerdict> {
+    /// A claim about the member in the middle of a piece, of any form that bears scales as they differ.
+    fn claim_at_middle(&mut self, piece: &Piece) -> Result<Claim, FamilyVerdict> {
+        self.searches += 1;
         let open = |because| FamilyVerdict::Open { ends: piece.ends.clone(), because };
         let prover = self.member(&middle(&piece.ends));
         let prover = prover.map_err(|reason| open(Uncertain::Plant(reason)))?;
         let found = prover.stable(&self.set).map(|(certificate, _)| certificate.claim);
-        found.ok_or_else(|| open(Uncertain::Member))
+        let claim = found.ok_or_else(|| open(Uncertain::Member))?;
+        match covers_scales(&claim, self.parameters) {
+            true => Ok(claim),
+            false => Err(open(Uncertain::Tied)),
+        }
     }
 
     /// A corner of the box whose loop grows: asked first, since it ends most searches that end so.
@@ -284,6 +299,24 @@ impl Search<'_> {
 enum Found {
     Part(Part),
     Halves([Piece; 2]),
+}
+
+/// A claim that is found near a piece.
+enum Near {
+    /// About all of it, but for what intervals add.
+    All(Claim),
+    /// About the member in its middle.
+    Middle(Claim),
+    Nothing,
+}
+
+impl Near {
+    fn claim(&self) -> Option<&Claim> {
+        match self {
+            Self::All(claim) | Self::Middle(claim) => Some(claim),
+            Self::Nothing => None,
+        }
+    }
 }
 
 /// A piece, cut across a side.

@@ -142,7 +142,7 @@ impl<'a, const W: usize> Group<'a, W> {
 
     /// Flies all samples.
     #[inline(always)]
-    pub(super) fn fly(&mut self, observer: &mut impl FnMut(&BatchRow<'_, W>)) {
+    pub(super) fn fly(&mut self, observer: &mut dyn FnMut(&BatchRow<'_, W>)) {
         for k in 0..self.timing.rows() {
             if self.next_change <= k {
                 self.change_plants(k);
@@ -156,7 +156,7 @@ impl<'a, const W: usize> Group<'a, W> {
     }
 
     #[inline(always)]
-    fn sample(&mut self, k: usize, observer: &mut impl FnMut(&BatchRow<'_, W>)) {
+    fn sample(&mut self, k: usize, observer: &mut dyn FnMut(&BatchRow<'_, W>)) {
         let entering = Entering {
             setpoint_rad: self.gather(k, |signals| signals.setpoint_rad),
             at_servo_rad: self.gather(k, |signals| signals.at_servo),

@@ -88,8 +88,17 @@ pub fn fly_group_by<const W: usize>(
     flights: &[Entrant<'_>],
     mut observer: impl FnMut(&BatchRow<'_, W>),
 ) -> Result<Vec<Result<Outcome, SimError>>, Refusal> {
+    flown::<W>(instructions, flights, &mut observer)
+}
+
+// Built once for all who watch.
+fn flown<const W: usize>(
+    instructions: InstructionSet,
+    flights: &[Entrant<'_>],
+    observer: &mut dyn FnMut(&BatchRow<'_, W>),
+) -> Result<Vec<Result<Outcome, SimError>>, Refusal> {
     let mut group = Group::<W>::new(flights, instructions)?;
-    dispatch!(instructions.level(), _simd => group.fly(&mut observer));
+    dispatch!(instructions.level(), _simd => group.fly(observer));
     Ok(group.into_outcomes())
 }
 

@@ -87,6 +87,15 @@ pub fn fly_aircraft_by(
     flights: &[Entrant<'_>],
     mut observer: impl FnMut(usize, &Instant),
 ) -> Result<Vec<Result<Outcome, SimError>>, Refusal> {
+    flown(instructions, flights, &mut observer)
+}
+
+// Built once for all who watch.
+fn flown(
+    instructions: InstructionSet,
+    flights: &[Entrant<'_>],
+    observer: &mut dyn FnMut(usize, &Instant),
+) -> Result<Vec<Result<Outcome, SimError>>, Refusal> {
     if flights.len() > PLACES {
         return Err(Refusal::TooMany { found: flights.len(), most: PLACES });
     }

@@ -25,7 +25,19 @@ use crate::timing::Timing;
 pub fn differentiate_prices<const W: usize>(
     instructions: InstructionSet,
     flights: &[Entrant<'_>],
-    price: impl FnMut(usize, &Flown) -> Slopes,
+    mut price: impl FnMut(usize, &Flown) -> Slopes,
+) -> Result<Vec<Option<Vec<f64>>>, Refusal> {
+    differentiated::<W>(instructions, flights, &mut price)
+}
+
+/// What a little more of each sample of a flight costs.
+type Price<'a> = dyn FnMut(usize, &Flown) -> Slopes + 'a;
+
+// Built once for all prices.
+fn differentiated<const W: usize>(
+    instructions: InstructionSet,
+    flights: &[Entrant<'_>],
+    price: &mut Price<'_>,
 ) -> Result<Vec<Option<Vec<f64>>>, Refusal> {
     let mut group = Group::<W>::new(flights)?;
     let flown = dispatch!(instructions.level(), _simd => group.flown(price));
@@ -204,10 +216,7 @@ impl<'a, const W: usize> Group<'a, W> {
 
     // Inlined with all below it, so that its loops are compiled for each set of instructions.
     #[inline(always)]
-    fn flown(
-        &mut self,
-        mut price: impl FnMut(usize, &Flown) -> Slopes,
-    ) -> Result<Vec<Option<Vec<f64>>>, SimError> {
+    fn flown(&mut self, price: &mut Price<'_>) -> Result<Vec<Option<Vec<f64>>>, SimError> {
         let mut kept = Vec::with_capacity(self.rows / SEGMENT + 1);
         let mut state = self.start();
         for k in 0..self.rows {
