@@ -133,9 +133,9 @@ impl Failure {
         Self { problems, ..Self::input(error) }
     }
 
-    /// Input of which every problem is known.
-    pub(crate) fn of_problems(message: impl Display, problems: Value) -> Self {
-        Self { problems: Some(problems), ..Self::input(message) }
+    /// Input, of which problems are known where it is a scenario's.
+    pub(crate) fn of_input(message: impl Display, problems: Option<Value>) -> Self {
+        Self { problems, ..Self::input(message) }
     }
 
     /// Output that cannot be written.

@@ -444,3 +444,20 @@ fn check_tells_of_every_case_that_makes_no_scenario() {
     let cases: Vec<_> = problems.iter().map(|it| &it["case"]).collect();
     assert_eq!(cases, ["misspelt", "backwards"]);
 }
+
+/// Problems of a case were told in a sentence alone by those who go on to fly or to prove it.
+#[test]
+fn who_goes_on_to_the_cases_tells_their_problems_as_check_does() {
+    let folder = folder();
+    let folder = folder.path();
+    let wrong = "\n[[tuning.case]]\nname = \"misspelt\"\nset = [\"plant.presett=navion-paper\"]\n";
+    std::fs::write(folder.join("wrong.toml"), format!("{SCENARIO}{wrong}")).expect("written");
+    for asked in ["tune wrong.toml --budget 4 --quiet", "certify wrong.toml --cases tuning"] {
+        let mut asked: Vec<&str> = asked.split(' ').collect();
+        asked.extend(["--format", "json"]);
+        let error = crate::common::json(&crate::common::fspid(&asked, folder))["error"].clone();
+        let problem = &error["problems"]["problems"][0];
+        assert_eq!(problem["case"], "misspelt", "{asked:?}: {error}");
+        assert_eq!(problem["path"], "plant.presett", "{asked:?}: {error}");
+    }
+}

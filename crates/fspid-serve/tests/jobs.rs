@@ -435,6 +435,21 @@ fn a_scenario_that_is_wrong_fails_its_job_with_every_problem() {
     assert!(end["problems"]["problems"].as_array().is_some_and(|it| it.len() > 1), "{end}");
 }
 
+/// Problems of a case were told in a sentence alone.
+#[test]
+fn a_case_that_is_wrong_fails_its_job_with_every_problem_and_its_name() {
+    let served = Served::new();
+    let text = crate::common::SCENARIO;
+    let text = text.replace("setpoint.amplitude_deg=2", "setpoint.amplitude_dg=2");
+    std::fs::write(served.path("mine.toml"), text).expect("written");
+    let events = served.followed(&served.begin("certify", json!({ "cases": "contest" })));
+    let (state, end) = ended(&events);
+    assert_eq!(state, "failed", "{events:?}");
+    let problem = &end["problems"]["problems"][0];
+    let told = (&problem["case"], &problem["path"]);
+    assert_eq!(told, (&json!("larger"), &json!("setpoint.amplitude_dg")), "{end}");
+}
+
 /// Whoever has the token may save a text; that shall not become a program that runs.
 #[test]
 fn no_program_that_a_scenario_names_is_started() {

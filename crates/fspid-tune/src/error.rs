@@ -8,7 +8,10 @@ use fspid_campaign::table::TableError;
 use fspid_scenario::count::CountError;
 use fspid_scenario::file::{LoadError, Problems};
 use fspid_study::output::OutputError;
+use serde_json::Value;
 use thiserror::Error;
+
+use crate::written::problems_of_cases;
 
 /// A case of a tuning or a contest that makes the scenario wrong.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -18,16 +21,6 @@ pub struct WrongCase {
     pub case: String,
     /// What is wrong then.
     pub problems: LoadError,
-}
-
-impl WrongCase {
-    /// Its name and what is wrong, where the scenario could be read at all.
-    pub(crate) fn problems(&self) -> Option<(&str, &Problems)> {
-        match &self.problems {
-            LoadError::Problems(problems) => Some((&self.case, problems)),
-            LoadError::Unreadable { .. } => None,
-        }
-    }
 }
 
 /// Why a tuning or a contest could not begin or go on.
@@ -189,6 +182,19 @@ pub enum TuneError {
 }
 
 impl TuneError {
+    /// What is wrong with the scenario, as JSON: as [`Problems::to_json`] has it, with the name of a case as `case` where a
+    /// case makes it wrong; nothing where something else is.
+    #[must_use]
+    pub fn problems(&self) -> Option<Value> {
+        match self {
+            Self::Scenario(problems) | Self::Unreadable(LoadError::Problems(problems)) => {
+                Some(problems.to_json())
+            }
+            Self::Case(wrong) => problems_of_cases([(wrong.case.as_str(), &wrong.problems)]),
+            _ => None,
+        }
+    }
+
     /// True where something could not be written; else the input is what is wrong.
     #[must_use]
     pub fn is_of_output(&self) -> bool {

@@ -49,4 +49,4 @@ pub use slopes::Counted;
 pub use source::Source;
 pub use space::Space;
 pub use tuned::{Number, Tuned};
-pub use written::{NotRight, Written};
+pub use written::{NotRight, Written, problems_of_certified};

@@ -7,6 +7,7 @@ use std::path::Path;
 
 use fspid_diagnostics::digits::counted;
 use fspid_scenario::file::{Extra, LoadError, Problems, Template};
+use fspid_study::certify::CasesError;
 use serde_json::{Value, json};
 
 use crate::error::WrongCase;
@@ -112,12 +113,39 @@ impl NotRight {
             Self::Scenario(problems) => return problems.to_json(),
             Self::Cases(wrong) => wrong,
         };
-        let all = || wrong.iter().filter_map(WrongCase::problems);
-        let file = all().next().map_or("", |(_, problems)| problems.file.as_str());
-        let told: Vec<Value> = all().take(MOST_CASES).flat_map(of_case).collect();
-        let count = all().map(|(_, problems)| problems.list.len() + problems.omitted);
-        let omitted = count.sum::<usize>() - told.len();
-        json!({ "file": file, "problems": told, "omitted": omitted })
+        let wrong = wrong.iter().map(|it| (it.case.as_str(), &it.problems));
+        // What a text makes wrong was read.
+        problems_of_cases(wrong).unwrap_or_default()
+    }
+}
+
+/// What is wrong with cases, each with its name, as JSON: as [`Problems::to_json`] has it, every problem with the name of its
+/// case as `case`. Nothing where none of them could be read at all.
+pub(crate) fn problems_of_cases<'a>(
+    wrong: impl IntoIterator<Item = (&'a str, &'a LoadError)>,
+) -> Option<Value> {
+    let all: Vec<(&str, &Problems)> = wrong
+        .into_iter()
+        .filter_map(|(case, reason)| match reason {
+            LoadError::Problems(problems) => Some((case, problems)),
+            LoadError::Unreadable { .. } => None,
+        })
+        .collect();
+    let file = &all.first()?.1.file;
+    let told: Vec<Value> = all.iter().take(MOST_CASES).copied().flat_map(of_case).collect();
+    let count = all.iter().map(|(_, problems)| problems.list.len() + problems.omitted);
+    let omitted = count.sum::<usize>() - told.len();
+    Some(json!({ "file": file, "problems": told, "omitted": omitted }))
+}
+
+/// The same of cases that are to be certified.
+#[must_use]
+pub fn problems_of_certified(error: &CasesError) -> Option<Value> {
+    match error {
+        CasesError::Scenario(wrong) => {
+            problems_of_cases(wrong.iter().map(|(case, reason)| (case.as_str(), reason)))
+        }
+        CasesError::NoCases(_) | CasesError::Plant(_) => None,
     }
 }
 

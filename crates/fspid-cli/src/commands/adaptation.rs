@@ -103,6 +103,6 @@ fn measured(arguments: &Arguments, asked: &Adaptation) -> Result<Answer, Failure
         TuneError::Stopped => Failure::interrupted(
             "interrupted; nothing is kept of an experiment, so that it begins anew",
         ),
-        error => Failure::input(error),
+        error => Failure::of_input(&error, error.problems()),
     })
 }

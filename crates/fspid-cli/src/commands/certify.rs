@@ -17,6 +17,7 @@ use fspid_study::certify::{
     NotWritable, Question,
 };
 use fspid_study::output;
+use fspid_tune::problems_of_certified;
 
 /// Prove or refute that a self-tuning loop is stable while its gains move.
 ///
@@ -166,7 +167,7 @@ fn prove_cases(
     if telling == Telling::Line {
         tell(telling, "");
     }
-    let cases = cases.map_err(Failure::input)?;
+    let cases = cases.map_err(|error| Failure::of_input(&error, problems_of_certified(&error)))?;
     if let Some(folder) = &arguments.out {
         cases.changed_names().iter().for_each(note);
         write(folder, cases.certificate_files())?;

@@ -60,7 +60,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         note(format_args!("warning: {warning}"));
     }
     let beyond = written.check_beyond(&template);
-    beyond.map_err(|wrong| Failure::of_problems(&wrong, wrong.to_json()))?;
+    beyond.map_err(|wrong| Failure::of_input(&wrong, Some(wrong.to_json())))?;
     for gains in &study.derived_gains {
         note(format_args!("gains of {gains}"));
     }

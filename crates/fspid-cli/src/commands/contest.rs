@@ -192,7 +192,7 @@ fn failure(error: TuneError) -> Failure {
             "interrupted; the same command goes on from there: {}",
             interrupt::command()
         )),
-        _ => Failure::input(error),
+        _ => Failure::of_input(&error, error.problems()),
     }
 }
 

@@ -4,6 +4,7 @@ use fspid_scenario::file::Template;
 use fspid_study::certify::{
     Cases, CertificateFile, Certification, CertifiedCases, Effort, NotWritable, Question,
 };
+use fspid_tune::problems_of_certified;
 use serde_json::{Value, json};
 
 use super::proof::{stopped_with, stops};
@@ -73,7 +74,8 @@ impl Certify {
         let found = stopped_with(task, || {
             CertifiedCases::answering(source, study, which, question, &mut tell)
         });
-        let found = found.map_err(Ended::failed)?;
+        let found = found
+            .map_err(|error| Ended::Failed(error.to_string(), problems_of_certified(&error)))?;
         answer((found.text(), found.json()), found.certificate_files())
     }
 

@@ -66,7 +66,7 @@ impl From<TuneError> for Ended {
         match error {
             TuneError::Stopped | TuneError::NotKept => Self::Cancelled,
             TuneError::Campaign(CampaignError::Stopped) => Self::Cancelled,
-            error => Self::failed(error),
+            error => Self::Failed(error.to_string(), error.problems()),
         }
     }
 }
