@@ -264,8 +264,10 @@ fn nothing_in_the_crate_begins_a_connection() {
     assert!(looked > 20, "{looked}");
     let workspace =
         std::fs::read_to_string(crate_folder.join("../../Cargo.toml")).expect("it is there");
+    // How they are built for tests is said behind them.
+    let (dependencies, _) = workspace.split_once("\n[profile.").expect("profiles");
     let lines =
-        workspace.lines().filter(|line| line.starts_with("hyper") || line.starts_with("axum"));
+        dependencies.lines().filter(|line| line.starts_with("hyper") || line.starts_with("axum"));
     assert!(lines.clone().count() == 3 && lines.into_iter().all(|line| !line.contains("client")));
 }
 
