@@ -2,7 +2,7 @@
 # Fuzzes every reader for so many seconds (20 if nothing is said), as many at once as there are cores. Ends with 1 where
 # one was brought down, whose input is then in target/fuzz/found, or where one reads none of its seeds. FSPID names the
 # program that makes seeds.
-#   --quick   before it: only readers of files that people hand on, which are built in half of the time
+#   --quick   before it: only readers of files that people hand on, behind which fewer crates are built
 #   --build   builds the readers and runs none
 #
 # cargo-fuzz is not needed: these are the flags that it gives the stable compiler when it leaves the sanitizer out.

@@ -5,7 +5,7 @@
 # Needs Debian 12 or newer, the Rust toolchain for its cargo and its linker, Node 20 with npm, and root or sudo where
 # packages are missing. The toolchain's own target is not asked for: Debian has a compiler with its library's sources.
 #   --wasm    the mathematics alone
-#   --quick   for tests of the page: the same bits and views, built in half of the time, and some times as large
+#   --quick   for tests of the page: the same bits and views, built in two thirds of the time, and four times as large
 set -euo pipefail
 cd "$(dirname "$0")"
 target=wasm32-unknown-unknown
