@@ -450,9 +450,16 @@ fn check_tells_of_every_case_that_makes_no_scenario() {
 fn who_goes_on_to_the_cases_tells_their_problems_as_check_does() {
     let folder = folder();
     let folder = folder.path();
-    let wrong = "\n[[tuning.case]]\nname = \"misspelt\"\nset = [\"plant.presett=navion-paper\"]\n";
-    std::fs::write(folder.join("wrong.toml"), format!("{SCENARIO}{wrong}")).expect("written");
-    for asked in ["tune wrong.toml --budget 4 --quiet", "certify wrong.toml --cases tuning"] {
+    for kind in ["tuning", "contest"] {
+        let case = "name = \"misspelt\"\nset = [\"plant.presett=navion-paper\"]\n";
+        let wrong = format!("{SCENARIO}\n[[{kind}.case]]\n{case}");
+        std::fs::write(folder.join(format!("{kind}.toml")), wrong).expect("written");
+    }
+    for asked in [
+        "tune tuning.toml --budget 4 --quiet",
+        "certify tuning.toml --cases tuning",
+        "contest contest.toml --quiet --out contest",
+    ] {
         let mut asked: Vec<&str> = asked.split(' ').collect();
         asked.extend(["--format", "json"]);
         let error = crate::common::json(&crate::common::fspid(&asked, folder))["error"].clone();

@@ -23,6 +23,20 @@ pub struct WrongCase {
     pub problems: LoadError,
 }
 
+impl WrongCase {
+    /// Its name, and what is wrong.
+    pub(crate) fn told(&self) -> (&str, &LoadError) {
+        (&self.case, &self.problems)
+    }
+}
+
+/// Everything that is wrong with a contest, one below the other.
+fn indented(problems: &[String], wrong_cases: &[WrongCase]) -> String {
+    let told = problems.iter().cloned().chain(wrong_cases.iter().map(ToString::to_string));
+    let told = told.map(|it| format!("    {}", it.trim_end().replace('\n', "\n    ")));
+    told.collect::<Vec<_>>().join("\n")
+}
+
 /// Why a tuning or a contest could not begin or go on.
 #[derive(Debug, Error)]
 #[non_exhaustive]
@@ -142,12 +156,14 @@ pub enum TuneError {
     #[error("{0}")]
     Rule(#[from] crate::rule::RuleError),
     /// A contest that cannot be held.
-    #[error("{path}: this is no fair contest:\n{}", problems.iter().map(|it| format!("    {it}")).collect::<Vec<_>>().join("\n"))]
+    #[error("{path}: this is no fair contest:\n{}", indented(problems, wrong_cases))]
     Contest {
         /// The scenario.
         path: String,
-        /// Everything that is wrong.
+        /// What is wrong with its rules and controllers.
         problems: Vec<String>,
+        /// Cases that make the scenario wrong.
+        wrong_cases: Vec<WrongCase>,
     },
     /// A controller of a contest cannot be tuned.
     #[error("controller \"{controller}\": {reason}")]
@@ -190,7 +206,10 @@ impl TuneError {
             Self::Scenario(problems) | Self::Unreadable(LoadError::Problems(problems)) => {
                 Some(problems.to_json())
             }
-            Self::Case(wrong) => problems_of_cases([(wrong.case.as_str(), &wrong.problems)]),
+            Self::Case(wrong) => problems_of_cases([wrong.told()]),
+            Self::Contest { wrong_cases, .. } => {
+                problems_of_cases(wrong_cases.iter().map(WrongCase::told))
+            }
             _ => None,
         }
     }

@@ -113,9 +113,8 @@ impl NotRight {
             Self::Scenario(problems) => return problems.to_json(),
             Self::Cases(wrong) => wrong,
         };
-        let wrong = wrong.iter().map(|it| (it.case.as_str(), &it.problems));
         // What a text makes wrong was read.
-        problems_of_cases(wrong).unwrap_or_default()
+        problems_of_cases(wrong.iter().map(WrongCase::told)).unwrap_or_default()
     }
 }
 

@@ -7,7 +7,7 @@ use fspid_scenario::tuning::{Contest as Rules, Tuning};
 
 use super::{Contest, Entrant, Options, flight, mirror};
 use crate::crew::Part;
-use crate::error::TuneError;
+use crate::error::{TuneError, WrongCase};
 use crate::flights::{Asked, Dispersed, Flights, FlownCase, flown_case};
 use crate::problem::{TuningProblem, tunable_parameters_of};
 use crate::search::Effort;
@@ -26,12 +26,12 @@ pub(super) fn checked(source: &Source, options: &Options) -> Result<Contest, Tun
     problems.extend(study.scenario.start_externals().err().map(|error| error.to_string()));
     let Some(rules) = study.contest.clone() else {
         problems.push("it has no [[contest.case]]: what the controllers are judged on".to_owned());
-        return Err(refused(source, problems));
+        return Err(refused(source, problems, Vec::new()));
     };
     let tuning = study.tuning.clone();
     problems.extend(tuned_on(tuning.as_ref(), &rules));
     let efforts = efforts(tuning.as_ref(), &rules, options, &mut problems);
-    let cases = templates(source, &rules, &mut problems);
+    let (cases, wrong_cases) = templates(source, &rules)?;
     if cases.len() == rules.cases.len() {
         problems.extend(mirror::problems(&rules, &cases));
     }
@@ -39,11 +39,11 @@ pub(super) fn checked(source: &Source, options: &Options) -> Result<Contest, Tun
     for name in &names {
         match entrant(source, study, name, &cases, &rules) {
             Ok(entrant) => entrants.push(entrant),
-            Err(error) => problems.push(in_lines(&format!("controller \"{name}\": {error}"))),
+            Err(error) => problems.push(format!("controller \"{name}\": {error}")),
         }
     }
-    if !problems.is_empty() {
-        return Err(refused(source, problems));
+    if !problems.is_empty() || !wrong_cases.is_empty() {
+        return Err(refused(source, problems, wrong_cases));
     }
     let against = rules.against.as_ref();
     let against = against.and_then(|name| names.iter().position(|it| it == name)).unwrap_or(0);
@@ -59,17 +59,12 @@ pub(super) fn checked(source: &Source, options: &Options) -> Result<Contest, Tun
     })
 }
 
-fn refused(source: &Source, problems: Vec<String>) -> TuneError {
-    TuneError::Contest { path: source.path.display().to_string(), problems }
+fn refused(source: &Source, problems: Vec<String>, wrong_cases: Vec<WrongCase>) -> TuneError {
+    TuneError::Contest { path: source.path.display().to_string(), problems, wrong_cases }
 }
 
 /// Everybody is measured as it flew, and asked what a constant load does.
 const JUDGING: Judging = Judging { stability: Stability::AsFlown, loads: true };
-
-/// Lines of a problem below one another.
-fn in_lines(text: &str) -> String {
-    text.trim_end().replace('\n', "\n    ")
-}
 
 /// Cases of the contest that are cases of the tuning.
 fn tuned_on(tuning: Option<&Tuning>, rules: &Rules) -> Vec<String> {
@@ -125,16 +120,17 @@ fn efforts(
     (0..seeds.min(SEEDS.most)).map(effort).collect()
 }
 
-/// The scenario with the changes of each case.
-fn templates(source: &Source, rules: &Rules, problems: &mut Vec<String>) -> Vec<Template> {
-    let mut templates = Vec::new();
+/// The scenario with the changes of each case, and the cases that make it wrong.
+fn templates(source: &Source, rules: &Rules) -> Result<(Vec<Template>, Vec<WrongCase>), TuneError> {
+    let (mut templates, mut wrong) = (Vec::new(), Vec::new());
     for case in &rules.cases {
         match source.case(case) {
             Ok(template) => templates.push(template),
-            Err(error) => problems.push(in_lines(&error.to_string())),
+            Err(TuneError::Case(it)) => wrong.push(*it),
+            Err(error) => return Err(error),
         }
     }
-    templates
+    Ok((templates, wrong))
 }
 
 fn entrant(

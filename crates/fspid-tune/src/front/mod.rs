@@ -87,7 +87,8 @@ impl Front {
         let Some((place, most)) = travel.next().and_then(|(at, it)| Some((at, it.most?))) else {
             let problem = "a front changes how far the elevator may go on average: it needs [[tuning.limit]] with measure = \"elevator_travel_deg\" and most";
             let path = source.path.display().to_string();
-            return Err(TuneError::Contest { path, problems: vec![problem.to_owned()] });
+            let problems = vec![problem.to_owned()];
+            return Err(TuneError::Contest { path, problems, wrong_cases: Vec::new() });
         };
         let around: Vec<f64> = LADDER.iter().map(|share| share * most).collect();
         let mut travels = travels_deg.map_or(around, <[f64]>::to_vec);
