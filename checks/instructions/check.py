@@ -3,7 +3,7 @@
 
     check.py            fails where one takes 3 % more than stored, and names the function that grew most
     check.py --quick    the same of the program that the tests have built, by their profile, with counts of its own
-    check.py --record   stores what this machine counts, of both
+    check.py --record   stores what this machine counts, of both; with --quick of the latter
 
 Counted by valgrind's callgrind in one thread: the same program gives the same count, whatever else the machine does. A compiler of
 another version makes another program: then nothing is judged, and the script says so; of another valgrind, the same. Needs valgrind
@@ -120,10 +120,14 @@ def main() -> int:
     if not record and ours != theirs:
         print(f"not judged: counts are stored for {theirs[0]}, {theirs[1]} and AVX2, and this is {compiler}, {tool}, AVX2 {ours[2]}")
         return 0
-    asked = list(PROFILES) if record else ["dev" if "--quick" in sys.argv[1:] else "release"]
+    quick = "--quick" in sys.argv[1:]
+    if record and quick and ours != theirs:
+        raise SystemExit("what is stored was counted with other tools: record both")
+    asked = ["dev"] if quick else list(PROFILES) if record else ["release"]
     counts = {profile: all_counted(built(profile)) for profile in asked}
     if record:
-        STORED.write_text(json.dumps({"compiler": compiler, "valgrind": tool, "counts": counts}, indent=1, ensure_ascii=False) + "\n")
+        kept = {**stored.get("counts", {}), **counts}
+        STORED.write_text(json.dumps({"compiler": compiler, "valgrind": tool, "counts": kept}, indent=1, ensure_ascii=False) + "\n")
         return 0
     [(profile, now)] = counts.items()
     failed = [why for work in WORK if (why := grown(work, now[work], stored["counts"][profile][work]))]

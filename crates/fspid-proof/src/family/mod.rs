@@ -7,7 +7,8 @@
 //! part's form is its proof.
 //!
 //! Claimed is the return to rest around the trim of each member, with the set-point there, without a load and without
-//! limits; the claim for the loop as it is may say more. What sensors that resolve in steps leave is bounded sample by
+//! limits; where one form does for all scales of the sensors, of scales that change in flight too. The claim for the loop
+//! as it is may say more. What sensors that resolve in steps leave is bounded sample by
 //! sample for one loop alone, so that a family of such loops is refused. That the enclosures are those of what a user calls a mass is no part of a certificate: who has the scenario
 //! encloses them anew and compares.
 
@@ -141,6 +142,18 @@ impl Part {
 }
 
 impl Family {
+    /// True if the scales of sensors may change in flight as well, from sample to sample, in any way and as fast as they
+    /// like, while all other numbers stand still.
+    ///
+    /// The matrix of a sample is that of its scales $s_k$, so that where one form falls by all of them,
+    /// $V(z_{k+1}) \le \rho^2 V(z_k)$ whatever they were before. A sensor that shows $\varphi(y)$ of y at rest at 0 is one
+    /// of them as long as $\varphi(y) / y$ stays between the ends of its scale: it lies in that sector.
+    #[must_use]
+    pub fn scales_may_change(&self) -> bool {
+        let parts = self.parts.iter().map(|part| (part.ends.as_slice(), &part.claim));
+        scales::may_change(&self.parameters, &parts.collect::<Vec<_>>())
+    }
+
     /// What a re-check finds of a family that was just proved.
     #[must_use]
     pub fn checked(&self) -> CheckedFamily {

@@ -2,13 +2,13 @@
 
 use std::ops::ControlFlow;
 
-use fspid_core::{AntiWindup, Fspid, Guard, Pid, PidConfig};
+use fspid_core::{AntiWindup, Fspid, Guard, Pid, PidConfig, Sample, State};
 use fspid_proof::{
     Asked, Certificate, Effort, LoopDescription, NotProvable, Rechecked, Verdict, certify,
 };
 use fspid_sim::actuator::Actuator;
 use fspid_sim::signal::{Disturbance, Entry, Profile, Shape};
-use fspid_sim::{Controller, NamedController, Outcome, Scenario, Timing, fly};
+use fspid_sim::{Controller, NamedController, Outcome, Scenario, Timing, fly_commanded};
 
 /// Time constants of the proved rate that are flown, and the most samples of a flight.
 const TIME_CONSTANTS: f64 = 20.0;
@@ -220,8 +220,18 @@ fn rests_as_without_limits(
 /// Where the pitch angle ends, rad.
 pub(crate) fn settles(
     scenario: &Scenario,
+    proved: &(Certificate, Rechecked),
+    start: Start,
+) -> Result<f64, String> {
+    settles_seeing(scenario, proved, start, |sample| sample)
+}
+
+/// The same of a controller that sees something else than the sensors show.
+pub(crate) fn settles_seeing(
+    scenario: &Scenario,
     (certificate, rechecked): &(Certificate, Rechecked),
     start: Start,
+    mut seen: impl FnMut(Sample<f64>) -> Sample<f64>,
 ) -> Result<f64, String> {
     let rate = certificate.claim.rate().expect("of stability");
     let dt_s = scenario.timing.dt_s();
@@ -245,9 +255,14 @@ pub(crate) fn settles(
     let prepared = flown.prepare().map_err(|error| error.to_string())?;
     let mut theta = Vec::new();
     let mut saturated = 0_usize;
-    let outcome = fly(&prepared, &flown.controllers[0].controller, |instant| {
+    let mut memory = State::new();
+    let command_rad = |sample: Sample<f64>| {
+        let step = flown.controllers[0].controller.step(&mut memory, seen(sample));
+        saturated += usize::from(step.saturated);
+        step.command_rad
+    };
+    let outcome = fly_commanded(&prepared, command_rad, |instant| {
         theta.push(instant.theta_rad);
-        saturated += usize::from(instant.step.saturated);
         ControlFlow::Continue(())
     });
     if let Outcome::Diverged { at_s } = outcome.map_err(|error| error.to_string())? {

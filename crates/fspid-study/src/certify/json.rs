@@ -22,7 +22,7 @@ const NO_STEPS: &str = "no step from rest is proved with limits acting; of gains
 const NO_FLIGHTS: &str = "the flights that the scenario commands are not proved with limits acting; in cases they are asked for with --steps alone";
 
 /// Why keys of these answers are null.
-pub(super) const NULLS: [(&str, &str); 21] = [
+pub(super) const NULLS: [(&str, &str); 22] = [
     ("decay_per_sample", "the claim is one of growth, or no rate is proved"),
     (
         "law_keeps_to_the_rate",
@@ -41,6 +41,7 @@ pub(super) const NULLS: [(&str, &str); 21] = [
     ("open_because", "there is an answer, or nothing more is known of why there is none"),
     ("at", "no question can be asked of the family, or the loop as it is is not proved"),
     ("parts", "the family is not proved"),
+    ("scales_may_change", "the family is not proved"),
     ("box", "nothing is proved of the nonlinear aircraft"),
     ("begins_within_deg", "nothing is proved of the nonlinear aircraft"),
     ("not_proved", "no factor was tried and not proved"),

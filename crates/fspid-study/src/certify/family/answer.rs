@@ -25,17 +25,20 @@ pub(in super::super) fn box_in_words(parameters: &[Parameter]) -> String {
 }
 
 /// What a proved family says.
-fn proved(parameters: &[Parameter], parts: usize) -> String {
+fn proved(family: &Family, parts: usize) -> String {
     let parts = if parts == 1 { "one form".to_owned() } else { format!("{parts} forms") };
+    let moving = if family.scales_may_change() { SCALES_MAY_CHANGE } else { "" };
     format!(
-        "every loop in all of this, each standing still, returns to its trim where the set-point is and no load acts, as long as no limit acts ({parts}); all else here is about the loop as it is: {}",
-        box_in_words(parameters)
+        "every loop in all of this, each standing still, returns to its trim where the set-point is and no load acts, as long as no limit acts ({parts}){moving}; all else here is about the loop as it is: {}",
+        box_in_words(&family.parameters)
     )
 }
 
+const SCALES_MAY_CHANGE: &str = "; the scales of sensors may change in flight as well, from sample to sample and as fast as they like, so that a sensor whose line is bent is covered as long as what it shows is within these scales of what there is";
+
 /// Sentences about a family whose certificate is there.
 pub(in super::super) fn sentences(family: &Family, checked: CheckedFamily) -> Vec<String> {
-    vec![proved(&family.parameters, checked.parts)]
+    vec![proved(family, checked.parts)]
 }
 
 impl FamilyAnswer {
@@ -48,7 +51,7 @@ impl FamilyAnswer {
             Self::None(reason) => format!("OPEN: {reason}"),
             Self::Verdict { parameters, verdict } => match &**verdict {
                 FamilyVerdict::Proved(family) => {
-                    format!("PROVED: {}", proved(parameters, family.parts.len()))
+                    format!("PROVED: {}", proved(family, family.parts.len()))
                 }
                 FamilyVerdict::Refuted { at, .. } => {
                     let set = at.iter().zip(parameters).map(|(at, one)| setting(one, *at));
@@ -102,5 +105,12 @@ pub(in super::super) fn in_json(answer: &FamilyAnswer) -> Value {
             }
         },
     };
-    json!({ "verdict": verdict, "at": at, "parts": parts, "in_words": answer.text() })
+    let scales_may_change = answer.proved().map(Family::scales_may_change);
+    json!({
+        "verdict": verdict,
+        "at": at,
+        "parts": parts,
+        "scales_may_change": scales_may_change,
+        "in_words": answer.text(),
+    })
 }

@@ -40,9 +40,18 @@ impl FamilyAnswer {
     /// True if every member is proved stable.
     #[must_use]
     pub fn is_proved(&self) -> bool {
+        self.proved().is_some()
+    }
+
+    /// The family, if every member is proved stable.
+    #[must_use]
+    pub fn proved(&self) -> Option<&Family> {
         match self {
-            Self::Verdict { verdict, .. } => matches!(**verdict, FamilyVerdict::Proved(_)),
-            Self::None(_) | Self::NominalNotProved => false,
+            Self::Verdict { verdict, .. } => match &**verdict {
+                FamilyVerdict::Proved(family) => Some(family),
+                FamilyVerdict::Refuted { .. } | FamilyVerdict::Open { .. } => None,
+            },
+            Self::None(_) | Self::NominalNotProved => None,
         }
     }
 }
