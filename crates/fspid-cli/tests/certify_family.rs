@@ -197,9 +197,34 @@ fn sensors_of_any_scale_between_limits_are_proved_with_plants_and_compared() {
     }
     let output = fspid(&["certify", "both.toml", "--family"], folder.path());
     assert_eq!(code(&output), 0, "{}{}", text(&output.stdout), text(&output.stderr));
+    // Together they are proved, and not each by itself.
+    assert!(!text(&output.stdout).contains("may change in flight"), "{}", text(&output.stdout));
     let output = fspid(&["certify", "mixed.toml", "--family"], folder.path());
     let refused = text(&output.stdout);
     assert!(code(&output) == 1 && refused.contains("a [[dispersion]] for each"), "{refused}");
+}
+
+/// Beside a plant that stands still, by the text, for programs and of the file alone.
+#[test]
+fn scales_that_may_change_in_flight_are_told_and_numbers_of_plants_never() {
+    let (before, after) = SCENARIO.split_at(SCENARIO.find("[[dispersion]]").expect("some"));
+    let sensors = SENSORS.strip_suffix("[[dispersion]]\nname = \"servo\"\n").expect("the end");
+    let sensed = format!("{before}{sensors}").replace("kd = 0.5", "kd = 0.5\nrate_gain = 0.3");
+    let told = |scenario: &str| {
+        let folder = folder(scenario);
+        let words = ["certify", "drawn.toml", "--family", "--format", "json", "--out", "proofs"];
+        let output = fspid(&words, folder.path());
+        assert_eq!(code(&output), 0, "{}{}", text(&output.stdout), text(&output.stderr));
+        let family = json(&output)["controllers"][0]["family"].clone();
+        let check = fspid(&["certify", "--check", "proofs/pid.certificate.json"], folder.path());
+        let of_the_file = text(&check.stdout).contains("may change in flight");
+        let in_words = family["in_words"].as_str().expect("words").contains("may change in flight");
+        assert_eq!(in_words, of_the_file, "{}", text(&check.stdout));
+        assert_eq!(family["scales_may_change"], in_words);
+        in_words
+    };
+    assert!(told(&sensed));
+    assert!(!told(&format!("{before}{after}")));
 }
 
 #[test]

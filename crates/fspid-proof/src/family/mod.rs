@@ -142,8 +142,8 @@ impl Part {
 }
 
 impl Family {
-    /// True if the scales of sensors may change in flight as well, from sample to sample, in any way and as fast as they
-    /// like, while all other numbers stand still.
+    /// True if the scales of sensors may change in flight as well, from sample to sample, each by itself, in any way and as
+    /// fast as it likes, while all other numbers stand still.
     ///
     /// The matrix of a sample is that of its scales $s_k$, so that where one form falls by all of them,
     /// $V(z_{k+1}) \le \rho^2 V(z_k)$ whatever they were before. A sensor that shows $\varphi(y)$ of y at rest at 0 is one

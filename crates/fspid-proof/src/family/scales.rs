@@ -48,7 +48,8 @@ pub(super) fn is_twofold(parameters: &[Parameter]) -> bool {
     [ScaledSensor::Pitch, ScaledSensor::Rate].into_iter().any(|sensor| of(sensor).count() > 1)
 }
 
-/// True if of each plant one form falls at all scales that differ, so that these may change from sample to sample.
+/// True if of each plant one form falls at all scales that differ, so that these may change from sample to sample, each by
+/// itself. Scales of one draw are asked together at its ends alone, which says nothing of two that go their own ways.
 ///
 /// A plant on the face of parts is a limit of plants beside it, which lie within theirs: the parts that cover those cover
 /// it, too. So it is enough that parts whose plants overlap have the same claim.
@@ -65,6 +66,7 @@ pub(super) fn may_change(parameters: &[Parameter], parts: &[(&[[f64; 2]], &Claim
     // What a tied gain is tied to is shown by sensors.
     let is_tied = |(_, claim): &(&[[f64; 2]], &Claim)| matches!(claim, Claim::SProcedure { .. });
     of_plant.len() < parameters.len()
+        && parameters.iter().all(|one| one.sensors.len() <= 1)
         && !parts.iter().any(is_tied)
         && parts.iter().enumerate().all(is_alone)
 }
@@ -147,6 +149,16 @@ mod tests {
         assert!(!of_plant_and_scale(&[([1.0, 1.0], LOW, 0.9), ([1.0, 1.0], HIGH, 0.8)]));
         assert!(!of_plant_and_scale(&[(HIGH, LOW, 0.9), ([1.0, 1.0], HIGH, 0.8)]));
         assert!(of_plant_and_scale(&[([0.5, 0.5], LOW, 0.9), (HIGH, HIGH, 0.8)]));
+    }
+
+    #[test]
+    fn two_scales_of_one_draw_may_not_change_each_by_itself() {
+        let one = [ALL];
+        let both = [ScaledSensor::Pitch, ScaledSensor::Rate];
+        assert!(!may_change(&[parameter(&both)], &[(one.as_slice(), &common(0.9))]));
+        let two = [ALL, ALL];
+        let apart = both.map(|sensor| parameter(&[sensor]));
+        assert!(may_change(&apart, &[(two.as_slice(), &common(0.9))]));
     }
 
     #[test]

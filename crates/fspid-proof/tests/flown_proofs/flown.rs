@@ -226,6 +226,23 @@ pub(crate) fn settles(
     settles_seeing(scenario, proved, start, |sample| sample)
 }
 
+/// A scenario that begins so, and lasts so long.
+fn started(scenario: &Scenario, start: Start, duration_s: f64) -> Scenario {
+    let mut flown = scenario.clone();
+    flown.timing = Timing::new(scenario.timing.dt_s(), duration_s).expect("allowed");
+    let shape = match start.ramp {
+        true => Shape::Ramp { at_s: 0.0, width_s: 190.0 },
+        false => Shape::Step { at_s: 0.0 },
+    };
+    flown.setpoint = Profile::new(start.setpoint_rad, shape.clone()).expect("allowed");
+    flown.disturbances = vec![
+        Disturbance::new(Entry::Elevator, start.load_rad, shape).expect("allowed"),
+        Disturbance::new(Entry::Servo, start.kick_rad, Shape::Pulse { at_s: 0.0, width_s: 1.0 })
+            .expect("allowed"),
+    ];
+    flown
+}
+
 /// The same of a controller that sees something else than the sensors show.
 pub(crate) fn settles_seeing(
     scenario: &Scenario,
@@ -238,20 +255,7 @@ pub(crate) fn settles_seeing(
     let samples = (TIME_CONSTANTS / -libm::log(rate)).clamp(1000.0, MOST_SAMPLES);
     let enough = rate < 1.0 && samples * -libm::log(rate) > 0.6 * TIME_CONSTANTS;
     let begin_s = if start.ramp { 200.0 } else { 1.0 };
-    let mut flown = scenario.clone();
-    flown.timing = Timing::new(dt_s, begin_s + samples * dt_s).expect("allowed");
-    let (profile, load) = if start.ramp {
-        let ramp = |width_s: f64| Shape::Ramp { at_s: 0.0, width_s };
-        (ramp(190.0), ramp(190.0))
-    } else {
-        (Shape::Step { at_s: 0.0 }, Shape::Step { at_s: 0.0 })
-    };
-    flown.setpoint = Profile::new(start.setpoint_rad, profile).expect("allowed");
-    flown.disturbances = vec![
-        Disturbance::new(Entry::Elevator, start.load_rad, load).expect("allowed"),
-        Disturbance::new(Entry::Servo, start.kick_rad, Shape::Pulse { at_s: 0.0, width_s: 1.0 })
-            .expect("allowed"),
-    ];
+    let flown = started(scenario, start, begin_s + samples * dt_s);
     let prepared = flown.prepare().map_err(|error| error.to_string())?;
     let mut theta = Vec::new();
     let mut saturated = 0_usize;

@@ -34,7 +34,7 @@ fn proved(family: &Family, parts: usize) -> String {
     )
 }
 
-const SCALES_MAY_CHANGE: &str = "; the scales of sensors may change in flight as well, from sample to sample and as fast as they like, so that a sensor whose line is bent is covered as long as what it shows of the way from the trim is within these scales of it";
+const SCALES_MAY_CHANGE: &str = "; the scales of sensors may change in flight as well, from sample to sample, each by itself and as fast as it likes, so that a sensor whose line is bent is covered as long as what it shows of the way from the trim is within these scales of it";
 
 /// Sentences about a family whose certificate is there.
 pub(in super::super) fn sentences(family: &Family, checked: CheckedFamily) -> Vec<String> {
