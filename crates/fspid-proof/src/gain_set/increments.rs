@@ -145,6 +145,21 @@ impl Side {
     fn between(lower: f64, upper: f64) -> Self {
         Self { asked: Interval::between(lower, upper), inputs: [lower, upper] }
     }
+
+    /// Inputs between two of the range, whose rules are asked where the tuner moves them to, which it does in order; its
+    /// rounding is added.
+    pub(super) fn seen(
+        [lower, upper]: [f64; 2],
+        range: f64,
+        centres: Option<SetCentres<f64>>,
+    ) -> Self {
+        let Some(centres) = centres else { return Self::between(lower, upper) };
+        let slack = Interval::between(-MOVED * range, MOVED * range);
+        let [from, to] = [lower, upper].map(|input| centres.warp(input, range));
+        let asked = Interval::between(from, to) + slack;
+        let within = asked.intersection(Interval::between(-range, range));
+        Self { asked: within.unwrap_or(asked), inputs: [lower, upper] }
+    }
 }
 
 /// True where answers beyond the range are those at its border.
@@ -152,10 +167,7 @@ fn is_level(supervisor: &Supervisor<f64>) -> bool {
     supervisor.out_of_range() == OutOfRange::Clamp || !supervisor.has_labels()
 }
 
-/// Sides of the cells along an input: of even widths as the even sets see them.
-///
-/// A side is told by its inputs, and what is asked for is where the tuner moves them to, which it does in order; its
-/// rounding is added.
+/// Sides of the cells along an input: of even widths as the even sets see them. A side is told by its inputs.
 fn sides(
     supervisor: &Supervisor<f64>,
     divisions: usize,
@@ -170,17 +182,13 @@ fn sides(
     let at = |cell: usize| range * (2.0 * cell as f64 / count - 1.0);
     let side = |cell: usize| match centres {
         None => Side::between(at(cell), at(cell + 1)),
-        Some(centres) => {
-            let [lower, upper] = [cell, cell + 1].map(|cell| match cell {
+        Some(moved) => {
+            let inputs = [cell, cell + 1].map(|cell| match cell {
                 0 => -range,
                 cell if cell == divisions => range,
-                cell => moved_back(centres, at(cell), range),
+                cell => moved_back(moved, at(cell), range),
             });
-            let slack = Interval::between(-MOVED * range, MOVED * range);
-            let [from, to] = [lower, upper].map(|input| centres.warp(input, range));
-            let asked = Interval::between(from, to) + slack;
-            let within = asked.intersection(Interval::between(-range, range));
-            Side { asked: within.unwrap_or(asked), inputs: [lower, upper] }
+            Side::seen(inputs, range, centres)
         }
     };
     let mut sides: Vec<Side> = (0..divisions).map(side).collect();

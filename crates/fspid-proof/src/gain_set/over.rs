@@ -1,7 +1,7 @@
 //! Gains over any box of the supervisor's inputs, enclosed as they are asked for.
 
 use fspid_core::fuzzy::OutOfRange;
-use fspid_core::{Law, SelfTuner};
+use fspid_core::{Law, SelfTuner, SetCentres};
 use fspid_fuzzy::system::System;
 use fspid_numeric::scalar::Interval;
 
@@ -16,6 +16,8 @@ pub(crate) struct GainsOver<'a> {
     clamps: bool,
     /// An input whose scale is 0 is always 0.
     sees: [bool; 2],
+    /// Where the centres of each input's sets lie.
+    sets: [Option<SetCentres<f64>>; 2],
 }
 
 impl<'a> GainsOver<'a> {
@@ -30,6 +32,7 @@ impl<'a> GainsOver<'a> {
             range: tuner.supervisor().range(),
             clamps: tuner.supervisor().out_of_range() == OutOfRange::Clamp,
             sees,
+            sets: [settings.input_sets.error, settings.input_sets.change],
         })
     }
 
@@ -45,12 +48,79 @@ impl<'a> GainsOver<'a> {
             if !self.sees[place] {
                 return Side::point(0.0);
             }
-            let asked = Interval::between(lower.clamp(-range, range), upper.clamp(-range, range));
-            Side { asked, inputs: [lower, upper] }
+            let within = [lower, upper].map(|end| end.clamp(-range, range));
+            Side { inputs: [lower, upper], ..Side::seen(within, range, self.sets[place]) }
         };
         let sides = [0, 1].map(side);
         let [of_kp, of_ki, of_kd] = self.enclosure.over(sides);
         let [kp, ki, kd] = &self.each;
         Some([kp.memoryless(of_kp), ki.memoryless(of_ki), kd.memoryless(of_kd)])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use fspid_core::fuzzy::{Defuzzifier, Supervisor};
+    use fspid_core::{Gains, InputSets, SetCentres, TunerSettings};
+    use fspid_fuzzy::NumberTable;
+
+    use super::super::{array, producible};
+    use super::*;
+
+    /// Rules that conclude numbers which differ from place to place.
+    fn numbers() -> Supervisor<f64> {
+        let grid = |seed: usize| {
+            core::array::from_fn(|row| {
+                core::array::from_fn(|column| {
+                    ((row * column * 5 + row * 7 + column + seed) % 13) as f64 / 13.0 - 0.5
+                })
+            })
+        };
+        let table = NumberTable::new([grid(0), grid(3), grid(8)]).expect("numbers");
+        Supervisor::of_numbers(&table, 2.0, OutOfRange::Clamp).expect("allowed")
+    }
+
+    /// The paper's rules.
+    fn labels() -> Supervisor<f64> {
+        let rule = Defuzzifier::Exact;
+        Supervisor::new(&fspid_core::paper::rules(), 5.0, rule, OutOfRange::Clamp).expect("allowed")
+    }
+
+    #[test]
+    fn every_gain_over_a_box_lies_in_its_bounds_also_of_sets_that_are_moved() {
+        let moved = |small, medium| SetCentres::new(small, medium).ok();
+        for (error, change) in
+            [(None, None), (moved(0.1, 0.7), None), (moved(0.5, 0.9), moved(0.05, 0.3))]
+        {
+            let settings = TunerSettings {
+                input_sets: InputSets { error, change },
+                ..TunerSettings::literal()
+            };
+            let nominal = Gains { kp: 1.0, ki: 1.0, kd: 1.0 };
+            for supervisor in [numbers(), labels()] {
+                let range = supervisor.range();
+                let tuner = SelfTuner::new(nominal, supervisor, settings).expect("allowed");
+                let parts = fspid_fuzzy::system::Parts::try_from(tuner.supervisor()).ok();
+                let system = parts.and_then(|parts| System::new(parts).ok());
+                let mut over = GainsOver::of(&tuner, system.as_ref()).expect("memoryless");
+                for (from, width) in [(-1.2, 0.15), (-0.05, 0.1), (0.15, 0.9), (-1.2, 2.4)] {
+                    let sides = [from, -0.7 * from].map(|at| [range * at, range * (at + width)]);
+                    let inputs = sides.map(|[least, most]| Interval::between(least, most));
+                    let bounds = over.over(inputs).expect("clamped");
+                    for step in 0..=400 {
+                        let share = |by: usize| (step * by % 401) as f64 / 400.0;
+                        let at = |side: [f64; 2], share: f64| side[0] + share * (side[1] - side[0]);
+                        let seen = [at(sides[0], share(1)), at(sides[1], share(37))];
+                        let gains = array(producible(&tuner, seen[0], seen[1]));
+                        for (bounds, gain) in bounds.iter().zip(gains) {
+                            assert!(
+                                bounds.contains(gain),
+                                "{error:?} {change:?} {seen:?}: {gain} {bounds:?}"
+                            );
+                        }
+                    }
+                }
+            }
+        }
     }
 }
