@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Shipped designs as constants in Rust: built as a package of their own with fspid-core, asked for 20 000 answers each, and
 # built for a Cortex-M4F with `core` alone. Needs what checks/firmware/check.sh installs, if that compiler is there; without
-# it the last part is left out and said so.
+# it the last part is left out and said so. `--quick`: one of the designs.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 . checks/export/tools.sh
@@ -11,7 +11,9 @@ trap 'rm -rf "$work"' EXIT
 export CARGO_TARGET_DIR="$PWD/target/export-rust"
 here=(--config "patch.crates-io.fspid-core.path='$PWD/crates/fspid-core'")
 
-for design in data/designs/navion-paper.toml data/designs/learned/light.toml data/designs/learned/transport.toml; do
+designs=(data/designs/learned/light.toml data/designs/navion-paper.toml data/designs/learned/transport.toml)
+if [[ "${1:-}" == --quick ]]; then designs=("${designs[0]}"); fi
+for design in "${designs[@]}"; do
     name="$(basename "$design" .toml)"
     for choice in "single degrees" "double radians"; do
         read -r numbers angles <<< "$choice"

@@ -20,8 +20,9 @@ packages|every crate compiles from what is packed|checks/packages/check.sh
 reproducible|two builds, one hash|checks/reproducible/check.sh
 same-bits|the same answers on other processors|checks/same-bits/check.sh
 windows|compiles for Windows, neither linked nor run|checks/windows/check.sh
+python|the package for Python, on clusters too, and its notebooks|checks/python/run.sh
 firmware|core for a Cortex-M4F|checks/firmware/check.sh
-exports|C on six emulated processors and an AVR|checks/export/check.sh --long
+exports|C on six emulated processors and an AVR; every design in Rust and in MATLAB's stand-in|checks/export/check.sh --long && checks/export/rust.sh && checks/export/octave.sh
 fmu|FMUs in FMPy, under sanitizers|checks/export/fmu.sh
 evidence|evidence of exports, its verdicts held|checks/export/evidence.sh
 properties|all tests, those that are cut short by day as long as they are, property tests with numbers of this night|FSPID_LONG_TESTS=1 PROPTEST_RNG_SEED="$(date +%Y%m%d)" PROPTEST_CASES=2000 cargo test --workspace --locked

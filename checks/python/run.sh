@@ -1,6 +1,8 @@
 #!/usr/bin/env bash
 # The package for Python: built as a wheel, installed where nothing else is, typed, tested there; its notebooks run; campaigns on
-# Ray, a node of which is killed, and on Dask. `--wheel`: as it is handed out, small and linked as a whole, which takes ten minutes.
+# Ray, a node of which is killed, and on Dask.
+#   --wheel   as it is handed out, small and linked as a whole, which takes ten minutes
+#   --quick   without clusters and notebooks
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
@@ -39,12 +41,15 @@ assert "numpy" not in sys.modules
 PYTHON
 cd - > /dev/null
 
-"${pip[@]}" -r checks/python/requirements.txt
+left_out=nothing
+if [ "${1:-}" = --quick ]; then left_out='ray|distributed|ipykernel|nbclient|nbformat'; fi
+grep -vE "^($left_out)[>=]" checks/python/requirements.txt >"$work/requirements.txt"
+"${pip[@]}" -r "$work/requirements.txt"
 mypy --strict -p fspid
 # What is typed of the native module is what it has.
 python -m mypy.stubtest fspid._core
 cd crates/fspid-py
 export FSPID_PROGRAM="${FSPID_PROGRAM:-$PWD/../../target/release/fspid}"
 python -m pytest -q
-python ../../checks/python/notebooks.py
+[ "${1:-}" = --quick ] || python ../../checks/python/notebooks.py
 python -m pytest -q --doctest-modules --pyargs fspid.scenario fspid.fuzzy fspid.controllers fspid.lti fspid.widget fspid.gym

@@ -165,7 +165,7 @@ fn what_check_accepts_is_answered_with_numbers_or_with_reasons() {
         assert!(Path::new(SCENARIOS).join(file).is_file(), "{file}");
     }
     let all: Vec<Vec<Value>> = files.iter().map(|file| numbers(file)).collect();
-    let (first, count) = (setting("FSPID_ACCEPTED_FIRST", 0), setting("FSPID_ACCEPTED_DRAWS", 60));
+    let (first, count) = (setting("FSPID_ACCEPTED_FIRST", 0), setting("FSPID_ACCEPTED_DRAWS", 36));
     let mut wrong = Vec::new();
     let mut accepted = 0;
     for draw in first..first + count {

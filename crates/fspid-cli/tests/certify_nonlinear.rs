@@ -74,6 +74,43 @@ fn the_nonlinear_aircraft_is_proved_in_a_box_and_its_certificate_knows_another_a
     assert!(said.contains("nonlinear.aircraft.drag_law"), "{said}");
 }
 
+/// Of a self-tuner it is about flights after a reset, and says which gains they have.
+#[test]
+fn a_self_tuner_is_proved_with_the_gains_that_it_has_near_the_trim() {
+    let folder = folder();
+    let gains = "nominal = { kp = 0.82, ki = 0.43, kd = 0.165 }";
+    let scales = "error_scale = 0.25, change_scale = 0.05, output_scale = { kp = 0.02, ki = 0.01, kd = 0.004 }";
+    let rules = format!("supervisor = {{ table = \"mirrored\", range = 5.0, {scales} }}");
+    let tuned = SCENARIO
+        .replace("name = \"PID\"\nkind = \"pid\"", "name = \"FSPID\"\nkind = \"fspid\"")
+        .replace("kp = 0.82\nki = 0.43\nkd = 0.165", &format!("{gains}\n{rules}"));
+    std::fs::write(folder.path().join("tuned.toml"), tuned).expect("written");
+    let asked = |words: &[&str]| fspid(words, folder.path());
+    let words = ["certify", "tuned.toml", "--nonlinear", "--out", "proofs", "--format", "json"];
+    let found = asked(&words);
+    assert_eq!(code(&found), 0, "{}{}", text(&found.stdout), text(&found.stderr));
+    let nonlinear = &json(&found)["controllers"][0]["nonlinear"];
+    assert_eq!(
+        (&nonlinear["verdict"], &nonlinear["begins_with"]),
+        (&"proved".into(), &"reset".into())
+    );
+    let [least, most] =
+        [0, 1].map(|end| nonlinear["gains_near_trim"]["kp"][end].as_f64().expect("a gain"));
+    assert!(least < most && most < 0.9, "{nonlinear:#}");
+    let certificate = "proofs/fspid.certificate.json";
+    let checked = asked(&["certify", "--check", certificate, "--against", "tuned.toml"]);
+    let told = text(&checked.stdout);
+    assert_eq!(code(&checked), 0, "{told}{}", text(&checked.stderr));
+    assert!(told.contains("with the controller just reset"), "{told}");
+    // With any gains the same form is no proof.
+    let path = folder.path().join(certificate);
+    let written = std::fs::read_to_string(&path).expect("written");
+    let other = written.replace("\"begins_with\": \"reset\"", "\"begins_with\": \"any-gains\"");
+    assert_ne!(other, written);
+    std::fs::write(&path, other).expect("written");
+    assert_ne!(code(&asked(&["certify", "--check", certificate])), 0);
+}
+
 /// Bounds of disturbances were asked of the form of the nonlinear claim, which is another.
 #[test]
 fn what_disturbances_do_and_the_nonlinear_aircraft_are_proved_in_one_certificate() {

@@ -21,6 +21,7 @@ mod limits;
 mod nonlinear;
 mod prove;
 mod recheck;
+mod reference_model;
 mod remembered;
 mod rest;
 mod scope;
@@ -41,7 +42,7 @@ pub use family::{
 };
 pub use limits::{AtLimit, pitch_within};
 pub use nonlinear::{
-    CheckedNonlinear, Nonlinear, NonlinearError, NonlinearVerdict, NotNonlinear, Reach,
+    Begun, CheckedNonlinear, Nonlinear, NonlinearError, NonlinearVerdict, NotNonlinear, Reach,
     prove_nonlinear,
 };
 pub use prove::{

@@ -346,6 +346,8 @@ def test_the_program_says_what_keeps_it_from_an_engine(path):
     found = program()
     if found is None:
         pytest.skip("the program is not built")
+    for needed in ("distributed", "ray"):
+        pytest.importorskip(needed)
 
     def told(*arguments):
         return subprocess.run([found, "tune", *arguments], capture_output=True, text=True, input=TEXT, check=False)

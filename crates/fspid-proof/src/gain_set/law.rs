@@ -47,7 +47,7 @@ impl One {
     ///
     /// Without leakage $x$ rises for ever if $s \Delta k$ can be positive, and falls if it can be
     /// negative; only the limits then hold it.
-    fn accumulated(&self, delta: Interval) -> Interval {
+    pub(super) fn accumulated(&self, delta: Interval) -> Interval {
         let (nominal, increment) = (Interval::point(self.nominal), self.factor * delta);
         let still = increment.lower() >= 0.0 && increment.upper() <= 0.0;
         let free = if still {

@@ -124,6 +124,12 @@ impl GainSet {
         }
     }
 
+    /// The gains of a box, whatever the inputs.
+    pub(crate) fn boxed(nominal: Gains<f64>, rest: [Interval; 3], gains: [Interval; 3]) -> Self {
+        let cell = GainCell { error: EVERYWHERE, change: EVERYWHERE, gains, change_gain: 0.0 };
+        Self { nominal, rest, cells: vec![cell], rate_per_s: None, reached: None, remembered: None }
+    }
+
     /// The part of the set over some of its cells.
     #[must_use]
     pub fn of_cells(&self, cells: &[usize]) -> Self {

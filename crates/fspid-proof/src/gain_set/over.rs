@@ -8,7 +8,10 @@ use fspid_numeric::scalar::Interval;
 use super::increments::{Enclosure, Side};
 use super::law::{One, each};
 
-/// The gains of a memoryless law.
+/// Parts that a side of inputs is cut into where all gains over it are asked for once: boxes of increments shrink with it.
+const PARTS: u32 = 8;
+
+/// The increments of a tuner over inputs, and what its law makes of them.
 pub(crate) struct GainsOver<'a> {
     enclosure: Enclosure<'a>,
     each: [One; 3],
@@ -21,23 +24,74 @@ pub(crate) struct GainsOver<'a> {
 }
 
 impl<'a> GainsOver<'a> {
-    /// Those of a tuner; none where gains remember.
+    /// Those of a tuner without memory; none where gains remember.
     pub(crate) fn of(tuner: &'a SelfTuner<f64>, system: Option<&'a System>) -> Option<Self> {
+        let is_memoryless = tuner.settings().law == Law::Memoryless;
+        is_memoryless.then(|| Self::scaled(tuner, system, 1.0))
+    }
+
+    /// Those of any tuner with `output_factor` times its output factors.
+    pub(crate) fn scaled(
+        tuner: &'a SelfTuner<f64>,
+        system: Option<&'a System>,
+        output_factor: f64,
+    ) -> Self {
         let settings = tuner.settings();
         let scale = settings.input_scale;
         let sees = [scale.error_per_rad, scale.change_per_rad].map(|scale| scale.abs() > 0.0);
-        (settings.law == Law::Memoryless).then(|| Self {
+        Self {
             enclosure: Enclosure::new(tuner, system),
-            each: each(tuner, 1.0),
+            each: each(tuner, output_factor),
             range: tuner.supervisor().range(),
             clamps: tuner.supervisor().out_of_range() == OutOfRange::Clamp,
             sees,
             sets: [settings.input_sets.error, settings.input_sets.change],
-        })
+        }
     }
 
-    /// The gains where error and change, in supervisor units, lie between bounds; none where an input may be refused.
+    /// The gains of a law without memory where error and change, in supervisor units, lie between bounds; none where an
+    /// input may be refused.
     pub(crate) fn over(&mut self, inputs: [Interval; 2]) -> Option<[Interval; 3]> {
+        let increments = self.increments(inputs)?;
+        Some(self.made_of(increments, One::memoryless))
+    }
+
+    /// Every gain that a tuner comes to which begins with its nominal ones and sees nothing beyond these bounds of error and
+    /// change, in supervisor units, either way; none where an input may be refused, or where nothing holds a gain back.
+    pub(crate) fn reached_from_nominal(
+        &mut self,
+        law: Law<f64>,
+        most: [f64; 2],
+    ) -> Option<[Interval; 3]> {
+        let parts = |most: f64| {
+            let end = move |part: u32| most * (2.0 * f64::from(part) / f64::from(PARTS) - 1.0);
+            (0..PARTS).map(move |part| Interval::between(end(part), end(part + 1)))
+        };
+        let [error, change] = most;
+        let mut hull: Option<[Interval; 3]> = None;
+        for inputs in parts(error).flat_map(|error| parts(change).map(move |it| [error, it])) {
+            let own = self.increments(inputs)?;
+            hull = Some(
+                hull.map_or(own, |all| [0, 1, 2].map(|gain: usize| all[gain].hull(own[gain]))),
+            );
+        }
+        let gains = match law {
+            Law::Memoryless => self.made_of(hull?, One::memoryless),
+            Law::Accumulating { .. } => self.made_of(hull?, One::accumulated),
+        };
+        gains.iter().all(|gain| gain.is_bounded()).then_some(gains)
+    }
+
+    fn made_of(
+        &self,
+        [of_kp, of_ki, of_kd]: [Interval; 3],
+        by: fn(&One, Interval) -> Interval,
+    ) -> [Interval; 3] {
+        let [kp, ki, kd] = &self.each;
+        [by(kp, of_kp), by(ki, of_ki), by(kd, of_kd)]
+    }
+
+    fn increments(&mut self, inputs: [Interval; 2]) -> Option<[Interval; 3]> {
         let range = self.range;
         let inside = |input: &Interval| input.lower() >= -range && input.upper() <= range;
         if !self.clamps && !inputs.iter().all(inside) {
@@ -51,10 +105,7 @@ impl<'a> GainsOver<'a> {
             let within = [lower, upper].map(|end| end.clamp(-range, range));
             Side { inputs: [lower, upper], ..Side::seen(within, range, self.sets[place]) }
         };
-        let sides = [0, 1].map(side);
-        let [of_kp, of_ki, of_kd] = self.enclosure.over(sides);
-        let [kp, ki, kd] = &self.each;
-        Some([kp.memoryless(of_kp), ki.memoryless(of_ki), kd.memoryless(of_kd)])
+        Some(self.enclosure.over([0, 1].map(side)))
     }
 }
 

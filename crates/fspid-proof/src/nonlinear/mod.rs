@@ -5,12 +5,17 @@
 //! the motion in that box at samples and between them, and no limit acts in it, every motion that begins in the
 //! ellipsoid stays in the box and comes to rest at the trim: of the equations of motion, not of their linear model.
 //!
+//! Where no form falls with every gain of a self-tuner, one may with those that it comes to from its nominal ones by what its
+//! supervisor sees in that ellipsoid ([`near`]): then the claim is of flights that begin with these ([`Begun`]).
+//!
 //! Said of: straight flight with the wings level, in still air, with the throttle of the trim, as long as the aircraft is no
 //! further above or below the trim than the numbers say: the air there has any of the densities between two, of which one
 //! is that of the trim. Where they are not the same the flight does not come to rest at the trim, but near it, as far as
 //! another density has another trim. Further: the set-point at the trim, no load. The equations are meant as they are, not the steps in which
 //! a simulation integrates them.
 
+mod idle;
+mod near;
 mod search;
 #[cfg(test)]
 mod tests;
@@ -22,6 +27,7 @@ use fspid_core::Gains;
 use fspid_lti::Matrix;
 use fspid_numeric::Scalar;
 use fspid_numeric::scalar::Interval;
+use fspid_sim::Controller;
 use fspid_sim::loop_model::LoopModel;
 
 use crate::certificate::{Certificate, Claim};
@@ -31,13 +37,25 @@ use crate::gain_set::{GainSet, KnownSlopes};
 use crate::recheck::{Recheck, RecheckError};
 use crate::scope::Range as Asked;
 
+use near::Near;
 pub use search::{NonlinearVerdict, NotNonlinear, prove_nonlinear};
 pub use transition::Reach;
 use transition::Transition;
 
+/// What of a self-tuner a flight begins with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Begun {
+    /// Any of its gains, wherever its reference model is.
+    Anyhow,
+    /// Its nominal gains, as after a reset, its reference model at rest at the first measurement.
+    Reset,
+}
+
 /// A claim about the nonlinear aircraft.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nonlinear {
+    /// What a flight begins with beside the ellipsoid.
+    pub begun: Begun,
     /// The aircraft and its trim.
     pub aircraft: MotionNumbers,
     /// The box.
@@ -61,6 +79,8 @@ pub struct CheckedNonlinear {
     pub pitch_within_rad: f64,
     /// How far θ, q, V, α and elevator may come in the ellipsoid at samples, no more than the box.
     pub reached: [f64; MOTION],
+    /// Least and most of kp, ki and kd on the way.
+    pub gains: [Interval; 3],
     /// How far θ, q, V and α may stay from the trim in the end: 0 in air of one density, to which every motion comes back.
     pub remains: [f64; MOTION],
 }
@@ -159,13 +179,16 @@ impl Nonlinear {
         let alone = self.alone(certificate);
         let (known, mut inequalities, mut pitch) = (KnownSlopes::default(), 0, f64::INFINITY);
         let corners = transition.corners.len();
+        // What a supervisor sees does not depend on the plant.
+        let mut flown = set.clone();
         for plant in transition.corners {
             let model = LoopModel::new(plant, description.settings());
             if inequalities == 0 {
+                flown = self.flown(certificate, set, &model)?;
                 let within = (&transition.within, transition.drifts.as_slice());
-                inequalities += self.keeps_to_the_box(&model, set, within)?;
+                inequalities += self.keeps_to_the_box(&model, &flown, within)?;
             }
-            let found = Recheck::with(&alone, model, set.clone(), &known)?.until(stops).run()?;
+            let found = Recheck::with(&alone, model, flown.clone(), &known)?.until(stops).run()?;
             inequalities += found.inequalities;
             pitch = pitch.min(found.pitch_within_rad.unwrap_or(0.0));
         }
@@ -178,7 +201,28 @@ impl Nonlinear {
             Some(level) => self.reached(description, level)?,
             None => [0.0; MOTION],
         };
-        Ok(CheckedNonlinear { corners, inequalities, pitch_within_rad: pitch, reached, remains })
+        let gains = flown.bounds();
+        let pitch_within_rad = pitch;
+        Ok(CheckedNonlinear { corners, inequalities, pitch_within_rad, reached, gains, remains })
+    }
+
+    /// The gains that fly: all of the controller's, or those that it comes to in the ellipsoid.
+    fn flown(
+        &self,
+        certificate: &Certificate,
+        set: &GainSet,
+        model: &LoopModel<Interval>,
+    ) -> Result<GainSet, NonlinearError> {
+        let controller = &certificate.description.controller;
+        let (Begun::Reset, Controller::SelfTuning(fspid)) = (self.begun, controller) else {
+            return Ok(set.clone());
+        };
+        let what = "nothing bounds the reference model";
+        let near = Near::of(fspid).ok_or(NonlinearError::Malformed { what })?;
+        let most = near.within(model, &self.reach, (&self.form, self.level))?;
+        let what = "nothing bounds the gains by what the supervisor sees";
+        let gains = near.gains(most, certificate.output_factor);
+        gains.ok_or(NonlinearError::Malformed { what })
     }
 
     /// Proves that the box stays where the derivatives are worth something, away from the elevator's stops, and flying.

@@ -4,14 +4,19 @@
 //! holds more of the pitch angle; then each side is tried wider and narrower. What is found is proved as any claim is that
 //! was read.
 
+use std::borrow::Cow;
+
 use fspid_aircraft::enclosure::{MOTION, MotionNumbers};
 use fspid_core::Gains;
 use fspid_lti::Matrix;
 use fspid_numeric::scalar::Interval;
+use fspid_sim::Controller;
 use fspid_sim::loop_model::{LoopModel, SampledPlant};
 
+use super::idle::Idle;
+use super::near::Near;
 use super::transition::{DENSITY, Reach, Transition};
-use super::{CheckedNonlinear, Nonlinear, NonlinearError, not_covered, of_loop};
+use super::{Begun, CheckedNonlinear, Nonlinear, NonlinearError, not_covered, of_loop};
 use crate::certificate::Certificate;
 use crate::description::{LoopDescription, NotProvable};
 use crate::gain_set::GainSet;
@@ -37,8 +42,11 @@ const GROWTH: f64 = 1.8;
 const SIDE: f64 = 1.25;
 /// Sweeps over the sides.
 const SWEEPS: usize = 2;
-/// Most boxes that are tried.
+/// Most boxes that are tried; fewer where each has gains of its own, which makes a form eight times the work.
 const MOST_BOXES: usize = 60;
+const MOST_BOXES_NEAR: usize = 24;
+/// The first box of gains of its own is smaller by this factor.
+const FIRST_NEAR: f64 = 0.25;
 /// A level is tried so many times, each time smaller.
 const LEVELS: i32 = 8;
 /// Shares of the decay at the corners that are claimed, if they are proved.
@@ -92,7 +100,17 @@ pub fn prove_nonlinear(
     let asked = Asked::rest();
     let prover = Prover::new(description, &asked, effort)?;
     let set = prover.set(1.0);
-    let search = Search { prover: &prover, set: &set, certificate, aircraft, effort };
+    let near = match &description.controller {
+        Controller::Fixed(_) => None,
+        Controller::SelfTuning(fspid) => match Near::of(fspid) {
+            Some(near) => Some(near),
+            None => {
+                let what = "how far the reference model goes from where it begins is not bounded";
+                return Ok(NonlinearVerdict::Open(NotNonlinear::NotCovered(what)));
+            }
+        },
+    };
+    let search = Search { prover: &prover, set: &set, near, certificate, aircraft, effort };
     let found = search.run();
     if (effort.stops)() {
         return Err(NotProvable::Stopped);
@@ -106,6 +124,8 @@ pub fn prove_nonlinear(
 struct Search<'a> {
     prover: &'a Prover<'a>,
     set: &'a GainSet,
+    /// Where only gains are asked for that come of what is seen near the trim.
+    near: Option<Near<'a>>,
     certificate: &'a Certificate,
     aircraft: &'a MotionNumbers,
     effort: &'a Effort,
@@ -126,9 +146,20 @@ impl Search<'_> {
         &self.certificate.description
     }
 
+    fn begun(&self) -> Begun {
+        if self.near.is_some() { Begun::Reset } else { Begun::Anyhow }
+    }
+
+    /// The gains that may fly in a box.
+    fn set_in(&self, reach: &Reach) -> Option<Cow<'_, GainSet>> {
+        let Some(near) = &self.near else { return Some(Cow::Borrowed(self.set)) };
+        near.gains(near.in_box(reach), 1.0).map(Cow::Owned)
+    }
+
     fn run(&self) -> Result<(Nonlinear, CheckedNonlinear), NotNonlinear> {
         let trim = self.aircraft.trim().ok_or(NotNonlinear::NoTrim)?;
         let probe = |reach| Nonlinear {
+            begun: self.begun(),
             aircraft: *self.aircraft,
             reach,
             form: Matrix::identity(1),
@@ -138,8 +169,12 @@ impl Search<'_> {
         let known = |reach| probe(reach).is_known_in(&trim).is_ok();
         let shape = self.shape().ok_or(NotNonlinear::NoForm)?;
         let (mut best, mut doubt) = (None::<(Nonlinear, CheckedNonlinear)>, NotNonlinear::NoForm);
-        let slowest = self.slowest().ok_or(NotNonlinear::NoForm)?;
+        let slowest =
+            self.slowest(shape.scaled(FIRST_NEAR * FIRST_RAD)).ok_or(NotNonlinear::NoForm)?;
         for share in SHARES {
+            if self.near.is_some() && best.is_some() {
+                break;
+            }
             let rate = 1.0 - share * (1.0 - slowest);
             let Some(mut found) = self.largest(shape, rate, &known) else { continue };
             let most = |best: &Option<(Nonlinear, CheckedNonlinear)>| {
@@ -168,10 +203,14 @@ impl Search<'_> {
 
     /// The box with the most of the pitch angle that is found.
     fn largest(&self, shape: Reach, rate: f64, known: &impl Fn(Reach) -> bool) -> Option<Found> {
+        let (first, most_boxes) = match self.near {
+            Some(_) => (FIRST_NEAR * FIRST_RAD, MOST_BOXES_NEAR),
+            None => (FIRST_RAD, MOST_BOXES),
+        };
         let mut boxes = 0;
         let mut tried = |reach: Reach, best: &Option<Found>| -> Option<Found> {
             boxes += 1;
-            if boxes > MOST_BOXES || (self.effort.stops)() || !known(reach) {
+            if boxes > most_boxes || (self.effort.stops)() || !known(reach) {
                 return None;
             }
             let found = self.form_for(reach, rate, best.as_ref().map(|it| &it.form))?;
@@ -179,7 +218,7 @@ impl Search<'_> {
             (found.pitch_rad > 1.01 * most).then_some(found)
         };
         let mut best = None;
-        let mut size = FIRST_RAD;
+        let mut size = first;
         while let Some(found) = tried(shape.scaled(size), &best) {
             best = Some(found);
             size *= GROWTH;
@@ -231,10 +270,10 @@ impl Search<'_> {
     }
 
     /// The factor per sample of the slowest motion of the linear loop, at the gains that span all of them.
-    fn slowest(&self) -> Option<f64> {
+    fn slowest(&self, first: Reach) -> Option<f64> {
         let nowhere = Reach { motion: [0.0; MOTION], command_rad: 0.0 };
         let model = self.loops(&nowhere).ok()?.1.first()?.midpoint();
-        let matrices = self.prover.matrices_of(&[model], self.set)?;
+        let matrices = self.prover.matrices_of(&[model], &*self.set_in(&first)?)?;
         let radii = matrices.iter().map(|it| fspid_lti::spectral_radius(it).ok());
         radii.collect::<Option<Vec<_>>>()?.into_iter().reduce(f64::max)
     }
@@ -280,17 +319,27 @@ impl Search<'_> {
     fn form_for(&self, reach: Reach, rate: f64, known: Option<&Matrix>) -> Option<Found> {
         let (transition, loops) = self.loops(&reach.scaled(1.0 + ROOM)).ok()?;
         let middles = self.apart(&transition);
-        let matrices = self.prover.matrices_of(&middles, self.set)?;
+        let set = self.set_in(&reach)?;
+        let matrices = self.prover.matrices_of(&middles, &set)?;
         let direction = middles.first()?.pitch_off(1.0);
-        let mut rows = self.prover.limited(self.set)?;
-        rows.extend(self.sides(&transition, loops.first()?, reach));
+        let mut rows = self.prover.limited(&set)?;
+        rows.extend(self.sides((&transition, loops.first()?), &set, reach));
+        rows.extend(self.seen(loops.first()?, &reach));
         let directions = directions(&direction, (&transition, &reach, rate));
-        let problem =
-            WidestProblem { matrices: &matrices, rows: &rows, directions: &directions, rate };
+        let idle = Idle::among(&matrices, &rows);
+        let problem = WidestProblem {
+            matrices: &idle.without(&matrices)?,
+            rows: &idle.cut(&rows),
+            directions: &idle.cut(&directions),
+            rate,
+        };
         let effort = solve::Effort { stops: self.effort.stops, ..solve::Effort::default() };
         let from = |form: &Matrix| widest(&problem, form, &effort);
-        let form =
-            known.and_then(from).or_else(|| from(&self.prover.common_at(&matrices, rate)?))?;
+        let known = known.and_then(|form| idle.less(form));
+        let form = known
+            .and_then(|form| from(&form))
+            .or_else(|| from(&self.prover.common_at(problem.matrices, rate)?))?;
+        let form = idle.more(form, &matrices, rate)?;
         let size: f64 = (0..direction.len())
             .flat_map(|i| (0..direction.len()).map(move |j| (i, j)))
             .map(|(i, j)| direction[i] * form.get(i, j).unwrap_or(f64::NAN) * direction[j])
@@ -302,12 +351,12 @@ impl Search<'_> {
     /// Rows of what has to stay in the box, each over its side.
     fn sides(
         &self,
-        transition: &Transition,
-        model: &LoopModel<Interval>,
+        (transition, model): (&Transition, &LoopModel<Interval>),
+        set: &GainSet,
         reach: Reach,
     ) -> Vec<Vec<f64>> {
         let mut rows = Vec::new();
-        for (_, held) in self.set.held_corners() {
+        for (_, held) in set.held_corners() {
             let arriving = model.arriving_row(super::points(held.gains));
             let over = |it: &Interval| it.midpoint() / (SIDES * reach.command_rad);
             rows.push(arriving.iter().map(over).collect());
@@ -324,11 +373,20 @@ impl Search<'_> {
         rows
     }
 
+    /// Rows of what a supervisor sees that the box does not bound by itself, each over its most in it.
+    fn seen(&self, model: &LoopModel<Interval>, reach: &Reach) -> Vec<Vec<f64>> {
+        let Some(near) = &self.near else { return Vec::new() };
+        let over = |(row, most): (Vec<Interval>, f64)| {
+            row.iter().map(|it| it.midpoint() / (SIDES * most)).collect()
+        };
+        near.rows(model, reach).into_iter().map(over).collect()
+    }
+
     /// The claim with the largest level that is proved, and then the best rate of those that are tried.
     fn proved(&self, found: &Found) -> Result<(Nonlinear, CheckedNonlinear), NonlinearError> {
         let claim = |level: f64, rate: f64| {
             let (aircraft, reach, form) = (*self.aircraft, found.reach, found.form.clone());
-            Nonlinear { aircraft, reach, form, rate, level }
+            Nonlinear { begun: self.begun(), aircraft, reach, form, rate, level }
         };
         let checked =
             |claim: &Nonlinear| claim.check(self.certificate, self.set, self.effort.stops);

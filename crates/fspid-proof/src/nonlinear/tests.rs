@@ -3,7 +3,12 @@
 use fspid_aircraft::Range as Known;
 use fspid_aircraft::aerodynamics::derivatives::{Longitudinal, LongitudinalCoefficient};
 use fspid_aircraft::data::Laws;
-use fspid_core::{Derivative, Pid, PidConfig};
+use fspid_core::fuzzy::{Defuzzifier, OutOfRange, Supervisor};
+use fspid_core::{
+    Derivative, Fspid, InputScale, InputSets, Law, Pid, PidConfig, ReferenceModel, Sample,
+    SecondInput, SelfTuner, SetCentres, State, TunerSettings,
+};
+use fspid_fuzzy::NumberTable;
 use fspid_sim::actuator::{Actuator, Lag};
 use fspid_sim::loop_model::Sensing;
 use fspid_sim::{Controller, ElevatorSign};
@@ -53,10 +58,16 @@ fn navion() -> MotionNumbers {
     }
 }
 
+fn config() -> PidConfig<f64> {
+    PidConfig { derivative: Derivative { filter_s: 0.05 }, ..PidConfig::sampled_every(0.01) }
+}
+
 /// The loop around its linear model; the coefficients are those that the program prints of it.
 fn description() -> LoopDescription {
-    let config =
-        PidConfig { derivative: Derivative { filter_s: 0.05 }, ..PidConfig::sampled_every(0.01) };
+    description_with(Controller::Fixed(Pid::new(GAINS, config()).expect("allowed")))
+}
+
+fn description_with(controller: Controller) -> LoopDescription {
     let aircraft = navion();
     let over = aircraft.over([1e-6; MOTION]).expect("a trim");
     let middle = |it: Interval| it.midpoint();
@@ -76,7 +87,7 @@ fn description() -> LoopDescription {
         actuator: Actuator::new(Lag::first_order(LAG_S).expect("allowed")),
         pitch: Sensing::DIRECT,
         rate: Sensing::DIRECT,
-        controller: Controller::Fixed(Pid::new(GAINS, config).expect("allowed")),
+        controller,
     }
 }
 
@@ -317,4 +328,136 @@ fn flights_in_denser_and_in_thinner_air_stay_in_the_box_and_come_near_the_trim()
     let whole = Nonlinear { aircraft: MotionNumbers { density_kg_m3: 1.1, ..aircraft }, ..*claim };
     let refused = Certificate { nonlinear: Some(whole), ..linear }.check().expect_err("changed");
     assert!(refused.to_string().contains("density of the trim"), "{refused}");
+}
+
+/// Rules that conclude numbers: more gain where the error is large, and where it grows.
+fn numbers() -> Supervisor<f64> {
+    let grid = |by_error: f64, by_second: f64| {
+        core::array::from_fn(|row: usize| {
+            core::array::from_fn(|column: usize| {
+                let [row, column] = [row, column].map(|it| (it as f64 - 3.0) / 3.0);
+                (by_error * row.abs() + by_second * row * column).clamp(-1.0, 1.0)
+            })
+        })
+    };
+    let grids = [grid(0.9, 0.3), grid(-0.5, 0.5), grid(0.4, -0.4)];
+    let table = NumberTable::new(grids).expect("numbers");
+    Supervisor::of_numbers(&table, 1.0, OutOfRange::Clamp).expect("allowed")
+}
+
+/// The paper's rules, the same for a rise and a fall.
+fn labels() -> Supervisor<f64> {
+    let (rules, rule) = (fspid_core::paper::rules().mirrored(), Defuzzifier::Exact);
+    Supervisor::new(&rules, 1.0, rule, OutOfRange::Clamp).expect("allowed")
+}
+
+/// A self-tuner whose gains go far with errors of many degrees, and some way with few.
+fn self_tuner(
+    (law, size): (Law<f64>, f64),
+    second_input: SecondInput<f64>,
+    supervisor: Supervisor<f64>,
+) -> Fspid<f64> {
+    let settings = TunerSettings {
+        law,
+        second_input,
+        input_sets: InputSets { error: SetCentres::new(0.2, 0.7).ok(), change: None },
+        input_scale: InputScale { error_per_rad: 2.9, change_per_rad: 1.1 },
+        output_scale: Gains { kp: 3.0 * size, ki: 2.5 * size, kd: 1.2 * size },
+        ..TunerSettings::literal()
+    };
+    let tuner = SelfTuner::new(GAINS, supervisor, settings).expect("allowed");
+    Fspid::new(tuner, config()).expect("allowed")
+}
+
+/// A flight from a reset, by the controller itself; `seen` is shown every state on the way and the gains.
+fn fly_reset(
+    (fspid, flown): (&Fspid<f64>, &Flown),
+    mut motion: [f64; MOTION],
+    samples: usize,
+    mut seen: impl FnMut(&[f64; MOTION], Gains<f64>),
+) -> [f64; MOTION] {
+    let mut state = State::new();
+    for _ in 0..samples {
+        let sample =
+            Sample { setpoint_rad: 0.0, measurement_rad: motion[0], rate_rad_s: motion[1] };
+        let step = fspid.step(&mut state, sample);
+        // The flown deflection is counted as the command is.
+        motion = flown.sample(motion, step.command_rad, |at| seen(at, step.gains));
+    }
+    motion
+}
+
+#[test]
+fn self_tuners_begin_reset_at_the_edge_of_the_ellipsoid_stay_in_the_box_and_come_to_rest() {
+    let leaks = Law::Accumulating { leakage_per_s: 0.5 };
+    let model = SecondInput::ModelError(ReferenceModel { bandwidth_rad_s: 2.0, damping: 0.8 });
+    let mut drawn = vec![
+        (self_tuner((Law::Memoryless, 0.1), SecondInput::Change, numbers()), 2.0_f64),
+        (self_tuner((leaks, 0.02), model, numbers()), 2.0),
+    ];
+    if std::env::var_os("FSPID_LONG_TESTS").is_some() {
+        drawn.push((self_tuner((Law::Memoryless, 0.05), SecondInput::Change, labels()), 2.0));
+    }
+    for (number, (fspid, least_deg)) in drawn.into_iter().enumerate() {
+        let description = description_with(Controller::SelfTuning(fspid));
+        let outcome = certify(&description, &Asked::rest(), &Effort::default()).expect("provable");
+        let Verdict::Proved(linear, _) = outcome.verdict else { panic!("{number}: not proved") };
+        let verdict = prove_nonlinear(&linear, &navion(), &Effort::default()).expect("provable");
+        let NonlinearVerdict::Proved(claim, checked) = verdict else { panic!("{verdict:?}") };
+        assert_eq!(claim.begun, Begun::Reset);
+        assert!(checked.pitch_within_rad > least_deg.to_radians(), "{number}: {checked:?}");
+        let whole = |claim: Nonlinear| Certificate { nonlinear: Some(claim), ..linear.clone() };
+        let again = whole((*claim).clone()).check().expect("it holds").nonlinear;
+        assert_eq!(again, Some(checked));
+
+        let loops = description.enclosed().expect("a model").midpoint();
+        let value = |motion: [f64; MOTION]| -> f64 {
+            let mut z = loops.pitch_off(motion[0]);
+            z[..MOTION].copy_from_slice(&motion);
+            let size = z.len();
+            let terms = (0..size).flat_map(|i| (0..size).map(move |j| (i, j)));
+            terms.map(|(i, j)| z[i] * claim.form.get(i, j).expect("fits") * z[j]).sum()
+        };
+        let mut widest =
+            [Interval::point(GAINS.kp), Interval::point(GAINS.ki), Interval::point(GAINS.kd)];
+        for flight in 0..12_u32 {
+            let mut motion: [f64; MOTION] = core::array::from_fn(|i| {
+                checked.reached[i] * draw(17 * flight + 3 * u32::try_from(i).expect("few"))
+            });
+            if flight < 2 {
+                motion = [if flight == 0 { 1.0 } else { -1.0 }, 0.0, 0.0, 0.0, 0.0];
+            }
+            let scale = (0.999 * claim.level / value(motion)).sqrt();
+            let motion = motion.map(|it| scale * it);
+            let end = fly_reset((&fspid, &Flown::new()), motion, 3000, |at, gains| {
+                for (at, reach) in at.iter().zip(claim.reach.motion) {
+                    assert!(at.abs() <= reach, "{number}, {flight}: {at} beyond {reach}");
+                }
+                for ((gain, bounds), widest) in
+                    [gains.kp, gains.ki, gains.kd].into_iter().zip(checked.gains).zip(&mut widest)
+                {
+                    assert!(bounds.contains(gain), "{number}, {flight}: {gain} not in {bounds:?}");
+                    *widest = widest.hull(Interval::point(gain));
+                }
+            });
+            let left = value(end) / claim.level;
+            assert!(left < 0.3, "{number}, {flight}: {left}");
+        }
+        // The gains have gone some part of what is said that they may.
+        for (flown, bounds) in widest.iter().zip(checked.gains) {
+            assert!(flown.width() > 0.05 * bounds.width(), "{number}: {flown:?} of {bounds:?}");
+        }
+
+        let refused = |change: &dyn Fn(&mut Nonlinear)| {
+            let mut other = (*claim).clone();
+            change(&mut other);
+            whole(other).check().expect_err("changed").to_string()
+        };
+        assert!(refused(&|it| it.level *= 1.3).contains("limit"));
+        assert!(refused(&|it| it.reach = it.reach.scaled(3.0)).contains("nonlinear aircraft"));
+        // With any gains of the widest set the motion leaves the ellipsoid.
+        if number == 0 {
+            refused(&|it| it.begun = Begun::Anyhow);
+        }
+    }
 }

@@ -46,7 +46,7 @@ use sample::Stop;
 use terminal::NearRest;
 use tuned::Tuner;
 
-pub(crate) use near::corners_within;
+pub(crate) use near::{corners_within, system_of};
 
 pub use commanded::{Commanded, Ended, Group, Leg, MOST_LEG_PARTS, MOST_LEG_SETS, MOST_LEGS};
 pub use commands::{Commands, MOST_CHANGES, Shares};

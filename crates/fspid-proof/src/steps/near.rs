@@ -16,7 +16,14 @@ use super::tuned::Tuner;
 
 /// The rules of a self-tuner, made ready to be enclosed.
 pub(super) fn system(description: &LoopDescription) -> Option<System> {
-    let Controller::SelfTuning(fspid) = &description.controller else { return None };
+    match &description.controller {
+        Controller::Fixed(_) => None,
+        Controller::SelfTuning(fspid) => system_of(fspid),
+    }
+}
+
+/// The same of its controller.
+pub(crate) fn system_of(fspid: &Fspid<f64>) -> Option<System> {
     System::new(fspid_fuzzy::system::Parts::try_from(fspid.tuner().supervisor()).ok()?).ok()
 }
 

@@ -5,18 +5,17 @@
 //! multiplies is the linear part of the product, and an unknown for the rest. Both rests shrink with the square of a box, but
 //! where what is seen passes the centre of a set.
 
+use fspid_core::Fspid;
 use fspid_core::equations::{LawKind, SecondInputKind, TunerEquations};
-use fspid_core::{Fspid, ModelState, ReferenceModel};
 use fspid_numeric::scalar::Interval;
 
 use super::affine::Affine;
 use super::cut::Line;
 use crate::gain_set::Lines;
+use crate::reference_model::{model_matrix, most_later};
 
 /// Of the way from any gains to those at rest so much may be left when a step comes.
 pub(super) const LEFT: f64 = 1.0 / 1024.0;
-/// Most samples after which the reference model is asked to have come nearer.
-const MOST_POWERS: usize = 100_000;
 
 /// What a self-tuner remembers at a sample.
 #[derive(Clone, Debug)]
@@ -212,40 +211,4 @@ impl<'a> Tuner<'a> {
         let is_model = self.equations.structure.second_input == SecondInputKind::ModelError;
         (!is_model).then_some(self.equations.numbers.change_divisor)
     }
-}
-
-/// $y^+ = y + T q^+$, $q^+ = q + T (\omega^2 (r - y) - 2 \zeta \omega q)$ as rows over (y, q), the set-point at zero.
-fn model_matrix(equations: &TunerEquations<f64>) -> [[Interval; 2]; 2] {
-    let row = |pitch: f64, rate: f64| {
-        let model = ReferenceModel {
-            bandwidth_rad_s: Interval::point(equations.numbers.bandwidth_rad_s),
-            damping: Interval::point(equations.numbers.damping),
-        };
-        let now =
-            ModelState { pitch_rad: Interval::point(pitch), rate_rad_s: Interval::point(rate) };
-        model.next(now, Interval::ZERO, Interval::point(equations.numbers.dt_s))
-    };
-    let [by_pitch, by_rate] = [row(1.0, 0.0), row(0.0, 1.0)];
-    [[by_pitch.pitch_rad, by_rate.pitch_rad], [by_pitch.rate_rad_s, by_rate.rate_rad_s]]
-}
-
-/// Most of the pitch of a model that begins with pitch and rate (in units of its bandwidth) within 1: the largest sum of the
-/// first rows of the powers of its matrix, up to one whose rows both have a sum of at most 1 and that begins it again.
-fn most_later(equations: &TunerEquations<f64>) -> Option<f64> {
-    let omega = Interval::point(equations.numbers.bandwidth_rad_s);
-    let [[a, b], [c, d]] = model_matrix(equations);
-    let step = [[a, b * omega], [c / omega, d]];
-    let size = |row: [Interval; 2]| row[0].magnitude() + row[1].magnitude();
-    let (mut power, mut most) = (step, 1.0_f64);
-    for _ in 0..MOST_POWERS {
-        most = most.max(size(power[0]));
-        if size(power[0]) < 0.999 && size(power[1]) < 0.999 {
-            return Some(most * (1.0 + 1e-9));
-        }
-        let entry = |row: usize, column: usize| {
-            power[row][0] * step[0][column] + power[row][1] * step[1][column]
-        };
-        power = [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]];
-    }
-    None
 }

@@ -22,7 +22,7 @@ const NO_STEPS: &str = "no step from rest is proved with limits acting; of gains
 const NO_FLIGHTS: &str = "the flights that the scenario commands are not proved with limits acting; in cases they are asked for with --steps alone";
 
 /// Why keys of these answers are null.
-pub(super) const NULLS: [(&str, &str); 22] = [
+pub(super) const NULLS: [(&str, &str); 24] = [
     ("decay_per_sample", "the claim is one of growth, or no rate is proved"),
     (
         "law_keeps_to_the_rate",
@@ -43,6 +43,8 @@ pub(super) const NULLS: [(&str, &str); 22] = [
     ("parts", "the family is not proved"),
     ("scales_may_change", "the family is not proved"),
     ("box", "nothing is proved of the nonlinear aircraft"),
+    ("begins_with", "nothing is proved of the nonlinear aircraft"),
+    ("gains_near_trim", "nothing is proved of the nonlinear aircraft"),
     ("begins_within_deg", "nothing is proved of the nonlinear aircraft"),
     ("not_proved", "no factor was tried and not proved"),
     ("bearing", "the certificate does not hold"),
@@ -158,7 +160,7 @@ impl CheckedFile {
                 Err(doubt) => json!({ "reason": doubt.to_string() }),
             },
             present(json!({
-                "nonlinear": self.nonlinear().map(|(claim, it)| nonlinear::proved_in_json(&claim.reach, &it)),
+                "nonlinear": self.nonlinear().map(|(claim, it)| nonlinear::proved_in_json(&claim.reach, claim.begun, &it)),
                 "against": self.against.as_ref().map(comparison),
             })),
         ]);

@@ -1,8 +1,9 @@
 //! The nonlinear aircraft near its trim: of which scenarios something is asked, and what the answer says.
 
 use fspid_aircraft::enclosure::MotionNumbers;
+use fspid_numeric::scalar::Interval;
 use fspid_proof::{
-    Certificate, CheckedNonlinear, Claim, Effort, Nonlinear, NonlinearVerdict, NotProvable,
+    Begun, Certificate, CheckedNonlinear, Claim, Effort, Nonlinear, NonlinearVerdict, NotProvable,
     Outcome, Reach, Rechecked, Verdict, prove_nonlinear,
 };
 use fspid_scenario::file::{FlownDerivatives, Study};
@@ -13,7 +14,8 @@ use serde_json::{Value, json};
 
 use crate::metrics::short;
 
-/// Heights above and below the trim over which the air is enclosed, the first that is proved: without one the air has
+/// Heights above and below the trim over which the air is enclosed, the first that is proved and whose flights come nearer to
+/// the trim than they may begin: without one the air has
 /// everywhere the density of the trim. Chosen, not derived: nothing that was tried is proved over 30 m (decision 58).
 const HEIGHTS_M: [f64; 2] = [10.0, 0.0];
 
@@ -168,9 +170,12 @@ pub(super) fn certified(
             Err(none) => return Ok(NonlinearAnswer::None(none)),
         };
         let found = prove.of(certificate, &aircraft, effort)?;
-        let proved = matches!(found, NonlinearVerdict::Proved(..));
-        verdict = Some(found);
-        if proved {
+        let ends = comes_nearer(&found);
+        // What is proved of several densities is kept where it is not of one.
+        if verdict.is_none() || matches!(found, NonlinearVerdict::Proved(..)) {
+            verdict = Some(found);
+        }
+        if ends {
             break;
         }
     }
@@ -184,6 +189,16 @@ pub(super) fn certified(
     Ok(answer)
 }
 
+/// True for a proof whose flights end nearer to the trim than they may begin.
+fn comes_nearer(found: &NonlinearVerdict) -> bool {
+    let NonlinearVerdict::Proved(_, CheckedNonlinear { remains, pitch_within_rad, .. }) = found
+    else {
+        return false;
+    };
+    let [pitch_rad, ..] = remains;
+    pitch_rad < pitch_within_rad
+}
+
 /// What a proved claim says, with everything that it does not speak of.
 pub(super) fn sentence(
     certificate: &Certificate,
@@ -191,7 +206,8 @@ pub(super) fn sentence(
     checked: &CheckedNonlinear,
 ) -> String {
     format!(
-        "the equations of motion themselves: a flight that begins in the certified ellipsoid, so {stays}, at samples and between them, meets no limit, {comes}{decay}; {conditions}",
+        "the equations of motion themselves: a flight that begins in the certified ellipsoid{begun}, so {stays}, at samples and between them, meets no limit, {comes}{decay}; {conditions}",
+        begun = begun(claim.begun, checked),
         stays = stays(&claim.reach, checked),
         comes = comes(checked),
         decay = decay(certificate, claim),
@@ -202,12 +218,37 @@ pub(super) fn sentence(
 /// A proved claim in a line, where what it does not speak of is said once for many of them.
 fn in_short(certificate: &Certificate, claim: &Nonlinear, checked: &CheckedNonlinear) -> String {
     format!(
-        "a flight that begins {stays}, {comes}{decay}; in still air {air}",
+        "a flight that begins{begun}{stays}, {comes}{decay}; in still air {air}",
+        begun = begun_and(claim.begun, checked),
         stays = stays(&claim.reach, checked),
         comes = comes(checked),
         decay = decay(certificate, claim),
         air = air(&claim.aircraft),
     )
+}
+
+/// What a flight has to begin with beside the ellipsoid, and the gains that it then has; nothing where it may have any gains.
+fn begun(begun: Begun, checked: &CheckedNonlinear) -> String {
+    if begun == Begun::Anyhow {
+        return String::new();
+    }
+    let range = |(name, gain): (&str, &Interval)| {
+        format!("{name} {} to {}", short(gain.lower()), short(gain.upper()))
+    };
+    let gains: Vec<String> =
+        ["kp", "ki", "kd"].into_iter().zip(&checked.gains).map(range).collect();
+    format!(
+        " with the controller just reset (its nominal gains, no change of the error yet, a reference model at the measured pitch), whose gains then stay within {}",
+        gains.join(", ")
+    )
+}
+
+/// The same before what else it begins with.
+pub(super) fn begun_and(begun_as: Begun, checked: &CheckedNonlinear) -> String {
+    match begun(begun_as, checked) {
+        nothing if nothing.is_empty() => " ".to_owned(),
+        something => format!("{something}, "),
+    }
 }
 
 /// How far a flight may begin from the trim, and which box it then does not leave.
@@ -282,12 +323,18 @@ fn below(value: f64, decimals: i32) -> String {
 }
 
 /// A proved claim for programs.
-pub(super) fn proved_in_json(reach: &Reach, checked: &CheckedNonlinear) -> Value {
+pub(super) fn proved_in_json(reach: &Reach, begun: Begun, checked: &CheckedNonlinear) -> Value {
+    let [kp, ki, kd] = checked.gains.map(|gain| [gain.lower(), gain.upper()]);
     let Reach { motion, command_rad } = *reach;
     let [pitch, rate, speed_m_s, alpha, elevator] = motion;
     json!({
         "verdict": "proved",
+        "begins_with": match begun {
+            Begun::Anyhow => "any-gains",
+            Begun::Reset => "reset",
+        },
         "begins_within_deg": degrees(checked.pitch_within_rad),
+        "gains_near_trim": { "kp": kp, "ki": ki, "kd": kd },
         "box": {
             "pitch_deg": degrees(pitch),
             "pitch_rate_deg_s": degrees(rate),
@@ -301,14 +348,22 @@ pub(super) fn proved_in_json(reach: &Reach, checked: &CheckedNonlinear) -> Value
 
 /// That nothing is proved, for programs.
 pub(super) fn open_in_json() -> Value {
-    json!({ "verdict": "open", "begins_within_deg": null, "box": null })
+    json!({
+        "verdict": "open",
+        "begins_with": null,
+        "begins_within_deg": null,
+        "gains_near_trim": null,
+        "box": null,
+    })
 }
 
 /// The answer for programs.
 pub(super) fn in_json(answer: &NonlinearAnswer) -> Value {
     let found = match answer {
         NonlinearAnswer::Verdict(verdict, _) => match &**verdict {
-            NonlinearVerdict::Proved(claim, checked) => Some(proved_in_json(&claim.reach, checked)),
+            NonlinearVerdict::Proved(claim, checked) => {
+                Some(proved_in_json(&claim.reach, claim.begun, checked))
+            }
             NonlinearVerdict::Open(_) => None,
         },
         NonlinearAnswer::None(_) | NonlinearAnswer::LinearNotProved => None,

@@ -6,7 +6,7 @@ use fspid_aircraft::aerodynamics::derivatives::{
 };
 use fspid_aircraft::data::Laws;
 use fspid_aircraft::enclosure::MotionNumbers;
-use fspid_proof::{Nonlinear, Reach};
+use fspid_proof::{Begun, Nonlinear, Reach};
 use serde::{Deserialize, Serialize};
 
 use super::file::{Rows, matrix, rows};
@@ -15,12 +15,30 @@ use super::file::{Rows, matrix, rows};
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct NonlinearFile {
+    /// Left away where a flight may begin with any gains.
+    #[serde(default, skip_serializing_if = "BegunFile::is_anyhow")]
+    begins_with: BegunFile,
     aircraft: AircraftFile,
     #[serde(rename = "box")]
     reach: BoxFile,
     rate: f64,
     form: Rows,
     level: f64,
+}
+
+/// What of a self-tuner a flight begins with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum BegunFile {
+    #[default]
+    AnyGains,
+    Reset,
+}
+
+impl BegunFile {
+    fn is_anyhow(&self) -> bool {
+        *self == Self::AnyGains
+    }
 }
 
 /// The numbers that the motion is made of.
@@ -91,10 +109,14 @@ struct BoxFile {
 
 impl NonlinearFile {
     pub(super) fn of(claim: &Nonlinear) -> Self {
-        let Nonlinear { aircraft, reach, form, rate, level } = claim;
+        let Nonlinear { begun, aircraft, reach, form, rate, level } = claim;
         let Reach { motion, command_rad } = *reach;
         let [pitch_rad, pitch_rate_rad_s, airspeed_m_s, alpha_rad, elevator_rad] = motion;
         Self {
+            begins_with: match begun {
+                Begun::Anyhow => BegunFile::AnyGains,
+                Begun::Reset => BegunFile::Reset,
+            },
             aircraft: AircraftFile::of(aircraft),
             reach: BoxFile {
                 pitch_rad,
@@ -124,6 +146,10 @@ impl NonlinearFile {
             return Err("height_m and densities_kg_m3 stand together or not at all".to_owned());
         }
         Ok(Nonlinear {
+            begun: match self.begins_with {
+                BegunFile::AnyGains => Begun::Anyhow,
+                BegunFile::Reset => Begun::Reset,
+            },
             aircraft: self.aircraft.build(),
             reach: Reach { motion, command_rad },
             form: matrix(&self.form)?,

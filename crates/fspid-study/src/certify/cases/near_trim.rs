@@ -1,7 +1,7 @@
 //! What is proved of the nonlinear aircraft in every case, each about its own trim: from the least that a flight may begin
 //! off, within the largest of the boxes.
 
-use fspid_proof::{CheckedNonlinear, Nonlinear, Reach};
+use fspid_proof::{Begun, CheckedNonlinear, Nonlinear, Reach};
 use serde_json::{Value, json};
 
 use super::CertifiedCases;
@@ -11,6 +11,8 @@ use crate::certify::text::found;
 /// What holds of several loops.
 struct Everywhere {
     reach: Reach,
+    /// After a reset, where one of them asks for it.
+    begun: Begun,
     checked: CheckedNonlinear,
     /// In which air; none where it is not the same everywhere.
     air: Option<String>,
@@ -18,7 +20,12 @@ struct Everywhere {
 
 impl Everywhere {
     fn of((claim, checked): (&Nonlinear, CheckedNonlinear)) -> Self {
-        Self { reach: claim.reach, checked, air: Some(nonlinear::air(&claim.aircraft)) }
+        Self {
+            reach: claim.reach,
+            begun: claim.begun,
+            checked,
+            air: Some(nonlinear::air(&claim.aircraft)),
+        }
     }
 
     /// What holds of both: whoever begins within the smaller pitch angle stays within the larger box, and ends as near.
@@ -35,15 +42,18 @@ impl Everywhere {
             inequalities: one.inequalities + other_checked.inequalities,
             pitch_within_rad: one.pitch_within_rad.min(other_checked.pitch_within_rad),
             reached: largest(one.reached, other_checked.reached),
+            gains: std::array::from_fn(|at| one.gains[at].hull(other_checked.gains[at])),
             remains: largest(one.remains, other_checked.remains),
         };
-        Self { reach, checked, air: self.air.filter(|it| other.air.as_ref() == Some(it)) }
+        let begun = if other.begun == Begun::Reset { Begun::Reset } else { self.begun };
+        Self { reach, begun, checked, air: self.air.filter(|it| other.air.as_ref() == Some(it)) }
     }
 
     fn sentence(&self) -> String {
         let air = self.air.as_deref().unwrap_or("of its own case");
         format!(
-            "PROVED: the equations of motion themselves, in every case about its own trim: a flight that begins {stays}, at samples and between them, meets no limit, {comes}; {conditions}",
+            "PROVED: the equations of motion themselves, in every case about its own trim: a flight that begins{begun}{stays}, at samples and between them, meets no limit, {comes}; {conditions}",
+            begun = nonlinear::begun_and(self.begun, &self.checked),
             stays = nonlinear::stays(&self.reach, &self.checked),
             comes = nonlinear::comes(&self.checked),
             conditions = nonlinear::conditions(air),
@@ -80,7 +90,7 @@ impl CertifiedCases {
         let Some(in_words) = self.near_trim_in_words(controller) else { return json!({}) };
         let found = self.near_trim_everywhere(controller);
         let mut answer = found.map_or_else(nonlinear::open_in_json, |it| {
-            nonlinear::proved_in_json(&it.reach, &it.checked)
+            nonlinear::proved_in_json(&it.reach, it.begun, &it.checked)
         });
         answer["in_words"] = in_words.into();
         json!({ "nonlinear": answer })

@@ -139,6 +139,7 @@ const PLANTS: Shape = Object(&[
 
 /// The aircraft, the box, and what is claimed in it.
 const NONLINEAR: Shape = Object(&[
+    optional("begins_with", Word(&["any-gains", "reset"])),
     key("aircraft", AIRCRAFT),
     key(
         "box",
