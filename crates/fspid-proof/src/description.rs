@@ -211,6 +211,11 @@ impl LoopDescription {
         !(self.controller.config().guard.limit_rad() >= LOST_RAD)
     }
 
+    /// True where the pitch rate moves the gains and nothing else.
+    pub(crate) fn only_supervisor_sees_rate(&self) -> bool {
+        self.controller.uses_rate() && !self.settings().uses_rate()
+    }
+
     /// The loop with every number enclosed.
     ///
     /// # Errors

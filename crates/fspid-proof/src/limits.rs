@@ -41,6 +41,10 @@ pub(crate) fn not_covered(description: &LoopDescription) -> Option<&'static str>
         _ if actuator.bias_rad() != 0.0 => {
             Some("with a bias of the actuator, rest is not in the middle of the limits")
         }
+        // The loop then has no row for what is seen of it.
+        _ if description.is_guarded() && description.only_supervisor_sees_rate() => {
+            Some("the sample guard on a pitch rate that the supervisor alone sees is not covered")
+        }
         _ => None,
     }
 }

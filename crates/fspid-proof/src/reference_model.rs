@@ -68,3 +68,40 @@ pub(crate) fn most_from_rest(equations: &TunerEquations<f64>) -> Option<f64> {
     }
     None
 }
+
+#[cfg(test)]
+mod tests {
+    use fspid_core::{Gains, SecondInput, TunerSettings};
+
+    use super::*;
+
+    #[test]
+    fn no_model_goes_further_than_is_said_and_from_rest_none_goes_back_over_where_it_began() {
+        for (bandwidth_rad_s, damping, dt_s) in
+            [(0.8, 0.05, 0.02), (2.4, 0.58, 0.01), (1.0, 1.5, 0.1), (6.0, 0.7, 0.08)]
+        {
+            let model = ReferenceModel { bandwidth_rad_s, damping };
+            let settings = TunerSettings {
+                second_input: SecondInput::ModelError(model),
+                ..TunerSettings::literal()
+            };
+            let nominal = Gains { kp: 1.0, ki: 1.0, kd: 1.0 };
+            let equations = TunerEquations::new(&settings, nominal, dt_s);
+            let later = most_later(&equations).expect("stable");
+            let from_rest = most_from_rest(&equations).expect("stable");
+            assert!(from_rest >= 1.0 && from_rest <= later && later < 3.0, "{from_rest} {later}");
+            let mut most = [0.0_f64; 2];
+            for rate in [0.0, -1.0, 1.0] {
+                let mut now = ModelState { pitch_rad: 1.0, rate_rad_s: rate * bandwidth_rad_s };
+                for _ in 0..5000 {
+                    let which = usize::from(rate.abs() > 0.5);
+                    most[which] = most[which].max(now.pitch_rad.abs());
+                    now = model.next(now, 0.0, dt_s);
+                }
+            }
+            assert!(most[0] <= from_rest && most[1] <= later, "{most:?} {from_rest} {later}");
+            // And it is hardly more than that.
+            assert!(from_rest < 1.02 * most[0] && later < 1.3 * most[1], "{most:?} {later}");
+        }
+    }
+}

@@ -27,21 +27,17 @@ impl<'a> GainsOver<'a> {
     /// Those of a tuner without memory; none where gains remember.
     pub(crate) fn of(tuner: &'a SelfTuner<f64>, system: Option<&'a System>) -> Option<Self> {
         let is_memoryless = tuner.settings().law == Law::Memoryless;
-        is_memoryless.then(|| Self::scaled(tuner, system, 1.0))
+        is_memoryless.then(|| Self::any(tuner, system))
     }
 
-    /// Those of any tuner with `output_factor` times its output factors.
-    pub(crate) fn scaled(
-        tuner: &'a SelfTuner<f64>,
-        system: Option<&'a System>,
-        output_factor: f64,
-    ) -> Self {
+    /// Those of any tuner.
+    pub(crate) fn any(tuner: &'a SelfTuner<f64>, system: Option<&'a System>) -> Self {
         let settings = tuner.settings();
         let scale = settings.input_scale;
         let sees = [scale.error_per_rad, scale.change_per_rad].map(|scale| scale.abs() > 0.0);
         Self {
             enclosure: Enclosure::new(tuner, system),
-            each: each(tuner, output_factor),
+            each: each(tuner, 1.0),
             range: tuner.supervisor().range(),
             clamps: tuner.supervisor().out_of_range() == OutOfRange::Clamp,
             sees,

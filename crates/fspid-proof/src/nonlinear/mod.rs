@@ -5,8 +5,8 @@
 //! the motion in that box at samples and between them, and no limit acts in it, every motion that begins in the
 //! ellipsoid stays in the box and comes to rest at the trim: of the equations of motion, not of their linear model.
 //!
-//! Where no form falls with every gain of a self-tuner, one may with those that it comes to from its nominal ones by what its
-//! supervisor sees in that ellipsoid ([`near`]): then the claim is of flights that begin with these ([`Begun`]).
+//! Of a self-tuner it is asked with the gains that it comes to from its nominal ones by what its supervisor sees in that box
+//! ([`near`]): the claim is of flights that begin with a reset ([`Begun`]).
 //!
 //! Said of: straight flight with the wings level, in still air, with the throttle of the trim, as long as the aircraft is no
 //! further above or below the trim than the numbers say: the air there has any of the densities between two, of which one
@@ -14,7 +14,6 @@
 //! another density has another trim. Further: the set-point at the trim, no load. The equations are meant as they are, not the steps in which
 //! a simulation integrates them.
 
-mod idle;
 mod near;
 mod search;
 #[cfg(test)]
@@ -28,12 +27,13 @@ use fspid_lti::Matrix;
 use fspid_numeric::Scalar;
 use fspid_numeric::scalar::Interval;
 use fspid_sim::Controller;
-use fspid_sim::loop_model::LoopModel;
+use fspid_sim::loop_model::{LoopModel, Sensing};
 
 use crate::certificate::{Certificate, Claim};
 use crate::check::{NotProved, inside_limit, reach};
 use crate::description::LoopDescription;
 use crate::gain_set::{GainSet, KnownSlopes};
+use crate::limits;
 use crate::recheck::{Recheck, RecheckError};
 use crate::scope::Range as Asked;
 
@@ -130,6 +130,14 @@ pub(crate) fn not_covered(description: &LoopDescription) -> Option<&'static str>
     if description.actuator.bias_rad() != 0.0 {
         return Some("the actuator has a bias, so that rest is not at the trim");
     }
+    if description.only_supervisor_sees_rate() && description.rate != Sensing::DIRECT {
+        return Some(
+            "the supervisor alone sees the pitch rate, by a sensor with a delay or a scale error",
+        );
+    }
+    if let Some(what) = limits::not_covered(description) {
+        return Some(what);
+    }
     // One row and column each of θ, q, V, α.
     (description.denominator.len() != 5)
         .then_some("its linear model from elevator to pitch is not of order 4")
@@ -162,6 +170,10 @@ impl Nonlinear {
     ) -> Result<CheckedNonlinear, NonlinearError> {
         let description = &certificate.description;
         if let Some(what) = not_covered(description) {
+            return Err(NonlinearError::Malformed { what });
+        }
+        if certificate.output_factor.to_bits() != 1.0_f64.to_bits() {
+            let what = "the claim is of a loop at another output scale";
             return Err(NonlinearError::Malformed { what });
         }
         if !self.reach.is_allowed() {
@@ -221,7 +233,7 @@ impl Nonlinear {
         let near = Near::of(fspid).ok_or(NonlinearError::Malformed { what })?;
         let most = near.within(model, &self.reach, (&self.form, self.level))?;
         let what = "nothing bounds the gains by what the supervisor sees";
-        let gains = near.gains(most, certificate.output_factor);
+        let gains = near.gains(most);
         gains.ok_or(NonlinearError::Malformed { what })
     }
 

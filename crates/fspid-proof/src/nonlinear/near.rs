@@ -48,7 +48,7 @@ impl<'a> Near<'a> {
     /// How far error and what is seen beside it come in a box, but for where a reference model is: pitch and pitch rate do, and
     /// so does the pitch angle within a sample.
     ///
-    /// $$ |e_k - e_{k-1}| = \Big| \int_{(k-1) T}^{k T} q \, dt \Big| \le T r_q $$
+    /// $$ |e_k - e_{k-1}| = \Big| \int_{(k-1) T}^{k T} q \ dt \Big| \le T r_q $$
     pub(super) fn in_box(&self, reach: &Reach) -> [f64; 2] {
         let [pitch_rad, rate_rad_s, ..] = reach.motion;
         let dt_s = self.fspid.config().dt_s;
@@ -107,7 +107,7 @@ impl<'a> Near<'a> {
     }
 
     /// All gains from the nominal ones on while the rows keep to these sizes; none where nothing bounds them.
-    pub(super) fn gains(&self, [error, second]: [f64; 2], output_factor: f64) -> Option<GainSet> {
+    pub(super) fn gains(&self, [error, second]: [f64; 2]) -> Option<GainSet> {
         let tuner = self.fspid.tuner();
         let scale = tuner.settings().input_scale;
         let seen = |row: f64, model: f64, per_rad: f64| {
@@ -117,7 +117,7 @@ impl<'a> Near<'a> {
         let seen =
             [seen(error, 0.0, scale.error_per_rad), seen(second, self.model, scale.change_per_rad)];
         let system = system_of(self.fspid);
-        let mut over = GainsOver::scaled(tuner, system.as_ref(), output_factor);
+        let mut over = GainsOver::any(tuner, system.as_ref());
         let law = tuner.settings().law;
         let [rest, gains] =
             [over.reached_from_nominal(law, [0.0; 2])?, over.reached_from_nominal(law, seen)?];

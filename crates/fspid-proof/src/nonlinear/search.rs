@@ -13,7 +13,6 @@ use fspid_numeric::scalar::Interval;
 use fspid_sim::Controller;
 use fspid_sim::loop_model::{LoopModel, SampledPlant};
 
-use super::idle::Idle;
 use super::near::Near;
 use super::transition::{DENSITY, Reach, Transition};
 use super::{Begun, CheckedNonlinear, Nonlinear, NonlinearError, not_covered, of_loop};
@@ -153,7 +152,7 @@ impl Search<'_> {
     /// The gains that may fly in a box.
     fn set_in(&self, reach: &Reach) -> Option<Cow<'_, GainSet>> {
         let Some(near) = &self.near else { return Some(Cow::Borrowed(self.set)) };
-        near.gains(near.in_box(reach), 1.0).map(Cow::Owned)
+        near.gains(near.in_box(reach)).map(Cow::Owned)
     }
 
     fn run(&self) -> Result<(Nonlinear, CheckedNonlinear), NotNonlinear> {
@@ -326,20 +325,12 @@ impl Search<'_> {
         rows.extend(self.sides((&transition, loops.first()?), &set, reach));
         rows.extend(self.seen(loops.first()?, &reach));
         let directions = directions(&direction, (&transition, &reach, rate));
-        let idle = Idle::among(&matrices, &rows);
-        let problem = WidestProblem {
-            matrices: &idle.without(&matrices)?,
-            rows: &idle.cut(&rows),
-            directions: &idle.cut(&directions),
-            rate,
-        };
+        let problem =
+            WidestProblem { matrices: &matrices, rows: &rows, directions: &directions, rate };
         let effort = solve::Effort { stops: self.effort.stops, ..solve::Effort::default() };
         let from = |form: &Matrix| widest(&problem, form, &effort);
-        let known = known.and_then(|form| idle.less(form));
-        let form = known
-            .and_then(|form| from(&form))
-            .or_else(|| from(&self.prover.common_at(problem.matrices, rate)?))?;
-        let form = idle.more(form, &matrices, rate)?;
+        let form =
+            known.and_then(from).or_else(|| from(&self.prover.common_at(&matrices, rate)?))?;
         let size: f64 = (0..direction.len())
             .flat_map(|i| (0..direction.len()).map(move |j| (i, j)))
             .map(|(i, j)| direction[i] * form.get(i, j).unwrap_or(f64::NAN) * direction[j])

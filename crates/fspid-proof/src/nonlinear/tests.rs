@@ -461,3 +461,34 @@ fn self_tuners_begin_reset_at_the_edge_of_the_ellipsoid_stay_in_the_box_and_come
         }
     }
 }
+
+/// A pitch rate that the supervisor alone sees has no row in the loop: the guard on it was not asked, and a sensor that shows
+/// five times the rate would have been taken for one that shows it.
+#[test]
+fn what_the_supervisor_alone_sees_of_the_pitch_rate_is_refused_where_the_loop_does_not_hold_it() {
+    let seeing = |config: PidConfig<f64>| {
+        let fspid = self_tuner((Law::Memoryless, 0.05), SecondInput::Rate, numbers());
+        let fspid = Fspid::new(*fspid.tuner(), config).expect("allowed");
+        description_with(Controller::SelfTuning(fspid))
+    };
+    let proved = |description: &LoopDescription| {
+        let outcome = certify(description, &Asked::rest(), &Effort::default()).expect("provable");
+        match outcome.verdict {
+            Verdict::Proved(certificate, _) => certificate,
+            other => panic!("{other:?}"),
+        }
+    };
+    let plain = seeing(config());
+    assert_eq!(not_covered(&plain), None);
+    assert!(proved(&plain).level.is_none());
+    let scaled = LoopDescription { rate: Sensing { scale: 5.0, ..Sensing::DIRECT }, ..plain };
+    assert!(not_covered(&scaled).expect("refused").contains("scale error"));
+    let guard = fspid_core::Guard::new(0.1).expect("allowed");
+    let guarded = seeing(PidConfig { guard, ..config() });
+    assert!(not_covered(&guarded).expect("refused").contains("sample guard"));
+    let certificate = proved(&guarded);
+    assert!(certificate.level.is_none(), "{certificate:?}");
+    let level = Some(1e-6);
+    let claimed = Certificate { level, ..certificate }.check().expect_err("refused").to_string();
+    assert!(claimed.contains("sample guard"), "{claimed}");
+}

@@ -290,7 +290,7 @@ pub const COVERAGE: &[KeyCoverage] = &[
     row(
         "controller.sample_guard_deg",
         Bounded,
-        "below 10^6 deg a limit as the others; above, a flight is lost before",
+        "below 10^6 deg a limit as the others, but on a pitch rate that the supervisor alone sees; above, a flight is lost before",
     ),
     row(
         "controller.law",

@@ -233,14 +233,24 @@ fn begun(begun: Begun, checked: &CheckedNonlinear) -> String {
         return String::new();
     }
     let range = |(name, gain): (&str, &Interval)| {
-        format!("{name} {} to {}", short(gain.lower()), short(gain.upper()))
+        let [least, most] = [digits(gain.lower(), libm::floor), digits(gain.upper(), libm::ceil)];
+        format!("{name} {least} to {most}")
     };
     let gains: Vec<String> =
         ["kp", "ki", "kd"].into_iter().zip(&checked.gains).map(range).collect();
-    format!(
-        " with the controller just reset (its nominal gains, no change of the error yet, a reference model at the measured pitch), whose gains then stay within {}",
-        gains.join(", ")
-    )
+    format!(" with the controller just reset, whose gains then lie within {}", gains.join(", "))
+}
+
+/// Four digits of a number, rounded to where more is said to be possible than is.
+fn digits(value: f64, rounded: fn(f64) -> f64) -> String {
+    if value.abs() <= f64::MIN_POSITIVE {
+        return "0".to_owned();
+    }
+    let last = (libm::floor(libm::log10(value.abs())) as i32 - 3).min(0);
+    let tens = libm::pow(10.0, f64::from(-last));
+    let shown = format!("{:.*}", usize::try_from(-last).unwrap_or(0), rounded(value * tens) / tens);
+    let trimmed = if last < 0 { shown.trim_end_matches('0').trim_end_matches('.') } else { &shown };
+    trimmed.to_owned()
 }
 
 /// The same before what else it begins with.
