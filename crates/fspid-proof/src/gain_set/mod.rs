@@ -112,16 +112,7 @@ impl GainSet {
     #[must_use]
     pub fn fixed(gains: Gains<f64>) -> Self {
         let point = array(gains).map(Interval::point);
-        let cell =
-            GainCell { error: EVERYWHERE, change: EVERYWHERE, gains: point, change_gain: 0.0 };
-        Self {
-            nominal: gains,
-            rest: point,
-            cells: vec![cell],
-            rate_per_s: Some([0.0; 3]),
-            reached: None,
-            remembered: None,
-        }
+        Self { rate_per_s: Some([0.0; 3]), ..Self::boxed(gains, point, point) }
     }
 
     /// The gains of a box, whatever the inputs.

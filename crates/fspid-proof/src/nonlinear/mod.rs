@@ -189,22 +189,23 @@ impl Nonlinear {
         self.is_known_in(&trim.ok_or(NonlinearError::Malformed { what })?)?;
         let transition = Transition::of(description, &self.aircraft, &self.reach)?;
         let alone = self.alone(certificate);
-        let (known, mut inequalities, mut pitch) = (KnownSlopes::default(), 0, f64::INFINITY);
+        let (known, settings) = (KnownSlopes::default(), description.settings());
         let corners = transition.corners.len();
-        // What a supervisor sees does not depend on the plant.
-        let mut flown = set.clone();
-        for plant in transition.corners {
-            let model = LoopModel::new(plant, description.settings());
-            if inequalities == 0 {
-                flown = self.flown(certificate, set, &model)?;
-                let within = (&transition.within, transition.drifts.as_slice());
-                inequalities += self.keeps_to_the_box(&model, &flown, within)?;
-            }
+        let plants = transition.corners.into_iter();
+        let mut loops = plants.map(|plant| LoopModel::new(plant, settings.clone())).peekable();
+        let what = "no motion is enclosed";
+        // What a supervisor sees, and what arrives at the servo, does not depend on the plant.
+        let first = loops.peek().ok_or(NonlinearError::Malformed { what })?;
+        let flown = self.flown(certificate, set, first)?;
+        let within = (&transition.within, transition.drifts.as_slice());
+        let mut inequalities = self.keeps_to_the_box(first, &flown, within)?;
+        let mut pitch_within_rad = f64::INFINITY;
+        for model in loops {
             let found = Recheck::with(&alone, model, flown.clone(), &known)?.until(stops).run()?;
             inequalities += found.inequalities;
-            pitch = pitch.min(found.pitch_within_rad.unwrap_or(0.0));
+            pitch_within_rad = pitch_within_rad.min(found.pitch_within_rad.unwrap_or(0.0));
         }
-        if !(pitch > 0.0) {
+        if !(pitch_within_rad > 0.0) {
             let what = "no pitch angle at all lies in the ellipsoid";
             return Err(NonlinearError::Malformed { what });
         }
@@ -214,7 +215,6 @@ impl Nonlinear {
             None => [0.0; MOTION],
         };
         let gains = flown.bounds();
-        let pitch_within_rad = pitch;
         Ok(CheckedNonlinear { corners, inequalities, pitch_within_rad, reached, gains, remains })
     }
 

@@ -205,11 +205,32 @@ fn samples_flown_by_the_equations_lie_where_the_means_of_what_bends_say() {
 }
 
 fn linear() -> Certificate {
-    let outcome = certify(&description(), &Asked::rest(), &Effort::default()).expect("provable");
+    linear_of(&description())
+}
+
+fn linear_of(description: &LoopDescription) -> Certificate {
+    let outcome = certify(description, &Asked::rest(), &Effort::default()).expect("provable");
     match outcome.verdict {
         Verdict::Proved(certificate, _) => certificate,
         other => panic!("{other:?}"),
     }
+}
+
+/// Why a certificate with another claim than its own is not believed.
+fn refused(
+    (certificate, claim): (&Certificate, &Nonlinear),
+    change: impl Fn(&mut Nonlinear),
+) -> String {
+    let mut other = claim.clone();
+    change(&mut other);
+    let whole = Certificate { nonlinear: Some(other), ..certificate.clone() };
+    whole.check().expect_err("changed").to_string()
+}
+
+/// $z^T P z$.
+fn value(form: &Matrix, z: &[f64]) -> f64 {
+    let places = (0..z.len()).flat_map(|i| (0..z.len()).map(move |j| (i, j)));
+    places.map(|(i, j)| z[i] * form.get(i, j).expect("fits") * z[j]).sum()
 }
 
 /// Loops of the controller around the flown plant: rows of the loop's matrix but for the plant's own.
@@ -246,10 +267,7 @@ fn flights_that_begin_at_the_edge_of_the_ellipsoid_stay_in_the_box_and_come_to_r
 
     // Directions that fill the sphere, scaled to the edge.
     let size = claim.form.rows();
-    let value = |z: &[f64]| -> f64 {
-        let terms = (0..size).flat_map(|i| (0..size).map(move |j| (i, j)));
-        terms.map(|(i, j)| z[i] * claim.form.get(i, j).expect("fits") * z[j]).sum()
-    };
+    let value = |z: &[f64]| value(&claim.form, z);
     let spread: Vec<f64> = (0..size)
         .map(|i| {
             let mut unit = vec![[0.0]; size];
@@ -276,11 +294,7 @@ fn flights_that_begin_at_the_edge_of_the_ellipsoid_stay_in_the_box_and_come_to_r
         assert!(value(&end) < 0.3 * claim.level, "flight {number}: {}", value(&end));
     }
 
-    let refused = |change: &dyn Fn(&mut Nonlinear)| {
-        let mut other = (*claim).clone();
-        change(&mut other);
-        whole(other).check().expect_err("changed").to_string()
-    };
+    let refused = |change: &dyn Fn(&mut Nonlinear)| refused((&linear, &claim), change);
     assert!(refused(&|it| it.level *= 1.3).contains("limit"));
     assert!(refused(&|it| it.reach = it.reach.scaled(3.0)).contains("nonlinear aircraft"));
     assert!(refused(&|it| it.aircraft.elevator_rad.max = -0.1).contains("its travel"));
@@ -400,59 +414,22 @@ fn self_tuners_begin_reset_at_the_edge_of_the_ellipsoid_stay_in_the_box_and_come
     }
     for (number, (fspid, least_deg)) in drawn.into_iter().enumerate() {
         let description = description_with(Controller::SelfTuning(fspid));
-        let outcome = certify(&description, &Asked::rest(), &Effort::default()).expect("provable");
-        let Verdict::Proved(linear, _) = outcome.verdict else { panic!("{number}: not proved") };
+        let linear = linear_of(&description);
         let verdict = prove_nonlinear(&linear, &navion(), &Effort::default()).expect("provable");
         let NonlinearVerdict::Proved(claim, checked) = verdict else { panic!("{verdict:?}") };
         assert_eq!(claim.begun, Begun::Reset);
         assert!(checked.pitch_within_rad > least_deg.to_radians(), "{number}: {checked:?}");
-        let whole = |claim: Nonlinear| Certificate { nonlinear: Some(claim), ..linear.clone() };
-        let again = whole((*claim).clone()).check().expect("it holds").nonlinear;
-        assert_eq!(again, Some(checked));
+        let whole = Certificate { nonlinear: Some((*claim).clone()), ..linear.clone() };
+        assert_eq!(whole.check().expect("it holds").nonlinear, Some(checked));
 
         let loops = description.enclosed().expect("a model").midpoint();
-        let value = |motion: [f64; MOTION]| -> f64 {
-            let mut z = loops.pitch_off(motion[0]);
-            z[..MOTION].copy_from_slice(&motion);
-            let size = z.len();
-            let terms = (0..size).flat_map(|i| (0..size).map(move |j| (i, j)));
-            terms.map(|(i, j)| z[i] * claim.form.get(i, j).expect("fits") * z[j]).sum()
-        };
-        let mut widest =
-            [Interval::point(GAINS.kp), Interval::point(GAINS.ki), Interval::point(GAINS.kd)];
-        for flight in 0..12_u32 {
-            let mut motion: [f64; MOTION] = core::array::from_fn(|i| {
-                checked.reached[i] * draw(17 * flight + 3 * u32::try_from(i).expect("few"))
-            });
-            if flight < 2 {
-                motion = [if flight == 0 { 1.0 } else { -1.0 }, 0.0, 0.0, 0.0, 0.0];
-            }
-            let scale = (0.999 * claim.level / value(motion)).sqrt();
-            let motion = motion.map(|it| scale * it);
-            let end = fly_reset((&fspid, &Flown::new()), motion, 3000, |at, gains| {
-                for (at, reach) in at.iter().zip(claim.reach.motion) {
-                    assert!(at.abs() <= reach, "{number}, {flight}: {at} beyond {reach}");
-                }
-                for ((gain, bounds), widest) in
-                    [gains.kp, gains.ki, gains.kd].into_iter().zip(checked.gains).zip(&mut widest)
-                {
-                    assert!(bounds.contains(gain), "{number}, {flight}: {gain} not in {bounds:?}");
-                    *widest = widest.hull(Interval::point(gain));
-                }
-            });
-            let left = value(end) / claim.level;
-            assert!(left < 0.3, "{number}, {flight}: {left}");
-        }
-        // The gains have gone some part of what is said that they may.
-        for (flown, bounds) in widest.iter().zip(checked.gains) {
+        let gains = flown_from_the_edge((&fspid, &loops), &claim, &checked);
+        // They have gone some part of what is said that they may.
+        for (flown, bounds) in gains.iter().zip(checked.gains) {
             assert!(flown.width() > 0.05 * bounds.width(), "{number}: {flown:?} of {bounds:?}");
         }
 
-        let refused = |change: &dyn Fn(&mut Nonlinear)| {
-            let mut other = (*claim).clone();
-            change(&mut other);
-            whole(other).check().expect_err("changed").to_string()
-        };
+        let refused = |change: &dyn Fn(&mut Nonlinear)| refused((&linear, &claim), change);
         assert!(refused(&|it| it.level *= 1.3).contains("limit"));
         assert!(refused(&|it| it.reach = it.reach.scaled(3.0)).contains("nonlinear aircraft"));
         // With any gains of the widest set the motion leaves the ellipsoid.
@@ -460,6 +437,45 @@ fn self_tuners_begin_reset_at_the_edge_of_the_ellipsoid_stay_in_the_box_and_come
             refused(&|it| it.begun = Begun::Anyhow);
         }
     }
+}
+
+/// Flies from the edge of the ellipsoid in directions that fill it: none leaves the box, no gain its bounds, and all come
+/// nearer to rest. Which gains there were.
+fn flown_from_the_edge(
+    (fspid, loops): (&Fspid<f64>, &LoopModel<f64>),
+    claim: &Nonlinear,
+    checked: &CheckedNonlinear,
+) -> [Interval; 3] {
+    let value = |motion: [f64; MOTION]| {
+        let mut z = loops.pitch_off(motion[0]);
+        z[..MOTION].copy_from_slice(&motion);
+        value(&claim.form, &z)
+    };
+    let mut flown = [GAINS.kp, GAINS.ki, GAINS.kd].map(Interval::point);
+    for flight in 0..12_u32 {
+        let motion: [f64; MOTION] = match flight {
+            0 => [1.0, 0.0, 0.0, 0.0, 0.0],
+            1 => [-1.0, 0.0, 0.0, 0.0, 0.0],
+            _ => core::array::from_fn(|i| {
+                checked.reached[i] * draw(17 * flight + 3 * u32::try_from(i).expect("few"))
+            }),
+        };
+        let scale = (0.999 * claim.level / value(motion)).sqrt();
+        let motion = motion.map(|it| scale * it);
+        let end = fly_reset((fspid, &Flown::new()), motion, 3000, |at, gains| {
+            for (at, reach) in at.iter().zip(claim.reach.motion) {
+                assert!(at.abs() <= reach, "flight {flight}: {at} beyond {reach}");
+            }
+            let each = [gains.kp, gains.ki, gains.kd].into_iter().zip(checked.gains);
+            for ((gain, bounds), flown) in each.zip(&mut flown) {
+                assert!(bounds.contains(gain), "flight {flight}: {gain} not in {bounds:?}");
+                *flown = flown.hull(Interval::point(gain));
+            }
+        });
+        // 30 s.
+        assert!(value(end) < 0.3 * claim.level, "flight {flight}: {}", value(end));
+    }
+    flown
 }
 
 /// A pitch rate that the supervisor alone sees has no row in the loop: the guard on it was not asked, and a sensor that shows
@@ -471,22 +487,15 @@ fn what_the_supervisor_alone_sees_of_the_pitch_rate_is_refused_where_the_loop_do
         let fspid = Fspid::new(*fspid.tuner(), config).expect("allowed");
         description_with(Controller::SelfTuning(fspid))
     };
-    let proved = |description: &LoopDescription| {
-        let outcome = certify(description, &Asked::rest(), &Effort::default()).expect("provable");
-        match outcome.verdict {
-            Verdict::Proved(certificate, _) => certificate,
-            other => panic!("{other:?}"),
-        }
-    };
     let plain = seeing(config());
     assert_eq!(not_covered(&plain), None);
-    assert!(proved(&plain).level.is_none());
+    assert!(linear_of(&plain).level.is_none());
     let scaled = LoopDescription { rate: Sensing { scale: 5.0, ..Sensing::DIRECT }, ..plain };
     assert!(not_covered(&scaled).expect("refused").contains("scale error"));
     let guard = fspid_core::Guard::new(0.1).expect("allowed");
     let guarded = seeing(PidConfig { guard, ..config() });
     assert!(not_covered(&guarded).expect("refused").contains("sample guard"));
-    let certificate = proved(&guarded);
+    let certificate = linear_of(&guarded);
     assert!(certificate.level.is_none(), "{certificate:?}");
     let level = Some(1e-6);
     let claimed = Certificate { level, ..certificate }.check().expect_err("refused").to_string();

@@ -241,6 +241,14 @@ fn begun(begun: Begun, checked: &CheckedNonlinear) -> String {
     format!(" with the controller just reset, whose gains then lie within {}", gains.join(", "))
 }
 
+/// The same before what else it begins with.
+pub(super) fn begun_and(reset_or_not: Begun, checked: &CheckedNonlinear) -> String {
+    match begun(reset_or_not, checked) {
+        nothing if nothing.is_empty() => " ".to_owned(),
+        something => format!("{something}, "),
+    }
+}
+
 /// Four digits of a number, rounded to where more is said to be possible than is.
 fn digits(value: f64, rounded: fn(f64) -> f64) -> String {
     if value.abs() <= f64::MIN_POSITIVE {
@@ -251,14 +259,6 @@ fn digits(value: f64, rounded: fn(f64) -> f64) -> String {
     let shown = format!("{:.*}", usize::try_from(-last).unwrap_or(0), rounded(value * tens) / tens);
     let trimmed = if last < 0 { shown.trim_end_matches('0').trim_end_matches('.') } else { &shown };
     trimmed.to_owned()
-}
-
-/// The same before what else it begins with.
-pub(super) fn begun_and(begun_as: Begun, checked: &CheckedNonlinear) -> String {
-    match begun(begun_as, checked) {
-        nothing if nothing.is_empty() => " ".to_owned(),
-        something => format!("{something}, "),
-    }
 }
 
 /// How far a flight may begin from the trim, and which box it then does not leave.
@@ -381,4 +381,20 @@ pub(super) fn in_json(answer: &NonlinearAnswer) -> Value {
     let mut found = found.unwrap_or_else(open_in_json);
     found["in_words"] = answer.text().into();
     found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::digits;
+
+    #[test]
+    fn bounds_of_gains_are_told_in_four_digits_and_never_narrower_than_they_are() {
+        let told = |value| [digits(value, libm::floor), digits(value, libm::ceil)];
+        assert_eq!(told(0.825_752_94), ["0.8257", "0.8258"]);
+        assert_eq!(told(2.228_289e-4), ["0.0002228", "0.0002229"]);
+        assert_eq!(told(-0.165_01), ["-0.1651", "-0.165"]);
+        assert_eq!(told(12_345.6), ["12345", "12346"]);
+        assert_eq!(told(0.3), ["0.3", "0.3"]);
+        assert_eq!(told(0.0), ["0", "0"]);
+    }
 }
