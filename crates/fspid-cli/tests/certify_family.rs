@@ -206,7 +206,7 @@ fn sensors_of_any_scale_between_limits_are_proved_with_plants_and_compared() {
 
 /// Beside a plant that stands still, by the text, for programs and of the file alone.
 #[test]
-fn scales_that_may_change_in_flight_are_told_and_numbers_of_plants_never() {
+fn scales_that_may_change_in_flight_are_told() {
     let (before, after) = SCENARIO.split_at(SCENARIO.find("[[dispersion]]").expect("some"));
     let sensors = SENSORS.strip_suffix("[[dispersion]]\nname = \"servo\"\n").expect("the end");
     let sensed = format!("{before}{sensors}").replace("kd = 0.5", "kd = 0.5\nrate_gain = 0.3");
@@ -225,6 +225,38 @@ fn scales_that_may_change_in_flight_are_told_and_numbers_of_plants_never() {
     };
     assert!(told(&sensed));
     assert!(!told(&format!("{before}{after}")));
+}
+
+/// By the text, for programs and of the file alone; and not where a coefficient that moves would mean nothing.
+#[test]
+fn the_time_in_which_numbers_may_cross_their_ranges_in_flight_is_told() {
+    let (start, rest) = SCENARIO.split_at(SCENARIO.find("[[dispersion]]").expect("some"));
+    let (effect, rest) =
+        rest.split_at(rest.find("[[dispersion]]\nname = \"damping\"").expect("one"));
+    let (_, servo) = rest.split_at(rest.find("[[dispersion]]\nname = \"servo\"").expect("one"));
+    let told = |scenario: &str| {
+        let folder = folder(scenario);
+        let words = ["certify", "drawn.toml", "--family", "--format", "json", "--out", "proofs"];
+        let output = fspid(&words, folder.path());
+        assert_eq!(code(&output), 0, "{}{}", text(&output.stdout), text(&output.stderr));
+        let family = json(&output)["controllers"][0]["family"].clone();
+        let file = "proofs/pid.certificate.json";
+        let against = ["certify", "--check", file, "--against", "drawn.toml"];
+        let check = fspid(&against, folder.path());
+        assert_eq!(code(&check), 0, "{}", text(&check.stdout));
+        let in_words = family["in_words"].as_str().expect("words").to_owned();
+        let said = |text: &str| text.contains("the numbers may move in flight");
+        assert_eq!(said(&in_words), said(&text(&check.stdout)), "{}", text(&check.stdout));
+        (family["numbers_may_cross_in_s"].as_f64(), in_words)
+    };
+    let (time_s, in_words) = told(&format!("{start}{effect}{servo}"));
+    let time_s = time_s.expect("a time");
+    assert!((1.0..=200.0).contains(&time_s), "{time_s}");
+    assert!(
+        in_words.contains(&format!("by no more than its whole range in {time_s} s")),
+        "{in_words}"
+    );
+    assert_eq!(told(SCENARIO).0, None);
 }
 
 #[test]

@@ -37,8 +37,8 @@ pub use disturbances::{
     AirPart, DisturbanceBound, Disturbed, Extent, MOST_BOUNDS, Quantity, Way, ways_of,
 };
 pub use family::{
-    CheckedFamily, Family, FamilyError, FamilyVerdict, MOST_PARAMETERS, MOST_PARTS, Parameter,
-    Part as FamilyPart, ScaledSensor, Uncertain, numbers, prove_family,
+    CheckedFamily, Family, FamilyError, FamilyVerdict, MOST_PARAMETERS, MOST_PARTS, MOST_PATCHES,
+    Pace, Parameter, Part as FamilyPart, Patch, ScaledSensor, Uncertain, numbers, prove_family,
 };
 pub use limits::{AtLimit, pitch_within};
 pub use nonlinear::{

@@ -14,6 +14,7 @@ mod family;
 mod flown_proofs;
 mod gain_set;
 mod gain_set_common;
+mod moving_numbers;
 mod range;
 mod solve_growth;
 mod solve_loops;

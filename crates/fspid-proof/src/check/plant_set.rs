@@ -120,12 +120,28 @@ impl PlantSet {
     /// # Errors
     /// As [`ContinuousPlant::sampled`].
     pub fn sampled(&self, dt_s: f64) -> Result<Vec<SampledPlant<Interval>>, NotProved> {
+        self.sampled_within(dt_s, &[])
+    }
+
+    /// The same where entries may be off by these magnitudes, row by row over states and command; what is not told is not
+    /// off. See [`off_by_moving`](Self::off_by_moving).
+    ///
+    /// # Errors
+    /// As [`ContinuousPlant::sampled`].
+    pub fn sampled_within(
+        &self,
+        dt_s: f64,
+        off: &[f64],
+    ) -> Result<Vec<SampledPlant<Interval>>, NotProved> {
         let dt_s = printed(positive("sample period, s", dt_s)?);
         let states = self.middle.len();
         let (a, b) = split(&self.middle);
         let (phi, gamma) =
             held(&IntervalMatrix::from_rows(&a)?, &IntervalMatrix::from_rows(&b)?, dt_s)?;
         let mut around = side_by_side(&phi, &gamma);
+        for (entry, &off) in around.iter_mut().zip(off) {
+            *entry = *entry + Interval::between(-off, off);
+        }
         let mut linear = Vec::new();
         for (slopes, &reach) in self.slopes.iter().zip(&self.reach) {
             if reach <= 0.0 {
@@ -156,6 +172,42 @@ impl PlantSet {
             SampledPlant { states, rows, rate: self.pitch_rate.clone() }
         };
         Ok((0..1_usize << linear.len()).map(corner).collect())
+    }
+
+    /// What entries of sampled plants are off at most where their numbers move within the sample, by no more than `most` each
+    /// from where they are at its begin, inside boxes that together hold all that is between.
+    ///
+    /// With $H(s)$ of the numbers at a time in the sample, X its transition matrix and $H_0 = H(0)$
+    ///
+    /// $$ X(t) - e^{H_0 t} = \int_0^t e^{H_0 (t - s)} (H(s) - H_0) X(s) \ ds, \qquad
+    ///    |X(t) - e^{H_0 t}| \le e^{|H| t} \Big( t \sum_i |\partial_i H| \ d_i \Big) e^{|H| t} $$
+    ///
+    /// entry by entry, with magnitudes over all boxes and $d_i$ the most that a number is off: neither transition has an entry
+    /// larger than that of $e^{|H| t}$, as the terms of their series say.
+    ///
+    /// # Errors
+    /// As [`ContinuousPlant::sampled`].
+    pub fn off_by_moving(sets: &[&Self], most: &[f64], dt_s: f64) -> Result<Vec<f64>, NotProved> {
+        let dt_s = printed(positive("sample period, s", dt_s)?);
+        let states = sets.first().map_or(0, |set| set.all.len());
+        let size = states + 1;
+        let largest = |of: &dyn Fn(&Self) -> Interval| {
+            Interval::point(sets.iter().map(|set| of(set).magnitude()).fold(0.0, f64::max))
+        };
+        let mut sizes = vec![vec![Interval::ZERO; size]; size];
+        let mut moved = sizes.clone();
+        for (row, column) in (0..states).flat_map(|row| (0..size).map(move |column| (row, column)))
+        {
+            sizes[row][column] = dt_s * largest(&|set| set.all[row][column]);
+            for (number, &most) in most.iter().enumerate() {
+                let slope = largest(&|set| set.slopes[number][row][column]);
+                moved[row][column] = moved[row][column] + dt_s * slope * Interval::point(most);
+            }
+        }
+        let transition = exponential(&IntervalMatrix::from_rows(&sizes)?)?;
+        let moved = IntervalMatrix::from_rows(&moved)?;
+        let off = transition.product(&moved)?.product(&transition)?;
+        Ok(off.entries().take(states * size).map(Interval::magnitude).collect())
     }
 
     /// Slopes of the sampled plant by one parameter, enclosed over the box.

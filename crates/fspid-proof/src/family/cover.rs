@@ -8,10 +8,9 @@ type Ends = [[f64; 2]];
 /// The whole is cut along a face of a part that goes through its inside, and both halves are asked in turn; each cut takes
 /// a face away, so that it ends. Parts that were made by cutting ask for as many cuts as they were made by.
 pub(super) fn covers(whole: &Ends, parts: &[&Ends]) -> bool {
-    let inside = |part: &&&Ends| part.iter().zip(whole).all(meets);
-    let near: Vec<&Ends> = parts.iter().filter(inside).copied().collect();
+    let near: Vec<&Ends> = parts.iter().filter(|part| has_inside(part, whole)).copied().collect();
     let Some(first) = near.first() else { return false };
-    if near.iter().any(|part| part.iter().zip(whole).all(|(part, whole)| holds(part, whole))) {
+    if near.iter().any(|part| holds_all(part, whole)) {
         return true;
     }
     let Some((side, at)) = face_within(first, whole) else { return false };
@@ -20,6 +19,21 @@ pub(super) fn covers(whole: &Ends, parts: &[&Ends]) -> bool {
         ends[side] = half;
         covers(&ends, &near)
     })
+}
+
+/// True if a box is within a part.
+pub(super) fn holds_all(part: &Ends, whole: &Ends) -> bool {
+    part.iter().zip(whole).all(|(part, whole)| holds(part, whole))
+}
+
+/// True if more than faces belong to both.
+pub(super) fn has_inside(part: &Ends, whole: &Ends) -> bool {
+    part.iter().zip(whole).all(meets)
+}
+
+/// True if two boxes have a point in common.
+pub(super) fn touches(one: &Ends, other: &Ends) -> bool {
+    one.iter().zip(other).all(|(one, other)| one[0] <= other[1] && other[0] <= one[1])
 }
 
 fn holds(part: &[f64; 2], whole: &[f64; 2]) -> bool {
@@ -33,7 +47,7 @@ fn meets((part, whole): (&[f64; 2], &[f64; 2])) -> bool {
 }
 
 /// A face of a part that cuts the whole in two.
-fn face_within(part: &Ends, whole: &Ends) -> Option<(usize, f64)> {
+pub(super) fn face_within(part: &Ends, whole: &Ends) -> Option<(usize, f64)> {
     let sides = part.iter().zip(whole).enumerate();
     let mut faces = sides.flat_map(|(side, (part, whole))| part.map(|at| (side, at, *whole)));
     faces.find(|(_, at, whole)| whole[0] < *at && *at < whole[1]).map(|(side, at, _)| (side, at))

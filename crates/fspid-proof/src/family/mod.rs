@@ -7,12 +7,15 @@
 //! part's form is its proof.
 //!
 //! Claimed is the return to rest around the trim of each member, with the set-point there, without a load and without
-//! limits; where one form does for all scales of the sensors, of scales that change in flight too. The claim for the loop
-//! as it is may say more. What sensors that resolve in steps leave is bounded sample by
+//! limits; where one form does for all scales of the sensors, of scales that change in flight too, and where parts overlap
+//! and their forms go over into each other, of numbers that move at a pace. The claim for the loop as it is may say more. What sensors that resolve in steps leave is bounded sample by
 //! sample for one loop alone, so that a family of such loops is refused. That the enclosures are those of what a user calls a mass is no part of a certificate: who has the scenario
 //! encloses them anew and compares.
 
 mod cover;
+mod moves;
+mod pace;
+mod patches;
 mod scales;
 mod search;
 
@@ -27,6 +30,8 @@ use crate::gain_set::{GainSet, KnownSlopes};
 use crate::recheck::{Kept, Recheck, RecheckError, Rechecked};
 use crate::scope::Range;
 
+use moves::Off;
+pub use pace::{MOST_PATCHES, Pace, Patch};
 pub use scales::ScaledSensor;
 pub use search::{FamilyVerdict, Uncertain, prove_family};
 
@@ -90,6 +95,8 @@ pub struct Family {
     pub parameters: Vec<Parameter>,
     /// Parts that cover the box.
     pub parts: Vec<Part>,
+    /// How fast its numbers may move in flight, where that is claimed.
+    pub pace: Option<Pace>,
 }
 
 /// What was re-checked of a family.
@@ -154,6 +161,18 @@ impl Family {
         scales::may_change(&self.parameters, &parts.collect::<Vec<_>>())
     }
 
+    /// How many forms its parts have between them, each counted once.
+    #[must_use]
+    pub fn forms(&self) -> usize {
+        let mut known: Vec<&Claim> = Vec::new();
+        for part in &self.parts {
+            if !known.contains(&&part.claim) {
+                known.push(&part.claim);
+            }
+        }
+        known.len()
+    }
+
     /// What a re-check finds of a family that was just proved.
     #[must_use]
     pub fn checked(&self) -> CheckedFamily {
@@ -172,14 +191,17 @@ impl Family {
         if certificate.description.resolves_in_steps() {
             return Err(malformed("its loops have a sensor that resolves in steps"));
         }
+        let off = self.off(&certificate.description)?;
         let known = KnownSlopes::default();
         for (place, part) in self.parts.iter().enumerate() {
             let alone = part.alone(certificate);
             let proved = || -> Result<(), RecheckError> {
                 let seen = (self.parameters.as_slice(), part.ends.as_slice());
-                for model in models(&part.plants, seen, &certificate.description)? {
-                    let recheck = Recheck::with(&alone, model, set.clone(), &known)?;
-                    if !bears(&alone.claim, &recheck.until(stops).run()?) {
+                let off = off.as_ref().filter(|_| self.moves_with(&part.claim));
+                let of = (&certificate.description, off);
+                for model in models(&part.plants, seen, of)? {
+                    let rechecked = Recheck::of_rest(&alone, &model, set, (&known, stops))?;
+                    if !bears(&alone.claim, &rechecked) {
                         let what = "the law is not shown to keep to the rate that is claimed";
                         return Err(RecheckError::Malformed { what });
                     }
@@ -190,6 +212,21 @@ impl Family {
             proved().map_err(reason)?;
         }
         Ok(self.checked())
+    }
+
+    /// True if flights whose numbers move count on a claim.
+    fn moves_with(&self, claim: &Claim) -> bool {
+        self.pace.as_ref().is_some_and(|pace| pace.patches.iter().any(|it| it.claim == *claim))
+    }
+
+    /// What its plants are off as its numbers move within a sample; none where they stand still.
+    fn off(&self, description: &LoopDescription) -> Result<Option<Off>, FamilyError> {
+        let Some(pace) = &self.pace else { return Ok(None) };
+        pace.check(self, description).map_err(|what| FamilyError::Malformed { what })?;
+        let off = Off::of(pace, (&self.parameters, &self.parts), description);
+        let reason =
+            |reason: NotProved| FamilyError::Part { part: 0, reason: Box::new(reason.into()) };
+        off.map(Some).map_err(reason)
     }
 
     /// True if it is one: sizes, ends in order, claims of stability, and parts that leave nothing out.
@@ -248,13 +285,17 @@ fn covers_scales(claim: &Claim, parameters: &[Parameter]) -> bool {
 
 /// Loops between which those of plants and of what sensors show of them lie. A loop's matrix is affine in what its plant
 /// makes of a sample, and in the scale of each sensor, and $M^T P M$ is convex in M, so that what holds at each of them
-/// holds between.
+/// holds between. What they are off is added to each.
 fn models(
     plants: &PlantSet,
     (parameters, ends): (&[Parameter], &[[f64; 2]]),
-    description: &LoopDescription,
+    (description, off): (&LoopDescription, Option<&Off>),
 ) -> Result<Vec<LoopModel<Interval>>, NotProved> {
-    let sampled = plants.sampled(description.controller.config().dt_s)?;
+    let dt_s = description.controller.config().dt_s;
+    let mut sampled = plants.sampled_within(dt_s, off.map_or(&[], |off| &off.entries))?;
+    if let Some(off) = off {
+        sampled.iter_mut().for_each(|plant| plant.rate.clone_from(&off.pitch_rate));
+    }
     let seen = scales::corners(parameters, ends, description);
     let with = |plant: &SampledPlant<Interval>| {
         seen.iter().map(|settings| LoopModel::new(plant.clone(), settings.clone())).collect()

@@ -3,7 +3,7 @@
 use fspid_numeric::scalar::Interval;
 use fspid_sim::loop_model::LoopSettings;
 
-use super::Parameter;
+use super::{Parameter, cover};
 use crate::certificate::Claim;
 use crate::check::{ROUNDED, printed};
 use crate::description::LoopDescription;
@@ -48,34 +48,50 @@ pub(super) fn is_twofold(parameters: &[Parameter]) -> bool {
     [ScaledSensor::Pitch, ScaledSensor::Rate].into_iter().any(|sensor| of(sensor).count() > 1)
 }
 
+/// A part's sides of the plant, those of scales, and its claim.
+type Apart<'a> = (Vec<[f64; 2]>, Vec<[f64; 2]>, &'a Claim);
+
 /// True if of each plant one form falls at all scales that differ, so that these may change from sample to sample, each by
 /// itself. Scales of one draw are asked together at its ends alone, which says nothing of two that go their own ways.
-///
-/// A plant on the face of parts is a limit of plants beside it, which lie within theirs: the parts that cover those cover
-/// it, too. So it is enough that parts whose plants overlap have the same claim.
 pub(super) fn may_change(parameters: &[Parameter], parts: &[(&[[f64; 2]], &Claim)]) -> bool {
-    let is_of_plant = |side: &usize| parameters[*side].is_of_plant();
-    let of_plant: Vec<usize> = (0..parameters.len()).filter(is_of_plant).collect();
-    let share_plants = |one: &[[f64; 2]], other: &[[f64; 2]]| {
-        of_plant.iter().all(|&side| overlap(one[side], other[side]))
+    let sides = |ends: &[[f64; 2]], of_plant: bool| -> Vec<[f64; 2]> {
+        let kept = parameters.iter().zip(ends).filter(|(one, _)| one.is_of_plant() == of_plant);
+        kept.map(|(_, ends)| *ends).collect()
     };
-    let is_alone = |(place, (ends, claim)): (usize, &(&[[f64; 2]], &Claim))| {
-        let mut others = parts[place + 1..].iter();
-        others.all(|(other, another)| claim == another || !share_plants(ends, other))
-    };
+    let whole: Vec<[f64; 2]> = parameters.iter().map(|one| one.ends).collect();
+    let [plants, scales] = [true, false].map(|of_plant| sides(&whole, of_plant));
+    let apart = parts.iter().map(|&(ends, claim)| (sides(ends, true), sides(ends, false), claim));
+    let apart: Vec<Apart<'_>> = apart.collect();
     // What a tied gain is tied to is shown by sensors.
-    let is_tied = |(_, claim): &(&[[f64; 2]], &Claim)| matches!(claim, Claim::SProcedure { .. });
-    of_plant.len() < parameters.len()
+    let is_tied = |(_, _, claim): &Apart<'_>| matches!(claim, Claim::SProcedure { .. });
+    !scales.is_empty()
         && parameters.iter().all(|one| one.sensors.len() <= 1)
-        && !parts.iter().any(is_tied)
-        && parts.iter().enumerate().all(is_alone)
+        && !apart.iter().any(is_tied)
+        && has_one_form(&plants, &scales, &apart.iter().collect::<Vec<_>>())
 }
 
-/// True if more than a face belongs to both, or what belongs to both is all of one.
-fn overlap([from, to]: [f64; 2], [first, last]: [f64; 2]) -> bool {
-    let (lower, upper) = (from.max(first), to.min(last));
-    let stands = to <= from || last <= first;
-    lower < upper || stands && lower <= upper
+/// True if of each plant between some ends there is a claim whose parts hold it at all scales; plants are cut where parts
+/// end.
+fn has_one_form(plants: &[[f64; 2]], scales: &[[f64; 2]], parts: &[&Apart<'_>]) -> bool {
+    let near: Vec<&Apart<'_>> =
+        parts.iter().filter(|part| cover::has_inside(&part.0, plants)).copied().collect();
+    let holding = near.iter().filter(|part| cover::holds_all(&part.0, plants));
+    let holding: Vec<&&Apart<'_>> = holding.collect();
+    let does_for_all = |claim: &Claim| {
+        let own = holding.iter().filter(|part| part.2 == claim);
+        cover::covers(scales, &own.map(|part| part.1.as_slice()).collect::<Vec<_>>())
+    };
+    if holding.iter().any(|part| does_for_all(part.2)) {
+        return true;
+    }
+    let Some((side, at)) = near.iter().find_map(|part| cover::face_within(&part.0, plants)) else {
+        return false;
+    };
+    [[plants[side][0], at], [at, plants[side][1]]].into_iter().all(|half| {
+        let mut ends = plants.to_vec();
+        ends[side] = half;
+        has_one_form(&ends, scales, &near)
+    })
 }
 
 /// What a loop is set to at each corner of the scales that differ; sensors of one parameter have theirs together.
@@ -144,11 +160,18 @@ mod tests {
         assert!(!of_plant_and_scale(&[(LOW, ALL, 0.9), (HIGH, LOW, 0.8), (HIGH, HIGH, 0.9)]));
         // Of plants from 0.5 to 1 there are two forms.
         assert!(!of_plant_and_scale(&[([0.5, 2.0], LOW, 0.9), (LOW, HIGH, 0.8)]));
-        // A plant that is between no two others has a part of its own, and others around it.
+        // Nothing is known of some plants at some scales.
         assert!(!of_plant_and_scale(&[([1.0, 1.0], LOW, 0.9), (ALL, HIGH, 0.8)]));
-        assert!(!of_plant_and_scale(&[([1.0, 1.0], LOW, 0.9), ([1.0, 1.0], HIGH, 0.8)]));
         assert!(!of_plant_and_scale(&[(HIGH, LOW, 0.9), ([1.0, 1.0], HIGH, 0.8)]));
-        assert!(of_plant_and_scale(&[([0.5, 0.5], LOW, 0.9), (HIGH, HIGH, 0.8)]));
+    }
+
+    #[test]
+    fn parts_that_overlap_leave_each_plant_one_form_if_they_did_before() {
+        let (low, high) = ([0.0, 1.2], [0.8, 2.0]);
+        assert!(of_plant_and_scale(&[(low, ALL, 0.9), (high, ALL, 0.8)]));
+        assert!(of_plant_and_scale(&[(low, ALL, 0.9), (ALL, LOW, 0.8), (high, HIGH, 0.8)]));
+        assert!(!of_plant_and_scale(&[(low, ALL, 0.9), (high, LOW, 0.8), (high, HIGH, 0.7)]));
+        assert!(!of_plant_and_scale(&[([0.0, 0.7], ALL, 0.9), (high, ALL, 0.8)]));
     }
 
     #[test]

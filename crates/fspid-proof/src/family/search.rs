@@ -1,8 +1,11 @@
 //! Looks for the proof of a family: a form at the middle of a part, asked for the whole part, which is cut where it fails.
 
+use fspid_lti::Matrix;
 use fspid_numeric::scalar::Interval;
 use fspid_sim::loop_model::LoopModel;
 
+use super::moves::Off;
+use super::patches::moving;
 use super::{Family, MOST_PARTS, Parameter, Part, bears, covers_scales, models, numbers};
 use crate::certificate::Claim;
 use crate::check::{MakesPlant, NotProved, PlantSet};
@@ -93,7 +96,7 @@ pub fn prove_family(
 /// Plants of a box, and the loops between which theirs lie.
 type PlantsAndLoops = (PlantSet, Vec<LoopModel<Interval>>);
 
-struct Search<'a> {
+pub(super) struct Search<'a> {
     prover: Prover<'a>,
     set: GainSet,
     parameters: &'a [Parameter],
@@ -104,9 +107,9 @@ struct Search<'a> {
 }
 
 /// A piece of the box, and a claim that held near it.
-struct Piece {
-    ends: Vec<[f64; 2]>,
-    claim: Option<Claim>,
+pub(super) struct Piece {
+    pub(super) ends: Vec<[f64; 2]>,
+    pub(super) claim: Option<Claim>,
 }
 
 impl Search<'_> {
@@ -130,7 +133,12 @@ impl Search<'_> {
                 Err(verdict) => return Ok(verdict),
             }
         }
-        Ok(FamilyVerdict::Proved(Family { parameters: self.parameters.to_vec(), parts }))
+        let still = Family { parameters: self.parameters.to_vec(), parts, pace: None };
+        let moving = moving(self, &still);
+        if (self.stops)() {
+            return Err(NotProvable::Stopped);
+        }
+        Ok(FamilyVerdict::Proved(moving.unwrap_or(still)))
     }
 
     /// A proof of a piece, or its halves; an answer for all where there is one.
@@ -190,10 +198,35 @@ impl Search<'_> {
     }
 
     /// Plants of a box, and the loops between which theirs lie.
-    fn loops(&self, ends: &[[f64; 2]]) -> Result<PlantsAndLoops, NotProved> {
-        let plants = PlantSet::of(&numbers(self.parameters, ends), self.plant)?;
-        let loops = models(&plants, (self.parameters, ends), self.prover.description())?;
+    pub(super) fn loops(&self, ends: &[[f64; 2]]) -> Result<PlantsAndLoops, NotProved> {
+        let plants = self.plants(ends)?;
+        let loops = self.loops_of(&plants, ends, None)?;
         Ok((plants, loops))
+    }
+
+    /// Loops between which those of some plants lie, which may be off by something.
+    pub(super) fn loops_of(
+        &self,
+        plants: &PlantSet,
+        ends: &[[f64; 2]],
+        off: Option<&Off>,
+    ) -> Result<Vec<LoopModel<Interval>>, NotProved> {
+        models(plants, (self.parameters, ends), (self.prover.description(), off))
+    }
+
+    /// A form that falls fast under some loops with some gains.
+    pub(super) fn fast_of<'m>(
+        &self,
+        loops: impl Iterator<Item = &'m LoopModel<Interval>>,
+        set: &GainSet,
+    ) -> Option<Matrix> {
+        let middles: Vec<LoopModel<f64>> = loops.map(LoopModel::midpoint).collect();
+        self.prover.fast_at(&self.prover.matrices_of(&middles, set)?)
+    }
+
+    /// All gains.
+    pub(super) fn set(&self) -> &GainSet {
+        &self.set
     }
 
     /// One form for all of some loops.
@@ -251,17 +284,44 @@ impl Search<'_> {
     }
 
     /// True if a claim is proved of each of some loops.
-    fn holds(&self, claim: &Claim, loops: &[LoopModel<Interval>]) -> bool {
+    pub(super) fn holds(&self, claim: &Claim, loops: &[LoopModel<Interval>]) -> bool {
         loops.iter().all(|model| {
-            let found = self.prover.of(model.clone()).rechecked(claim.clone(), 1.0, None);
-            found.is_some_and(|(_, rechecked)| bears(claim, &rechecked))
+            let found = self.prover.of(model.clone()).rest_rechecked(claim.clone(), &self.set);
+            found.is_some_and(|rechecked| bears(claim, &rechecked))
         })
+    }
+
+    pub(super) fn description(&self) -> &LoopDescription {
+        self.prover.description()
+    }
+
+    pub(super) fn is_stopped(&self) -> bool {
+        (self.stops)()
+    }
+
+    /// From where to where each parameter goes.
+    pub(super) fn whole(&self) -> &[[f64; 2]] {
+        &self.whole
+    }
+
+    pub(super) fn parameters(&self) -> &[Parameter] {
+        self.parameters
+    }
+
+    /// Plants of a box.
+    pub(super) fn plants(&self, ends: &[[f64; 2]]) -> Result<PlantSet, NotProved> {
+        PlantSet::of(&numbers(self.parameters, ends), self.plant)
     }
 
     /// Sides of a piece that may be cut.
     fn sides(&self, ends: &[[f64; 2]]) -> impl Iterator<Item = usize> {
         let shares = self.shares(ends);
         (0..shares.len()).filter(move |&side| shares[side] > SMALLEST)
+    }
+
+    /// How much of a side of the whole box a piece has.
+    pub(super) fn share(&self, ends: &[[f64; 2]], side: usize) -> f64 {
+        self.shares(ends)[side]
     }
 
     /// How much of each side of the whole box a piece has.
@@ -272,13 +332,13 @@ impl Search<'_> {
     }
 
     /// The side of a piece that has most of its whole side.
-    fn widest(&self, ends: &[[f64; 2]]) -> Option<usize> {
+    pub(super) fn widest(&self, ends: &[[f64; 2]]) -> Option<usize> {
         let shares = self.shares(ends);
         self.sides(ends).max_by(|&one, &other| shares[one].total_cmp(&shares[other]))
     }
 
     /// The side of a piece that leaves most of second order.
-    fn roughest(&self, ends: &[[f64; 2]]) -> Option<usize> {
+    pub(super) fn roughest(&self, ends: &[[f64; 2]]) -> Option<usize> {
         let left = |side: usize| self.width_without(ends, side);
         self.sides(ends).min_by(|&one, &other| left(one).total_cmp(&left(other)))
     }
@@ -320,7 +380,7 @@ impl Near {
 }
 
 /// A piece, cut across a side.
-fn halves(piece: &Piece, side: usize) -> [Piece; 2] {
+pub(super) fn halves(piece: &Piece, side: usize) -> [Piece; 2] {
     let [from, to] = piece.ends[side];
     let at = from + 0.5 * (to - from);
     [[from, at], [at, to]].map(|half| {
@@ -335,6 +395,6 @@ fn at_corner(ends: &[[f64; 2]], corner: usize) -> Vec<f64> {
     ends.iter().enumerate().map(|(side, ends)| ends[corner >> side & 1]).collect()
 }
 
-fn middle(ends: &[[f64; 2]]) -> Vec<f64> {
+pub(super) fn middle(ends: &[[f64; 2]]) -> Vec<f64> {
     ends.iter().map(|&[from, to]| from + 0.5 * (to - from)).collect()
 }

@@ -140,6 +140,11 @@ impl GainSet {
         boxes.reduce(hull).unwrap_or(array(self.nominal).map(Interval::point))
     }
 
+    /// All of the smallest box that holds the set, whatever the inputs: more gains, and far fewer corners.
+    pub(crate) fn bounding_box(&self) -> Self {
+        Self::boxed(self.nominal, self.rest, self.bounds())
+    }
+
     /// The corners of every box with the number of its cell; of a box that is flat along a gain
     /// only those that differ. Where it is known which combinations are reached, the corners of that body.
     pub fn corners(&self) -> impl Iterator<Item = (usize, Gains<f64>)> {

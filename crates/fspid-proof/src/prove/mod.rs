@@ -464,7 +464,20 @@ impl<'a> Prover<'a> {
         if (self.effort.stops)() {
             return None;
         }
-        let certificate = Certificate {
+        let certificate = self.certificate(claim, factor, level);
+        let set = self.set(factor);
+        let recheck = Recheck::with(&certificate, self.enclosed.clone(), set, &self.slopes).ok()?;
+        let rechecked = recheck
+            .until(self.effort.stops)
+            .run()
+            .map_err(|doubt| self.note(factor, &doubt))
+            .ok()?;
+        Some((certificate, rechecked))
+    }
+
+    /// The claim with all that it is about.
+    fn certificate(&self, claim: Claim, factor: f64, level: Option<f64>) -> Certificate {
+        Certificate {
             description: self.description.clone(),
             output_factor: factor,
             divisions: self.effort.divisions,
@@ -477,14 +490,13 @@ impl<'a> Prover<'a> {
             family: None,
             disturbances: Vec::new(),
             nonlinear: None,
-        };
-        let set = self.set(factor);
-        let recheck = Recheck::with(&certificate, self.enclosed.clone(), set, &self.slopes).ok()?;
-        let rechecked = recheck
-            .until(self.effort.stops)
-            .run()
-            .map_err(|doubt| self.note(factor, &doubt))
-            .ok()?;
-        Some((certificate, rechecked))
+        }
+    }
+
+    /// What a re-check finds of the return to rest, of some gains.
+    pub(crate) fn rest_rechecked(&self, claim: Claim, set: &GainSet) -> Option<Rechecked> {
+        let certificate = self.certificate(claim, 1.0, None);
+        let how = (&self.slopes, self.effort.stops);
+        Recheck::of_rest(&certificate, &self.enclosed, set, how).ok()
     }
 }

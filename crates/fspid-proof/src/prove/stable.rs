@@ -47,6 +47,11 @@ impl Prover<'_> {
         solve::common_form(matrices, rate, &self.search())
     }
 
+    /// A form that falls fast under some loops; none where none falls.
+    pub(crate) fn fast_at(&self, matrices: &[Matrix]) -> Option<Matrix> {
+        solve::fast_form(matrices, &self.search())
+    }
+
     /// Closed loops of several plants at the gains that span the set, if each of them is stable on its own.
     pub(crate) fn matrices_of(
         &self,

@@ -31,7 +31,7 @@ pub use growth::{Growth, growing_sequence};
 pub use instability::{InstabilityForm, instability_form};
 pub use lyapunov::{
     BestRate, Condition, LyapunovProblem, Solution, Verdict, best_rate, common_form,
-    common_lyapunov,
+    common_lyapunov, fast_form,
 };
 pub use parameter_dependent::{
     MovingForm, MovingProblem, MovingVerdict, fastest_moving_form, motions_from, moving_form,

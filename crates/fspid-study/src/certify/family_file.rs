@@ -2,7 +2,7 @@
 
 use fspid_numeric::scalar::Interval;
 use fspid_proof::check::PlantSet;
-use fspid_proof::{Claim, Family, FamilyPart, Parameter, ScaledSensor};
+use fspid_proof::{Claim, Family, FamilyPart, Pace, Parameter, Patch, ScaledSensor};
 use serde::{Deserialize, Serialize};
 
 use super::file::ClaimFile;
@@ -20,6 +20,26 @@ pub(super) struct FamilyFile {
     /// Each once, whatever the number of parts that it is about.
     claims: Vec<ClaimFile>,
     parts: Vec<PartFile>,
+    /// How fast its numbers may move; left out where they stand still.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pace: Option<PaceFile>,
+}
+
+/// In what time numbers may cross their ranges, s, and patches, which overlap by a share of the whole side.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PaceFile {
+    crosses_in_s: f64,
+    overlap: f64,
+    patches: Vec<PatchFile>,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PatchFile {
+    ends: Vec<Ends>,
+    /// Which of the claims.
+    claim: usize,
 }
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -93,30 +113,40 @@ impl FamilyFile {
         let mut claims: Vec<&Claim> = Vec::new();
         let mut parts = Vec::with_capacity(family.parts.len());
         for FamilyPart { ends, plants, claim } in &family.parts {
-            let known = claims.iter().position(|it| *it == claim);
-            let place = known.unwrap_or_else(|| {
-                claims.push(claim);
-                claims.len() - 1
-            });
-            parts.push(PartFile {
-                ends: ends.clone(),
-                plants: PlantsFile::of(plants),
-                claim: place,
-            });
+            let claim = place_of(claim, &mut claims);
+            parts.push(PartFile { ends: ends.clone(), plants: PlantsFile::of(plants), claim });
         }
+        let pace = family.pace.as_ref().map(|Pace { crosses_in_s, overlap, patches }| PaceFile {
+            crosses_in_s: *crosses_in_s,
+            overlap: *overlap,
+            patches: patches
+                .iter()
+                .map(|Patch { ends, claim }| PatchFile {
+                    ends: ends.clone(),
+                    claim: place_of(claim, &mut claims),
+                })
+                .collect(),
+        });
         let claims = claims.into_iter().map(ClaimFile::of).collect();
-        Self { parameters: parameters.collect(), claims, parts }
+        Self { parameters: parameters.collect(), claims, parts, pace }
     }
 
     pub(super) fn build(self) -> Result<Family, String> {
         let claims: Vec<Claim> =
             self.claims.into_iter().map(ClaimFile::build).collect::<Result<_, _>>()?;
-        let part = |part: PartFile| {
-            let claim = claims.get(part.claim).ok_or_else(|| {
-                format!("a part has claim {}; there are {}, from 0", part.claim, claims.len())
-            })?;
-            Ok(FamilyPart { ends: part.ends, plants: part.plants.build()?, claim: claim.clone() })
+        let claim = |place: usize| {
+            let there = || format!("a part has claim {place}; there are {}, from 0", claims.len());
+            claims.get(place).cloned().ok_or_else(there)
         };
+        let part = |part: PartFile| {
+            let claim = claim(part.claim)?;
+            Ok(FamilyPart { ends: part.ends, plants: part.plants.build()?, claim })
+        };
+        let pace = self.pace.map(|PaceFile { crosses_in_s, overlap, patches }| {
+            let patch = |it: PatchFile| Ok(Patch { ends: it.ends, claim: claim(it.claim)? });
+            let patches = patches.into_iter().map(patch).collect::<Result<_, String>>()?;
+            Ok::<_, String>(Pace { crosses_in_s, overlap, patches })
+        });
         let parameters = self.parameters.into_iter().map(|one| Parameter {
             name: one.name,
             paths: one.paths,
@@ -128,8 +158,17 @@ impl FamilyFile {
         Ok(Family {
             parameters: parameters.collect(),
             parts: self.parts.into_iter().map(part).collect::<Result<_, String>>()?,
+            pace: pace.transpose()?,
         })
     }
+}
+
+/// The place of a claim among those that are there, where it is put if it is new.
+fn place_of<'a>(claim: &'a Claim, claims: &mut Vec<&'a Claim>) -> usize {
+    claims.iter().position(|it| *it == claim).unwrap_or_else(|| {
+        claims.push(claim);
+        claims.len() - 1
+    })
 }
 
 impl PlantsFile {

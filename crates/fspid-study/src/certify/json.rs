@@ -22,7 +22,7 @@ const NO_STEPS: &str = "no step from rest is proved with limits acting; of gains
 const NO_FLIGHTS: &str = "the flights that the scenario commands are not proved with limits acting; in cases they are asked for with --steps alone";
 
 /// Why keys of these answers are null.
-pub(super) const NULLS: [(&str, &str); 24] = [
+pub(super) const NULLS: [(&str, &str); 25] = [
     ("decay_per_sample", "the claim is one of growth, or no rate is proved"),
     (
         "law_keeps_to_the_rate",
@@ -42,6 +42,7 @@ pub(super) const NULLS: [(&str, &str); 24] = [
     ("at", "no question can be asked of the family, or the loop as it is is not proved"),
     ("parts", "the family is not proved"),
     ("scales_may_change", "the family is not proved"),
+    ("numbers_may_cross_in_s", "no pace is proved at which the numbers of the family may move"),
     ("box", "nothing is proved of the nonlinear aircraft"),
     ("begins_with", "nothing is proved of the nonlinear aircraft"),
     ("gains_near_trim", "nothing is proved of the nonlinear aircraft"),

@@ -31,7 +31,7 @@ impl Told {
         let left_out = scope.left_out.clone();
         let stable = certificate.claim.is_of_stability().then_some(scope);
         let family = certificate.family.as_ref().zip(rechecked.family);
-        let family = family.map_or_else(Vec::new, |(family, it)| family::sentences(family, it));
+        let family = family.map_or_else(Vec::new, |(family, _)| family::sentences(family));
         let nonlinear = certificate.nonlinear.as_ref().zip(rechecked.nonlinear);
         let nonlinear = nonlinear.map(|(claim, it)| nonlinear::sentence(certificate, claim, &it));
         let moving = match &certificate.claim {

@@ -1,6 +1,6 @@
 //! A family in sentences and for programs.
 
-use fspid_proof::{CheckedFamily, Family, FamilyVerdict, Parameter};
+use fspid_proof::{Family, FamilyVerdict, Pace, Parameter};
 use serde_json::{Value, json};
 
 use super::FamilyAnswer;
@@ -25,20 +25,37 @@ pub(in super::super) fn box_in_words(parameters: &[Parameter]) -> String {
 }
 
 /// What a proved family says.
-fn proved(family: &Family, parts: usize) -> String {
-    let parts = if parts == 1 { "one form".to_owned() } else { format!("{parts} forms") };
-    let moving = if family.scales_may_change() { SCALES_MAY_CHANGE } else { "" };
+fn proved(family: &Family) -> String {
+    let some = |count: usize, what: &str| match count {
+        1 => format!("one {what}"),
+        _ => format!("{count} {what}s"),
+    };
+    let how = format!("{}, {}", some(family.parts.len(), "part"), some(family.forms(), "form"));
+    let changing = if family.scales_may_change() { SCALES_MAY_CHANGE } else { "" };
+    let moving = family.pace.as_ref().map_or_else(String::new, at_a_pace);
     format!(
-        "every loop in all of this, each standing still, returns to its trim where the set-point is and no load acts, as long as no limit acts ({parts}){moving}; all else here is about the loop as it is: {}",
+        "every loop in all of this, each standing still, returns to its trim where the set-point is and no load acts, as long as no limit acts ({how}){moving}{changing}; all else here is about the loop as it is: {}",
         box_in_words(&family.parameters)
     )
 }
 
-const SCALES_MAY_CHANGE: &str = "; the scales of sensors may change in flight as well, from sample to sample, each by itself and as fast as it likes, so that a sensor whose line is bent is covered as long as what it shows of the way from the trim is within these scales of it";
+fn at_a_pace(pace: &Pace) -> String {
+    let how_fast = match pace.crosses_in_s {
+        time_s if time_s > 0.0 => {
+            format!("each by no more than its whole range in {} s", short(time_s))
+        }
+        _ => "each as fast as it likes".to_owned(),
+    };
+    format!(
+        "; the numbers may move in flight, all at the same time and {how_fast}: the motion about the trim of the moment comes to rest, and what it does that the trim itself moves is left out"
+    )
+}
+
+const SCALES_MAY_CHANGE: &str = "; the scales of sensors may change in flight, beside a plant that stands still, from sample to sample, each by itself and as fast as it likes, so that a sensor whose line is bent is covered as long as what it shows of the way from the trim is within these scales of it";
 
 /// Sentences about a family whose certificate is there.
-pub(in super::super) fn sentences(family: &Family, checked: CheckedFamily) -> Vec<String> {
-    vec![proved(family, checked.parts)]
+pub(in super::super) fn sentences(family: &Family) -> Vec<String> {
+    vec![proved(family)]
 }
 
 impl FamilyAnswer {
@@ -51,7 +68,7 @@ impl FamilyAnswer {
             Self::None(reason) => format!("OPEN: {reason}"),
             Self::Verdict { parameters, verdict } => match &**verdict {
                 FamilyVerdict::Proved(family) => {
-                    format!("PROVED: {}", proved(family, family.parts.len()))
+                    format!("PROVED: {}", proved(family))
                 }
                 FamilyVerdict::Refuted { at, .. } => {
                     let set = at.iter().zip(parameters).map(|(at, one)| setting(one, *at));
@@ -106,11 +123,14 @@ pub(in super::super) fn in_json(answer: &FamilyAnswer) -> Value {
         },
     };
     let scales_may_change = answer.proved().map(Family::scales_may_change);
+    let crosses_in_s =
+        answer.proved().and_then(|family| family.pace.as_ref()).map(|it| it.crosses_in_s);
     json!({
         "verdict": verdict,
         "at": at,
         "parts": parts,
         "scales_may_change": scales_may_change,
+        "numbers_may_cross_in_s": crosses_in_s,
         "in_words": answer.text(),
     })
 }

@@ -8,7 +8,7 @@ use fspid_proof::sizes::{
     MOST_SAMPLES, MOST_STATES,
 };
 
-use fspid_proof::{MOST_BOUNDS, MOST_PARAMETERS, MOST_PARTS};
+use fspid_proof::{MOST_BOUNDS, MOST_PARAMETERS, MOST_PARTS, MOST_PATCHES};
 
 use super::{Key, Shape, key, optional};
 use Shape::{Digest, Kinds, List, Number, Object, OrNull, Positive, Text, Truth, Whole, Word};
@@ -101,11 +101,24 @@ const REMEMBERED: Shape = Object(&[
     key("model_rad", Number(0.0, ANGLE)),
 ]);
 
+/// In what time numbers may cross their ranges, and patches of the box with a claim each.
+const PACE: Shape = Object(&[
+    key("crosses_in_s", NOT_NEGATIVE),
+    key("overlap", Number(0.0, 1.0)),
+    key("patches", List(&PATCH, [1, MOST_PATCHES])),
+]);
+
+const PATCH: Shape = Object(&[
+    key("ends", List(&BOTH_ENDS, [1, MOST_PARAMETERS])),
+    key("claim", Whole(0, MOST_PARTS as u64)),
+]);
+
 /// What differs, claims, and parts with their plants.
 const FAMILY: Shape = Object(&[
     key("parameters", List(&PARAMETER, [1, MOST_PARAMETERS])),
     key("claims", List(&CLAIM, [1, MOST_PARTS])),
     key("parts", List(&PART, [1, MOST_PARTS])),
+    optional("pace", PACE),
 ]);
 
 const PARAMETER: Shape = Object(&[
