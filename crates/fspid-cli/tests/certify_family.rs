@@ -253,7 +253,7 @@ fn the_time_in_which_numbers_may_cross_their_ranges_in_flight_is_told() {
     let time_s = time_s.expect("a time");
     assert!((1.0..=200.0).contains(&time_s), "{time_s}");
     assert!(
-        in_words.contains(&format!("by no more than its whole range in {time_s} s")),
+        in_words.contains(&format!("at no more than the rate of its whole range in {time_s} s")),
         "{in_words}"
     );
     assert_eq!(told(SCENARIO).0, None);

@@ -5,8 +5,8 @@ use fspid_lti::Matrix;
 use fspid_numeric::scalar::Interval;
 use fspid_proof::check::{ContinuousPlant, LagOf, NotProved, PlantSet, Sloped};
 use fspid_proof::{
-    Asked, Certificate, Effort, Family, FamilyVerdict, LoopDescription, Parameter, Patch, Verdict,
-    certify, numbers, prove_family,
+    Asked, Certificate, Effort, Family, FamilyVerdict, LoopDescription, Parameter, Patch,
+    ScaledSensor, Verdict, certify, numbers, prove_family,
 };
 use fspid_sim::actuator::{Actuator, Lag};
 use fspid_sim::loop_model::{LoopModel, SampledPlant, Sensing};
@@ -358,12 +358,50 @@ fn what_is_claimed_of_numbers_that_move_is_believed_only_as_it_was_proved() {
     }
     refused(&|it| it.parameters[0].paths.clear(), "what the states of the plant");
     refused(&|it| it.parameters[0].relative = false, "what the states of the plant");
+    // Plants that are those of no one function of their numbers.
+    let elsewhere = |it: &mut Family| {
+        let plants = &mut it.parts[0].plants;
+        for rows in [&mut plants.middle, &mut plants.all] {
+            rows[0][0] = rows[0][0] - Interval::point(1e-3);
+        }
+    };
+    refused(&elsewhere, "jump from part to part");
+    refused(&|it| it.parts[0].plants.without_lag = true, "not told as those of one function");
+    let beside = |it: &mut Family| it.parts[0].plants.middle[0][0] = Interval::point(3.0);
+    refused(&beside, "not told as those of one function");
     // Plants that differ more from each other than is known here: what they are off within a sample is larger.
     let steeper = |it: &mut Family| {
         let steep = Interval::between(-1e9, 1e9);
         it.parts.iter_mut().for_each(|part| part.plants.slopes[0][1][2] = steep);
     };
     refused(&steeper, "of the family");
+}
+
+#[test]
+fn numbers_whose_motion_means_nothing_or_means_other_states_stand_still() {
+    let description = STEADY.description();
+    let number = |paths: &[&str], ends: [f64; 2], sensors: &[ScaledSensor]| Parameter {
+        name: "number".to_owned(),
+        paths: paths.iter().map(|&it| it.to_owned()).collect(),
+        relative: true,
+        inverse: false,
+        sensors: sensors.to_vec(),
+        ends,
+    };
+    let may_move = |paths: &[&str], ends: [f64; 2]| number(paths, ends, &[]).may_move(&description);
+    let all = ["plant.numerator[0]", "plant.numerator[1]"];
+    let ends = [0.5, 2.0];
+    assert!(may_move(&all, ends) && may_move(&all, [-2.0, -0.5]));
+    assert!(may_move(&["plant.preset.numerator[0]", "plant.preset.numerator[1]"], ends));
+    assert!(!may_move(&all[..1], ends));
+    // Where the elevator has no effect, states are those of another form.
+    assert!(!may_move(&all, [-0.2, 1.0]) && !may_move(&all, [0.0, 1.0]));
+    assert!(!may_move(&["plant.denominator[1]"], ends) && !may_move(&[], ends));
+    assert!(may_move(&["aircraft.mass_kg"], ends) && may_move(&["actuator.damping"], ends));
+    assert!(!may_move(&["actuator.damping", "plant.denominator[1]"], ends));
+    let [pitch, rate] = [ScaledSensor::Pitch, ScaledSensor::Rate];
+    assert!(number(&[], ends, &[pitch]).may_move(&description));
+    assert!(!number(&[], ends, &[pitch, rate]).may_move(&description));
 }
 
 #[test]

@@ -97,6 +97,13 @@ impl PlantSet {
             && self.reach.iter().all(|it| *it >= 0.0 && it.is_finite())
     }
 
+    /// True if the plant in the middle is one of all.
+    #[must_use]
+    pub fn holds_its_middle(&self) -> bool {
+        let pairs = self.all.iter().flatten().zip(self.middle.iter().flatten());
+        pairs.into_iter().all(|(all, middle)| all.encloses(*middle))
+    }
+
     /// True if every plant of another is one of these, with its slopes.
     #[must_use]
     pub fn encloses(&self, other: &Self) -> bool {

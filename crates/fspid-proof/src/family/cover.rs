@@ -3,22 +3,41 @@
 /// Ends of each side.
 type Ends = [[f64; 2]];
 
-/// True if every point of `whole` lies in one of `parts`; ends belong to both sides of them.
+/// Most cuts that are made to find out: parts that were made by cutting ask for as many as they were made by, and others,
+/// which somebody wrote, could ask for more than anybody waits for.
+pub(super) const MOST_CUTS: usize = 32 * super::MOST_PARTS;
+
+/// True if every point of `whole` lies in one of `parts`; ends belong to both sides of them. Not true either where more cuts
+/// than allowed would have to tell.
 ///
 /// The whole is cut along a face of a part that goes through its inside, and both halves are asked in turn; each cut takes
-/// a face away, so that it ends. Parts that were made by cutting ask for as many cuts as they were made by.
+/// a face away, so that it ends.
 pub(super) fn covers(whole: &Ends, parts: &[&Ends]) -> bool {
+    covers_within(whole, parts, &mut { MOST_CUTS })
+}
+
+fn covers_within(whole: &Ends, parts: &[&Ends], cuts: &mut usize) -> bool {
     let near: Vec<&Ends> = parts.iter().filter(|part| has_inside(part, whole)).copied().collect();
     let Some(first) = near.first() else { return false };
     if near.iter().any(|part| holds_all(part, whole)) {
         return true;
     }
     let Some((side, at)) = face_within(first, whole) else { return false };
+    if !may_cut(cuts) {
+        return false;
+    }
     [[whole[side][0], at], [at, whole[side][1]]].into_iter().all(|half| {
         let mut ends = whole.to_vec();
         ends[side] = half;
-        covers(&ends, &near)
+        covers_within(&ends, &near, cuts)
     })
+}
+
+/// True if one more cut is allowed, which then is one less.
+pub(super) fn may_cut(cuts: &mut usize) -> bool {
+    let left = cuts.checked_sub(1);
+    *cuts = left.unwrap_or(0);
+    left.is_some()
 }
 
 /// True if a box is within a part.
@@ -102,5 +121,26 @@ mod tests {
         assert!(covered(&[[3.0, 3.0]], &[vec![[2.0, 3.0]]]));
         assert!(covered(&[[0.0, 1.0], [7.0, 7.0]], &[vec![[0.0, 1.0], [7.0, 7.0]]]));
         assert!(!covered(&[[0.0, 1.0]], &[]));
+    }
+
+    /// Boards of squares that meet at corners alone, each cut by the others: pieces without number.
+    #[test]
+    fn parts_that_were_made_to_take_for_ever_end_as_ones_that_leave_something_out() {
+        let squares = |off: f64| {
+            let side = |at: u32| [f64::from(at) + off, f64::from(at) + off + 1.0];
+            let places = (0..50).flat_map(|x| (0..50).map(move |y| (x, y)));
+            let dark = places.filter(|(x, y)| (x + y) % 2 == 0);
+            dark.map(|(x, y)| vec![side(x), side(y)]).collect::<Vec<_>>()
+        };
+        let mut parts = [0.0, 0.3, 0.6].map(squares).concat();
+        parts.push(vec![[0.0, 51.0], [0.0, 25.0]]);
+        parts.push(vec![[0.0, 51.0], [25.0, 51.0]]);
+        let whole = [[0.0, 51.0], [0.0, 51.0]];
+        // They cover it; nobody waits to hear so.
+        let _ = covered(&whole, &parts);
+        parts.pop();
+        assert!(!covered(&whole, &parts));
+        let mut cuts = 2;
+        assert!(may_cut(&mut cuts) && may_cut(&mut cuts) && !may_cut(&mut cuts));
     }
 }

@@ -1,7 +1,7 @@
 //! Numbers of a family that move in flight: how fast they may, and why.
 //!
-//! Each number moves by no more than all its range in a time T, in samples and between them, so by a part d of it in a
-//! sample. Patches of the box have a form each, which falls at all numbers inside while these move within the sample. They
+//! Each number moves at no more than the rate that takes it steadily through all its range in a time T, in samples and
+//! between them, so by a part d of it in a sample. Patches of the box have a form each, which falls at all numbers inside while these move within the sample. They
 //! overlap: what is left of each once a margin w is taken off its faces, its core, covers the box together with the other
 //! cores. A flight counts on the form of one patch as long as its numbers are inside at the begin of each sample, which from
 //! a core on is so for n samples at least, with n d at most w; then they are in the core of a patch whose form it counts on
@@ -21,13 +21,14 @@ use fspid_numeric::scalar::{Interval, Scalar};
 
 use super::{Family, Parameter, Part, cover};
 use crate::certificate::Claim;
-use crate::check::{IntervalMatrix, NotProved, PlantSet, prove_positive_definite};
+use crate::check::{IntervalMatrix, NotProved, PlantSet, printed, prove_positive_definite};
 use crate::description::LoopDescription;
 
 /// How fast the numbers of a family may move.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pace {
-    /// Each number needs at least this time from one end to the other, s; 0 where it may be anywhere at any time.
+    /// Each number moves at no more than the rate that takes it steadily from one end to the other in this time, s; at 0 it
+    /// may be anywhere at any time.
     pub crosses_in_s: f64,
     /// What is taken off the faces of a patch inside the box for its core, over the whole side.
     pub overlap: f64,
@@ -52,7 +53,7 @@ const MOST_SAMPLES: f64 = 1e9;
 impl Pace {
     /// How far a number moves in a sample at most.
     fn in_a_sample(&self, ends: [f64; 2], dt_s: f64) -> Interval {
-        let share = (Interval::point(dt_s) / Interval::point(self.crosses_in_s)).upper().min(1.0);
+        let share = (printed(dt_s) / Interval::point(self.crosses_in_s)).upper().min(1.0);
         let share = if self.crosses_in_s > 0.0 { share } else { 1.0 };
         width(ends) * Interval::point(share)
     }
@@ -109,6 +110,7 @@ impl Pace {
         description: &LoopDescription,
     ) -> Result<(), &'static str> {
         self.is_whole(&family.parameters, &family.parts)?;
+        hang_together(&family.parts)?;
         self.keeps_up(&family.parameters, description)
     }
 
@@ -177,12 +179,13 @@ impl Pace {
 
 impl Parameter {
     /// True for a number whose change leaves the states of the plant what they are, so that a flight goes on where it was:
-    /// of an aircraft or an actuator, or a factor on all of a transfer function's numerator, which is one on its elevator.
-    /// Other coefficients of a transfer function that moved would have no meaning without a choice of its states.
+    /// of an aircraft or an actuator, or a factor on all of a transfer function's numerator, which is one on its elevator,
+    /// and not 0, where the states are others. Other coefficients of a transfer function that moved would have no meaning
+    /// without a choice of its states. The scale of a sensor may; not that of two by one draw, as each sees its own delay.
     #[must_use]
     pub fn may_move(&self, description: &LoopDescription) -> bool {
         if !self.is_of_plant() {
-            return true;
+            return self.sensors.len() == 1;
         }
         let of = |table: &str| self.paths.iter().all(|path| path.starts_with(table));
         // A coefficient may stand in a table of its own kind of plant.
@@ -201,13 +204,40 @@ impl Parameter {
         let of_numerator = |path: &String| {
             path.rsplit('.').next().is_some_and(|last| last.starts_with("numerator["))
         };
-        let is_effect = of("plant.") && self.paths.iter().all(of_numerator) && is_factor;
+        let [from, to] = self.ends;
+        let has_a_sign = from > 0.0 || to < 0.0;
+        let is_effect =
+            of("plant.") && self.paths.iter().all(of_numerator) && is_factor && has_a_sign;
         !self.paths.is_empty() && (of("aircraft.") || of("actuator.") || is_effect)
     }
 }
 
 fn width([from, to]: [f64; 2]) -> Interval {
     Interval::point(to) - Interval::point(from)
+}
+
+/// Whether parts can be those of plants that change with their numbers without a jump: of what numbers that move do within
+/// a sample only slopes are known.
+fn hang_together(parts: &[Part]) -> Result<(), &'static str> {
+    let entries = |part: &'_ Part| part.plants.all.concat();
+    let lags = |part: &&Part| part.plants.without_lag == parts[0].plants.without_lag;
+    if !parts.iter().all(|part| lags(&part) && part.plants.holds_its_middle()) {
+        return Err(
+            "its numbers move, and its plants are not told as those of one function of them",
+        );
+    }
+    let all: Vec<Vec<Interval>> = parts.iter().map(entries).collect();
+    for (place, (part, own)) in parts.iter().zip(&all).enumerate() {
+        let others = parts.iter().zip(&all).skip(place + 1);
+        let mut near = others.filter(|(other, _)| cover::touches(&part.ends, &other.ends));
+        let meet = |(_, other): (&Part, &Vec<Interval>)| {
+            own.iter().zip(other).all(|(own, other)| own.intersection(*other).is_some())
+        };
+        if !near.all(meet) {
+            return Err("its numbers move, and plants jump from part to part");
+        }
+    }
+    Ok(())
 }
 
 /// The form and the rate of a claim about all gains.

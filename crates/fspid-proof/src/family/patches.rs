@@ -122,11 +122,13 @@ impl PaceSearch<'_, '_> {
         let off = off(search, &still.parts, pace.crosses_in_s)?;
         let parts = pace.patches.iter().map(|it| self.covered(&it.ends, &it.claim, &off).ok());
         let parts = with_all_scales(parts.collect::<Option<Vec<_>>>()?.concat(), still);
+        let claim = &pace.patches.first()?.claim;
         let (parameters, pace) = (still.parameters.clone(), Some(pace.clone()));
         let family = Family { parameters, parts, pace };
         let most_parts = (MORE_PARTS * still.parts.len() + PARTS_AT_LEAST).min(MOST_PARTS);
-        (family.parts.len() <= most_parts && self.holds_with_its_own_parts(&family, &off))
-            .then_some(family)
+        let may_be_checked =
+            family.parts.len() <= most_parts && search.may_be_checked(claim, &family);
+        (may_be_checked && self.holds_with_its_own_parts(&family, &off)).then_some(family)
     }
 
     /// True if a family that is proved with what other parts are off is so with its own.
@@ -135,7 +137,9 @@ impl PaceSearch<'_, '_> {
         let own = pace.and_then(|pace| off(self.search, &family.parts, pace.crosses_in_s));
         own.is_some_and(|own| {
             let mut counted_on = family.parts.iter().filter(|it| family.moves_with(&it.claim));
-            known.encloses(&own) || counted_on.all(|part| self.falls(part, &own))
+            let is_whole =
+                pace.is_some_and(|it| it.check(family, self.search.description()).is_ok());
+            is_whole && (known.encloses(&own) || counted_on.all(|part| self.falls(part, &own)))
         })
     }
 

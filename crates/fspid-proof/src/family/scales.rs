@@ -30,14 +30,19 @@ impl Parameter {
     /// The least and the most scale of a sensor, that is 1 and its error, whose scale in the loop as it is is `nominal`.
     #[must_use]
     pub fn scales(&self, ends: [f64; 2], nominal: f64) -> [f64; 2] {
+        let [one, other] = ends.map(|end| self.scale_at(end, nominal));
+        [one[0].min(other[0]), one[1].max(other[1])]
+    }
+
+    /// Between what the scale of a sensor lies at one end, as arithmetic may round it.
+    fn scale_at(&self, end: f64, nominal: f64) -> [f64; 2] {
         let point = Interval::point;
-        let error = |end: f64| match self.relative {
+        let error = match self.relative {
             true => (point(nominal) * ROUNDED - Interval::ONE) * printed(end),
             false => printed(end) / point(100.0),
         };
-        let scales = ends.map(|end| (Interval::ONE + error(end) * ROUNDED) * ROUNDED);
-        let [one, other] = scales.map(|it| [it.lower(), it.upper()]);
-        [one[0].min(other[0]), one[1].max(other[1])]
+        let scale = (Interval::ONE + error * ROUNDED) * ROUNDED;
+        [scale.lower(), scale.upper()]
     }
 }
 
@@ -67,12 +72,19 @@ pub(super) fn may_change(parameters: &[Parameter], parts: &[(&[[f64; 2]], &Claim
     !scales.is_empty()
         && parameters.iter().all(|one| one.sensors.len() <= 1)
         && !apart.iter().any(is_tied)
-        && has_one_form(&plants, &scales, &apart.iter().collect::<Vec<_>>())
+        && has_one_form(&plants, &scales, &apart.iter().collect::<Vec<_>>(), &mut {
+            cover::MOST_CUTS
+        })
 }
 
 /// True if of each plant between some ends there is a claim whose parts hold it at all scales; plants are cut where parts
-/// end.
-fn has_one_form(plants: &[[f64; 2]], scales: &[[f64; 2]], parts: &[&Apart<'_>]) -> bool {
+/// end, so many times at most.
+fn has_one_form(
+    plants: &[[f64; 2]],
+    scales: &[[f64; 2]],
+    parts: &[&Apart<'_>],
+    cuts: &mut usize,
+) -> bool {
     let near: Vec<&Apart<'_>> =
         parts.iter().filter(|part| cover::has_inside(&part.0, plants)).copied().collect();
     let holding = near.iter().filter(|part| cover::holds_all(&part.0, plants));
@@ -87,41 +99,63 @@ fn has_one_form(plants: &[[f64; 2]], scales: &[[f64; 2]], parts: &[&Apart<'_>]) 
     let Some((side, at)) = near.iter().find_map(|part| cover::face_within(&part.0, plants)) else {
         return false;
     };
+    if !cover::may_cut(cuts) {
+        return false;
+    }
     [[plants[side][0], at], [at, plants[side][1]]].into_iter().all(|half| {
         let mut ends = plants.to_vec();
         ends[side] = half;
-        has_one_form(&ends, scales, &near)
+        has_one_form(&ends, scales, &near, cuts)
     })
 }
 
-/// What a loop is set to at each corner of the scales that differ; sensors of one parameter have theirs together.
+/// What a loop is set to at each corner of the scales that differ. Sensors of one parameter have theirs together, end by end:
+/// as a factor of errors of two signs one grows while the other falls.
 pub(super) fn corners(
     parameters: &[Parameter],
     ends: &[[f64; 2]],
     description: &LoopDescription,
 ) -> Vec<LoopSettings> {
-    let mut found = vec![description.settings()];
-    for (parameter, &ends) in parameters.iter().zip(ends) {
-        if parameter.is_of_plant() {
-            continue;
-        }
-        let at = |settings: &LoopSettings, end: usize| {
-            let mut settings = settings.clone();
-            for sensor in &parameter.sensors {
-                let place = sensor.place(&mut settings);
-                *place = parameter.scales(ends, *place)[end];
-            }
-            settings
+    let differing = parameters.iter().zip(ends).filter(|(one, _)| !one.is_of_plant());
+    differing.fold(vec![description.settings()], |found, (parameter, &ends)| {
+        found.iter().flat_map(|settings| parameter.settings_at(ends, settings)).collect()
+    })
+}
+
+impl Parameter {
+    /// A loop's settings at both ends, with all that arithmetic may make of each.
+    fn settings_at(&self, ends: [f64; 2], settings: &LoopSettings) -> Vec<LoopSettings> {
+        let with = |all: Vec<LoopSettings>, sensor: ScaledSensor, of: &dyn Fn(f64) -> [f64; 2]| {
+            let both = |settings: &LoopSettings| {
+                let mut settings = settings.clone();
+                let nominal = *sensor.place(&mut settings);
+                of(nominal).map(|scale| {
+                    *sensor.place(&mut settings) = scale;
+                    settings.clone()
+                })
+            };
+            all.iter().flat_map(both).collect()
         };
-        found = found.iter().flat_map(|it| [at(it, 0), at(it, 1)]).collect();
+        let own = vec![settings.clone()];
+        if let [sensor] = self.sensors[..] {
+            return with(own, sensor, &|nominal| self.scales(ends, nominal));
+        }
+        let at = |end: f64| {
+            let sensors = self.sensors.iter().copied();
+            sensors.fold(own.clone(), |all, it| with(all, it, &|one| self.scale_at(end, one)))
+        };
+        ends.into_iter().flat_map(at).collect()
     }
-    found
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fspid_core::{Gains, Pid, PidConfig};
     use fspid_lti::Matrix;
+    use fspid_sim::actuator::{Actuator, Lag};
+    use fspid_sim::loop_model::Sensing;
+    use fspid_sim::{Controller, ElevatorSign};
 
     fn parameter(sensors: &[ScaledSensor]) -> Parameter {
         let (name, paths) = (String::new(), Vec::new());
@@ -195,5 +229,32 @@ mod tests {
         let form = Matrix::identity(2);
         let tied = Claim::SProcedure { form, rate: 0.9, multipliers: vec![1.0] };
         assert!(!of(&[ScaledSensor::Rate], &tied));
+    }
+
+    #[test]
+    fn sensors_of_one_draw_whose_errors_have_two_signs_go_apart_and_not_together() {
+        let gains = Gains { kp: 2.0, ki: 0.5, kd: 1.0 };
+        let pid = Pid::new(gains, PidConfig::sampled_every(0.01)).expect("allowed");
+        let with = |scale: f64| Sensing { scale, ..Sensing::DIRECT };
+        let description = LoopDescription {
+            numerator: vec![1.0],
+            denominator: vec![1.0, 1.0, 0.0],
+            elevator_sign: ElevatorSign::NoseUpPositive,
+            actuator: Actuator::new(Lag::first_order(0.1).expect("allowed")),
+            pitch: with(1.05),
+            rate: with(0.95),
+            controller: Controller::Fixed(pid),
+        };
+        let mut both = parameter(&[ScaledSensor::Pitch, ScaledSensor::Rate]);
+        both.relative = true;
+        let found = corners(&[both], &[ALL], &description);
+        let near = |pitch: f64, rate: f64| {
+            let is = |it: &&LoopSettings| {
+                (it.pitch.scale - pitch).abs() < 1e-9 && (it.rate.scale - rate).abs() < 1e-9
+            };
+            found.iter().filter(is).count()
+        };
+        // No error at all, and twice that of each; each with all that rounding makes of it.
+        assert_eq!([near(1.0, 1.0), near(1.1, 0.9), found.len()], [4, 4, 8]);
     }
 }

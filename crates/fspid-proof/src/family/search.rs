@@ -308,6 +308,11 @@ impl Search<'_> {
         self.parameters
     }
 
+    /// True if who re-checks a family is not refused the work.
+    pub(super) fn may_be_checked(&self, claim: &Claim, family: &Family) -> bool {
+        self.prover.may_be_checked(claim, family)
+    }
+
     /// Plants of a box.
     pub(super) fn plants(&self, ends: &[[f64; 2]]) -> Result<PlantSet, NotProved> {
         PlantSet::of(&numbers(self.parameters, ends), self.plant)

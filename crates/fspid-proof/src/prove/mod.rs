@@ -20,11 +20,13 @@ use fspid_sim::loop_model::LoopModel;
 
 use crate::certificate::{Certificate, Claim};
 use crate::description::{LoopDescription, NotProvable};
+use crate::family::Family;
 use crate::gain_set::{GainSet, HeldGains, IncrementMap, KnownSlopes, NoSlopes};
 use crate::limits;
 use crate::recheck::{Kept, Recheck, RecheckError, Rechecked};
 use crate::rest::{NoRest, Rest};
 use crate::scope::{Asked, Range};
+use crate::sizes;
 use crate::solve::{self, never};
 use crate::steps::{self, Commanded, Steps};
 
@@ -491,6 +493,12 @@ impl<'a> Prover<'a> {
             disturbances: Vec::new(),
             nonlinear: None,
         }
+    }
+
+    /// True if the work of a re-check that a family makes is allowed.
+    pub(crate) fn may_be_checked(&self, claim: &Claim, family: &Family) -> bool {
+        let alone = self.certificate(claim.clone(), 1.0, None);
+        sizes::check(&Certificate { family: Some(family.clone()), ..alone }).is_ok()
     }
 
     /// What a re-check finds of the return to rest, of some gains.

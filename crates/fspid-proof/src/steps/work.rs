@@ -128,6 +128,10 @@ impl<'a> Flights<'a> {
         from: usize,
     ) -> Result<Landed, Stop> {
         let left = self.left()?;
+        // Before the last change nothing has landed.
+        if way.commands.last_change().saturating_sub(from) > left {
+            return Err(Stop::Lost);
+        }
         let most = from.max(way.commands.last_change()).saturating_add(self.longest);
         let most = most.min(from.saturating_add(left));
         let landed = self.ready.landed(way, flight, from..most);

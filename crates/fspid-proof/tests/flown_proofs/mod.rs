@@ -63,13 +63,16 @@ fn settled(seed: u64, drawn: fn(&mut Dice) -> Scenario) -> Option<bool> {
 
 #[test]
 fn every_flight_of_a_proved_step_ends_where_it_is_claimed_with_its_limits() {
+    // Two of the six take half a minute of a processor each.
+    let is_long = std::env::var_os("FSPID_LONG_TESTS").is_some();
+    let (seeds, least) = if is_long { (vec![0, 1, 2, 3, 4, 5], 2) } else { (vec![0, 1, 3, 4], 1) };
     let mut stepped = 0;
-    for seed in 0..6 {
+    for seed in seeds {
         match flown::answer(&drawn::with_limits(&mut Dice::new(seed))) {
             Answer::Contradicted(reason) => panic!("scenario {seed}: {reason}"),
             Answer::Settled { stepped: here, .. } => stepped += usize::from(here),
             Answer::NotProvable(_) | Answer::Open | Answer::Refuted => {}
         }
     }
-    assert!(stepped >= 2, "{stepped} with steps");
+    assert!(stepped >= least, "{stepped} with steps");
 }

@@ -42,12 +42,12 @@ fn proved(family: &Family) -> String {
 fn at_a_pace(pace: &Pace) -> String {
     let how_fast = match pace.crosses_in_s {
         time_s if time_s > 0.0 => {
-            format!("each by no more than its whole range in {} s", short(time_s))
+            format!("each at no more than the rate of its whole range in {time_s} s")
         }
         _ => "each as fast as it likes".to_owned(),
     };
     format!(
-        "; the numbers may move in flight, all at the same time and {how_fast}: the motion about the trim of the moment comes to rest, and what it does that the trim itself moves is left out"
+        "; the numbers may move in flight, all at the same time and {how_fast}: the motion about the trim of the moment comes to rest, and what the change does by itself is left out (the trim that moves with the numbers, a moment of inertia that changes)"
     )
 }
 
