@@ -210,9 +210,13 @@ fn push_rate(out: &mut String, rate: f64, dt_s: f64, remains: bool) {
 }
 
 pub(super) fn push_rechecked(out: &mut String, rechecked: &Rechecked) {
+    let boxes = match rechecked.cells {
+        1 => "one box".to_owned(),
+        cells => format!("{cells} boxes"),
+    };
     out.push_str(&format!(
-        "  re-check           {} inequalities over {} boxes of gains, in interval arithmetic\n",
-        rechecked.inequalities, rechecked.cells
+        "  re-check           {} inequalities over {boxes} of gains, in interval arithmetic\n",
+        rechecked.inequalities
     ));
 }
 

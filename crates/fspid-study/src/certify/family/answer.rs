@@ -24,19 +24,21 @@ pub(in super::super) fn box_in_words(parameters: &[Parameter]) -> String {
     all_between(parameters, parameters.iter().map(|one| one.ends))
 }
 
-/// What a proved family says.
-fn proved(family: &Family) -> String {
+/// What a proved family says, sentence by sentence.
+fn proved(family: &Family) -> Vec<String> {
     let some = |count: usize, what: &str| match count {
         1 => format!("one {what}"),
         _ => format!("{count} {what}s"),
     };
     let how = format!("{}, {}", some(family.parts.len(), "part"), some(family.forms(), "form"));
-    let changing = if family.scales_may_change() { SCALES_MAY_CHANGE } else { "" };
-    let moving = family.pace.as_ref().map_or_else(String::new, at_a_pace);
-    format!(
-        "every loop in all of this, each standing still, returns to its trim where the set-point is and no load acts, as long as no limit acts ({how}){moving}{changing}; all else here is about the loop as it is: {}",
+    let standing = format!(
+        "every loop in all of this, each standing still, returns to its trim where the set-point is and no load acts, as long as no limit acts ({how}): {}",
         box_in_words(&family.parameters)
-    )
+    );
+    let moving = family.pace.as_ref().map(at_a_pace);
+    let changing = family.scales_may_change().then(|| SCALES_MAY_CHANGE.to_owned());
+    let rest = "all else here is about the loop as it is".to_owned();
+    [Some(standing), moving, changing, Some(rest)].into_iter().flatten().collect()
 }
 
 fn at_a_pace(pace: &Pace) -> String {
@@ -47,15 +49,15 @@ fn at_a_pace(pace: &Pace) -> String {
         _ => "each as fast as it likes".to_owned(),
     };
     format!(
-        "; the numbers may move in flight, all at the same time and {how_fast}: the motion about the trim of the moment comes to rest, and what the change does by itself is left out (the trim that moves with the numbers, a moment of inertia that changes)"
+        "the numbers may move in flight, all at the same time and {how_fast}: the motion about the trim of the moment comes to rest, and what the change does by itself is left out (the trim that moves with the numbers, a moment of inertia that changes)"
     )
 }
 
-const SCALES_MAY_CHANGE: &str = "; the scales of sensors may change in flight, beside a plant that stands still, from sample to sample, each by itself and as fast as it likes, so that a sensor whose line is bent is covered as long as what it shows of the way from the trim is within these scales of it";
+const SCALES_MAY_CHANGE: &str = "the scales of sensors may change in flight, beside a plant that stands still, from sample to sample, each by itself and as fast as it likes, so that a sensor whose line is bent is covered as long as what it shows of the way from the trim is within these scales of it";
 
 /// Sentences about a family whose certificate is there.
 pub(in super::super) fn sentences(family: &Family) -> Vec<String> {
-    vec![proved(family)]
+    proved(family)
 }
 
 impl FamilyAnswer {
@@ -68,7 +70,7 @@ impl FamilyAnswer {
             Self::None(reason) => format!("OPEN: {reason}"),
             Self::Verdict { parameters, verdict } => match &**verdict {
                 FamilyVerdict::Proved(family) => {
-                    format!("PROVED: {}", proved(family))
+                    format!("PROVED: {}", proved(family).join("; "))
                 }
                 FamilyVerdict::Refuted { at, .. } => {
                     let set = at.iter().zip(parameters).map(|(at, one)| setting(one, *at));
