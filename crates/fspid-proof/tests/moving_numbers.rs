@@ -240,6 +240,12 @@ fn flights_of_a_family_at_its_pace_come_to_rest_however_an_enemy_moves_its_numbe
     assert!(pace.crosses_in_s <= 20.0, "{}", pace.crosses_in_s);
     let whole = certificate(&STEADY.description(), &family);
     whole.check().expect("it holds");
+    // Within a sample numbers move further at a faster pace, which one form for all of them does not bear either.
+    let mut faster = family.clone();
+    faster.pace.as_mut().expect("a pace").crosses_in_s *= 1e-3;
+    let faster = Certificate { family: Some(faster), ..whole.clone() };
+    let refused = faster.check().expect_err("too fast").to_string();
+    assert!(refused.contains("of the family"), "{refused}");
     let fspid_proof::Claim::CommonQuadratic { form, .. } = &pace.patches[0].claim else {
         panic!("one form")
     };
@@ -337,7 +343,13 @@ fn what_is_claimed_of_numbers_that_move_is_believed_only_as_it_was_proved() {
     with(&|it| it.crosses_in_s *= 0.01, "too fast");
     with(&|it| it.crosses_in_s = 0.0, "too fast");
     with(&|it| it.crosses_in_s = f64::NAN, "not allowed");
+    with(&|it| it.crosses_in_s = f64::INFINITY, "not allowed");
+    with(&|it| it.crosses_in_s = -1.0, "not allowed");
     with(&|it| it.overlap = -0.1, "not allowed");
+    with(&|it| it.overlap = 1.5, "not allowed");
+    for ends in [[0.5, 0.4], [f64::NEG_INFINITY, 1.0], [0.5, f64::INFINITY], [f64::NAN, 1.0]] {
+        with(&|it| it.patches[0].ends[0] = ends, "not in order");
+    }
     with(&|it| it.overlap *= 3.0, "overlap too little");
     with(&|it| it.overlap = 0.0, "too fast");
     with(&|it| drop(it.patches.pop()), "overlap too little");
@@ -396,9 +408,17 @@ fn numbers_whose_motion_means_nothing_or_means_other_states_stand_still() {
     assert!(!may_move(&all[..1], ends));
     // Where the elevator has no effect, states are those of another form.
     assert!(!may_move(&all, [-0.2, 1.0]) && !may_move(&all, [0.0, 1.0]));
+    assert!(!may_move(&all, [-1.0, 0.0]));
     assert!(!may_move(&["plant.denominator[1]"], ends) && !may_move(&[], ends));
     assert!(may_move(&["aircraft.mass_kg"], ends) && may_move(&["actuator.damping"], ends));
     assert!(!may_move(&["actuator.damping", "plant.denominator[1]"], ends));
+    // The only coefficient of a numerator is a factor on it, however it is drawn.
+    let absolute = |description: &LoopDescription| {
+        let drawn = Parameter { relative: false, ..number(&all[..1], ends, &[]) };
+        drawn.may_move(description)
+    };
+    let alone = LoopDescription { numerator: vec![2.0], ..description.clone() };
+    assert!(absolute(&alone) && !absolute(&description));
     let [pitch, rate] = [ScaledSensor::Pitch, ScaledSensor::Rate];
     assert!(number(&[], ends, &[pitch]).may_move(&description));
     assert!(!number(&[], ends, &[pitch, rate]).may_move(&description));

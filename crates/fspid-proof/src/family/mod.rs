@@ -306,7 +306,26 @@ fn models(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fspid_core::{Gains, Pid, PidConfig};
     use fspid_lti::Matrix;
+    use fspid_sim::actuator::{Actuator, Lag};
+    use fspid_sim::loop_model::Sensing;
+    use fspid_sim::{Controller, ElevatorSign};
+
+    /// A PID at ten samples a second.
+    pub(super) fn fixed_loop() -> LoopDescription {
+        let gains = Gains { kp: 2.0, ki: 0.5, kd: 1.0 };
+        let pid = Pid::new(gains, PidConfig::sampled_every(0.1)).expect("allowed");
+        LoopDescription {
+            numerator: vec![1.0],
+            denominator: vec![1.0, 1.0, 0.0],
+            elevator_sign: ElevatorSign::NoseUpPositive,
+            actuator: Actuator::new(Lag::first_order(0.1).expect("allowed")),
+            pitch: Sensing::DIRECT,
+            rate: Sensing::DIRECT,
+            controller: Controller::Fixed(pid),
+        }
+    }
 
     fn differing(sensors: &[ScaledSensor]) -> [Parameter; 1] {
         let (name, paths) = (String::new(), Vec::new());

@@ -53,8 +53,8 @@ const MOST_SAMPLES: f64 = 1e9;
 impl Pace {
     /// How far a number moves in a sample at most.
     fn in_a_sample(&self, ends: [f64; 2], dt_s: f64) -> Interval {
+        // In no time at all: all of it, as in any that is shorter than a sample.
         let share = (printed(dt_s) / Interval::point(self.crosses_in_s)).upper().min(1.0);
-        let share = if self.crosses_in_s > 0.0 { share } else { 1.0 };
         width(ends) * Interval::point(share)
     }
 
@@ -228,7 +228,7 @@ fn hang_together(parts: &[Part]) -> Result<(), &'static str> {
     }
     let all: Vec<Vec<Interval>> = parts.iter().map(entries).collect();
     for (place, (part, own)) in parts.iter().zip(&all).enumerate() {
-        let others = parts.iter().zip(&all).skip(place + 1);
+        let others = parts.iter().zip(&all).skip(place);
         let mut near = others.filter(|(other, _)| cover::touches(&part.ends, &other.ends));
         let meet = |(_, other): (&Part, &Vec<Interval>)| {
             own.iter().zip(other).all(|(own, other)| own.intersection(*other).is_some())
@@ -268,4 +268,106 @@ fn power(base: Interval, times: u64) -> Interval {
         square = square.square();
     }
     result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::family::tests::fixed_loop;
+    use crate::family::{ScaledSensor, moves::Off};
+
+    const DT_S: f64 = 0.1;
+
+    fn parameter(ends: [f64; 2], inverse: bool) -> Parameter {
+        let (name, paths) = (String::new(), vec!["actuator.time_constant_s".to_owned()]);
+        Parameter { name, paths, relative: false, inverse, sensors: Vec::new(), ends }
+    }
+
+    fn scale(ends: [f64; 2]) -> Parameter {
+        Parameter { sensors: vec![ScaledSensor::Pitch], ..parameter(ends, false) }
+    }
+
+    fn pace(crosses_in_s: f64, overlap: f64, patches: Vec<Patch>) -> Pace {
+        Pace { crosses_in_s, overlap, patches }
+    }
+
+    fn patch(ends: [f64; 2], size: f64, rate: f64) -> Patch {
+        let form = Matrix::identity(2).scaled(size);
+        Patch { ends: vec![ends], claim: Claim::CommonQuadratic { form, rate } }
+    }
+
+    #[test]
+    fn what_plants_are_made_of_moves_by_its_share_of_the_range_in_a_sample_and_by_all_of_it_at_most()
+     {
+        let all = [parameter([1.0, 3.0], false), scale([-5.0, 5.0]), parameter([0.1, 0.2], true)];
+        let moved = |crosses_in_s: f64| pace(crosses_in_s, 0.0, Vec::new()).of_plant(&all, DT_S);
+        let near = |found: &[f64], expected: [f64; 2]| {
+            let off = |(one, other): (&f64, f64)| *one >= other && *one - other < 1e-12 * other;
+            assert!(found.len() == 2 && found.iter().zip(expected).all(off), "{found:?}");
+        };
+        near(&moved(10.0), [0.02, 0.1]);
+        for crosses_in_s in [0.0, 0.01, DT_S] {
+            near(&moved(crosses_in_s), [2.0, 10.0]);
+        }
+    }
+
+    #[test]
+    fn numbers_stay_in_a_patch_for_the_samples_that_its_margin_takes_them() {
+        let all = [parameter([1.0, 3.0], false), scale([-5.0, 5.0])];
+        let samples = |crosses_in_s, overlap, all: &[Parameter]| {
+            pace(crosses_in_s, overlap, Vec::new()).samples(all, DT_S)
+        };
+        // 25.5 of them.
+        assert_eq!(samples(10.0, 0.255, &all), Some(25));
+        assert_eq!(samples(10.0, 0.009, &all), None);
+        assert_eq!(samples(0.0, 0.255, &all), None);
+        let standing = [parameter([2.0, 2.0], false)];
+        assert_eq!(samples(10.0, 0.0, &standing), Some(1_000_000_000));
+        let both = [all[0].clone(), standing[0].clone()];
+        assert_eq!(samples(10.0, 0.255, &both), Some(25));
+    }
+
+    #[test]
+    fn forms_go_over_into_each_other_where_patches_meet_and_are_not_asked_to_where_they_do_not() {
+        let number = [parameter([0.0, 3.0], false)];
+        let keeps_up =
+            |patches: &[Patch]| pace(10.0, 0.1, patches.to_vec()).keeps_up(&number, &fixed_loop());
+        // Nine samples at least, in which a form falls to 0.39 of itself.
+        let [low, middle, high] = [[0.0, 1.5], [0.8, 2.4], [1.5, 3.0]];
+        let of = |sizes: [f64; 3]| {
+            [low, middle, high].into_iter().zip(sizes).map(|(ends, size)| patch(ends, size, 0.949))
+        };
+        let patches = |sizes| of(sizes).collect::<Vec<_>>();
+        assert_eq!(keeps_up(&patches([1.0, 2.0, 4.0])), Ok(()));
+        let too_fast = Err("its numbers go over from form to form too fast");
+        assert_eq!(keeps_up(&patches([1.0, 4.0, 8.0])), too_fast);
+        assert_eq!(keeps_up(&patches([4.0, 2.0, 4.0])), Ok(()));
+        assert_eq!(keeps_up(&patches([8.0, 2.0, 4.0])), too_fast);
+        let few = Err("its patches overlap too little");
+        assert_eq!(keeps_up(&patches([1.0, 2.0, 4.0])[..2]), few);
+        assert_eq!(keeps_up(&patches([1.0; 3])[1..]), few);
+    }
+
+    #[test]
+    fn powers_of_a_rate_are_products() {
+        for times in [0, 1, 2, 3, 10, 1000] {
+            let found = power(Interval::point(0.5), times);
+            assert!(found.contains(libm::exp2(-(times as f64))) && found.upper() < 1.1);
+        }
+        assert!(power(Interval::point(0.9), 1_000_000_000).upper() < 1e-300);
+        assert_eq!(power(Interval::ONE, 12345), Interval::ONE);
+    }
+
+    #[test]
+    fn what_is_off_is_held_by_what_is_nowhere_less() {
+        let off = |entries: [f64; 2], rate: [f64; 2]| Off {
+            entries: entries.to_vec(),
+            pitch_rate: vec![Interval::between(rate[0], rate[1])],
+        };
+        let own = off([1.0, 2.0], [-1.0, 1.0]);
+        assert!(own.encloses(&own) && own.encloses(&off([1.0, 1.0], [0.0, 1.0])));
+        assert!(!own.encloses(&off([1.0, 2.1], [0.0, 1.0])));
+        assert!(!own.encloses(&off([0.0, 0.0], [-1.0, 1.1])));
+        assert!(!own.encloses(&off([1.1, 0.0], [-2.0, 0.0])));
+    }
 }

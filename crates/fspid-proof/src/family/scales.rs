@@ -151,11 +151,9 @@ impl Parameter {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fspid_core::{Gains, Pid, PidConfig};
+    use crate::family::tests::fixed_loop;
     use fspid_lti::Matrix;
-    use fspid_sim::actuator::{Actuator, Lag};
     use fspid_sim::loop_model::Sensing;
-    use fspid_sim::{Controller, ElevatorSign};
 
     fn parameter(sensors: &[ScaledSensor]) -> Parameter {
         let (name, paths) = (String::new(), Vec::new());
@@ -233,18 +231,8 @@ mod tests {
 
     #[test]
     fn sensors_of_one_draw_whose_errors_have_two_signs_go_apart_and_not_together() {
-        let gains = Gains { kp: 2.0, ki: 0.5, kd: 1.0 };
-        let pid = Pid::new(gains, PidConfig::sampled_every(0.01)).expect("allowed");
         let with = |scale: f64| Sensing { scale, ..Sensing::DIRECT };
-        let description = LoopDescription {
-            numerator: vec![1.0],
-            denominator: vec![1.0, 1.0, 0.0],
-            elevator_sign: ElevatorSign::NoseUpPositive,
-            actuator: Actuator::new(Lag::first_order(0.1).expect("allowed")),
-            pitch: with(1.05),
-            rate: with(0.95),
-            controller: Controller::Fixed(pid),
-        };
+        let description = LoopDescription { pitch: with(1.05), rate: with(0.95), ..fixed_loop() };
         let mut both = parameter(&[ScaledSensor::Pitch, ScaledSensor::Rate]);
         both.relative = true;
         let found = corners(&[both], &[ALL], &description);
