@@ -204,6 +204,16 @@ fn sensors_of_any_scale_between_limits_are_proved_with_plants_and_compared() {
     assert!(code(&output) == 1 && refused.contains("a [[dispersion]] for each"), "{refused}");
 }
 
+/// A scenario whose family is proved: where its file and its certificate are, and what is said of it for programs.
+fn proved(scenario: &str) -> (tempfile::TempDir, serde_json::Value) {
+    let folder = folder(scenario);
+    let words = ["certify", "drawn.toml", "--family", "--format", "json", "--out", "proofs"];
+    let output = fspid(&words, folder.path());
+    assert_eq!(code(&output), 0, "{}{}", text(&output.stdout), text(&output.stderr));
+    let family = json(&output)["controllers"][0]["family"].clone();
+    (folder, family)
+}
+
 /// Beside a plant that stands still, by the text, for programs and of the file alone.
 #[test]
 fn scales_that_may_change_in_flight_are_told() {
@@ -211,11 +221,7 @@ fn scales_that_may_change_in_flight_are_told() {
     let sensors = SENSORS.strip_suffix("[[dispersion]]\nname = \"servo\"\n").expect("the end");
     let sensed = format!("{before}{sensors}").replace("kd = 0.5", "kd = 0.5\nrate_gain = 0.3");
     let told = |scenario: &str| {
-        let folder = folder(scenario);
-        let words = ["certify", "drawn.toml", "--family", "--format", "json", "--out", "proofs"];
-        let output = fspid(&words, folder.path());
-        assert_eq!(code(&output), 0, "{}{}", text(&output.stdout), text(&output.stderr));
-        let family = json(&output)["controllers"][0]["family"].clone();
+        let (folder, family) = proved(scenario);
         let check = fspid(&["certify", "--check", "proofs/pid.certificate.json"], folder.path());
         let of_the_file = text(&check.stdout).contains("may change in flight");
         let in_words = family["in_words"].as_str().expect("words").contains("may change in flight");
@@ -235,11 +241,7 @@ fn the_time_in_which_numbers_may_cross_their_ranges_in_flight_is_told() {
         rest.split_at(rest.find("[[dispersion]]\nname = \"damping\"").expect("one"));
     let (_, servo) = rest.split_at(rest.find("[[dispersion]]\nname = \"servo\"").expect("one"));
     let told = |scenario: &str| {
-        let folder = folder(scenario);
-        let words = ["certify", "drawn.toml", "--family", "--format", "json", "--out", "proofs"];
-        let output = fspid(&words, folder.path());
-        assert_eq!(code(&output), 0, "{}{}", text(&output.stdout), text(&output.stderr));
-        let family = json(&output)["controllers"][0]["family"].clone();
+        let (folder, family) = proved(scenario);
         let file = "proofs/pid.certificate.json";
         let against = ["certify", "--check", file, "--against", "drawn.toml"];
         let check = fspid(&against, folder.path());

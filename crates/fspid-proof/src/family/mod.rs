@@ -7,9 +7,10 @@
 //! part's form is its proof.
 //!
 //! Claimed is the return to rest around the trim of each member, with the set-point there, without a load and without
-//! limits; where one form does for all scales of the sensors, of scales that change in flight too, and where parts overlap
-//! and their forms go over into each other, of numbers that move at a pace. The claim for the loop as it is may say more. What sensors that resolve in steps leave is bounded sample by
-//! sample for one loop alone, so that a family of such loops is refused. That the enclosures are those of what a user calls a mass is no part of a certificate: who has the scenario
+//! limits; where one form does for all scales of the sensors, of scales that change in flight too, and where patches overlap
+//! and their forms go over into each other, of numbers that move at a pace. The claim for the loop as it is may say more.
+//! What sensors that resolve in steps leave is bounded sample by sample for one loop alone, so that a family of such loops
+//! is refused. That the enclosures are those of what a user calls a mass is no part of a certificate: who has the scenario
 //! encloses them anew and compares.
 
 mod cover;

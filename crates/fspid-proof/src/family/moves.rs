@@ -24,7 +24,7 @@ impl Off {
     ) -> Result<Self, NotProved> {
         let plants: Vec<&PlantSet> = parts.iter().map(|part| &part.plants).collect();
         let dt_s = description.controller.config().dt_s;
-        let entries = pace.off(parameters, &plants, dt_s)?;
+        let entries = PlantSet::off_by_moving(&plants, &pace.of_plant(parameters, dt_s), dt_s)?;
         let states = plants.first().map_or(0, |it| it.pitch_rate.len());
         let hull = |at: usize| {
             let all = plants.iter().map(|it| it.pitch_rate[at]);

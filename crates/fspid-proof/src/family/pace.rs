@@ -1,11 +1,11 @@
 //! Numbers of a family that move in flight: how fast they may, and why.
 //!
 //! Each number moves at no more than the rate that takes it steadily through all its range in a time T, in samples and
-//! between them, so by a part d of it in a sample. Patches of the box have a form each, which falls at all numbers inside while these move within the sample. They
-//! overlap: what is left of each once a margin w is taken off its faces, its core, covers the box together with the other
-//! cores. A flight counts on the form of one patch as long as its numbers are inside at the begin of each sample, which from
-//! a core on is so for n samples at least, with n d at most w; then they are in the core of a patch whose form it counts on
-//! next. Where for all patches i and j that meet so
+//! between them, so by a part d of it in a sample. Patches of the box have a form each, which falls at all numbers inside
+//! while these move within the sample. They overlap: what is left of each once a margin w is taken off its faces, its core,
+//! covers the box together with the other cores. A flight counts on the form of one patch as long as its numbers are inside
+//! at the begin of each sample, which from a core on is so for n samples at least, with n d at most w; then they are in the
+//! core of a patch whose form it counts on next. Where for all patches i and j that meet so
 //!
 //! $$ \rho_j^{2n} P_j \prec P_i $$
 //!
@@ -21,7 +21,7 @@ use fspid_numeric::scalar::{Interval, Scalar};
 
 use super::{Family, Parameter, Part, cover};
 use crate::certificate::Claim;
-use crate::check::{IntervalMatrix, NotProved, PlantSet, printed, prove_positive_definite};
+use crate::check::{IntervalMatrix, printed, prove_positive_definite};
 use crate::description::LoopDescription;
 
 /// How fast the numbers of a family may move.
@@ -59,23 +59,13 @@ impl Pace {
     }
 
     /// How far what plants are made of moves in a sample at most.
-    fn of_plant(&self, parameters: &[Parameter], dt_s: f64) -> Vec<f64> {
+    pub(super) fn of_plant(&self, parameters: &[Parameter], dt_s: f64) -> Vec<f64> {
         let moved = |one: &Parameter| {
             let moved = self.in_a_sample(one.ends, dt_s);
             // |1/a - 1/b| = |a - b| |1/a| |1/b|.
             if one.inverse { moved * one.number(one.ends).square() } else { moved }
         };
         parameters.iter().filter(|one| one.is_of_plant()).map(|one| moved(one).upper()).collect()
-    }
-
-    /// What entries of the sampled plants of all parts are off, as their numbers move within the sample.
-    pub(super) fn off(
-        &self,
-        parameters: &[Parameter],
-        plants: &[&PlantSet],
-        dt_s: f64,
-    ) -> Result<Vec<f64>, NotProved> {
-        PlantSet::off_by_moving(plants, &self.of_plant(parameters, dt_s), dt_s)
     }
 
     /// Samples that begin with numbers in a patch if the first of them begins in its core: at least one.
@@ -219,7 +209,7 @@ fn width([from, to]: [f64; 2]) -> Interval {
 /// Whether parts can be those of plants that change with their numbers without a jump: of what numbers that move do within
 /// a sample only slopes are known.
 fn hang_together(parts: &[Part]) -> Result<(), &'static str> {
-    let entries = |part: &'_ Part| part.plants.all.concat();
+    let entries = |part: &Part| part.plants.all.concat();
     let lags = |part: &&Part| part.plants.without_lag == parts[0].plants.without_lag;
     if !parts.iter().all(|part| lags(&part) && part.plants.holds_its_middle()) {
         return Err(

@@ -1,5 +1,6 @@
 //! The re-check of a whole certificate: what it says is believed because this function answers `Ok`.
 
+mod boxed;
 mod disturbed;
 mod moving;
 mod remains;
@@ -246,27 +247,6 @@ impl<'a> Recheck<'a> {
             }
         };
         Ok(Self { certificate, model, set, rest, held, off_rad, stops: never })
-    }
-
-    /// Proves a claim of the return to rest. One about all gains is proved of the box around them, if it holds there: of
-    /// thousands of corners eight are left.
-    pub(crate) fn of_rest(
-        certificate: &Certificate,
-        model: &LoopModel<Interval>,
-        set: &GainSet,
-        (known, stops): (&KnownSlopes, fn() -> bool),
-    ) -> Result<Rechecked, RecheckError> {
-        let proved = |set: GainSet| {
-            Recheck::with(certificate, model.clone(), set, known)?.until(stops).run()
-        };
-        let is_common = matches!(certificate.claim, Claim::CommonQuadratic { .. });
-        if is_common
-            && set.cells.len() > 1
-            && let Ok(rechecked) = proved(set.bounding_box())
-        {
-            return Ok(rechecked);
-        }
-        proved(set.clone())
     }
 
     /// The same for somebody who may not want the answer any more; where `stops` says so, nothing is proved.
