@@ -1,6 +1,6 @@
 //! How fast one core is: closed-loop steps per second. Inferences alone are measured in `fspid-fuzzy`.
 //!
-//! `cargo bench` prints the best rate over blocks of work so short that some are not interrupted by
+//! `cargo bench` prints the best rate (behind `--`, words that what is measured shall have) over blocks of work so short that some are not interrupted by
 //! whoever else uses the machine, with a checksum that holds the compiler to doing the work and shows
 //! that every round did the same, and that flights side by side did what single ones do.
 
@@ -59,26 +59,37 @@ fn main() {
         // Rules that conclude labels have no numbers to learn.
         if differentiate::<1>(&[*first], &[WEIGHTS]).is_ok() {
             for set in InstructionSet::available() {
-                report(&format!("{name}, gradients, 8 lanes, {set}"), 5.0, 8, |first| {
-                    gradient_sums(set, &entrants[first..first + 8])
-                });
+                differentiated::<8>(name, set, &entrants);
+                differentiated::<16>(name, set, &entrants);
             }
         }
     }
 }
 
-fn batched<const W: usize>(name: &str, set: InstructionSet, flights: &[Entrant<'_>], single: f64) {
+fn batched<const W: usize>(
+    name: &str,
+    set: InstructionSet,
+    flights: &[Entrant<'_>],
+    single: Option<f64>,
+) {
     let what = format!("{name}, {W} lanes, {set}");
     let sum = report(&what, 25.0, W, |first| group_sums::<W>(set, &flights[first..first + W]));
-    assert_eq!(sum.to_bits(), single.to_bits(), "flights side by side gave another answer");
+    if let (Some(sum), Some(single)) = (sum, single) {
+        assert_eq!(sum.to_bits(), single.to_bits(), "flights side by side gave another answer");
+    }
 }
 
 /// What gradients are asked of.
 const WEIGHTS: Weights = Weights { iae_rad_s: 1.0, ise_rad2_s: 0.0, travel_rad: 0.05 };
 
+fn differentiated<const W: usize>(name: &str, set: InstructionSet, flights: &[Entrant<'_>]) {
+    let what = format!("{name}, gradients, {W} lanes, {set}");
+    report(&what, 5.0, W, |first| gradient_sums::<W>(set, &flights[first..first + W]));
+}
+
 /// A number of the gradient of each flight with respect to every number of its controller.
-fn gradient_sums(set: InstructionSet, flights: &[Entrant<'_>]) -> Vec<f64> {
-    let found = differentiate_by::<8>(set, flights, &[WEIGHTS; 8]).expect("differentiable");
+fn gradient_sums<const W: usize>(set: InstructionSet, flights: &[Entrant<'_>]) -> Vec<f64> {
+    let found = differentiate_by::<W>(set, flights, &[WEIGHTS; W]).expect("differentiable");
     found.iter().map(|it| it.as_ref().map_or(0.0, |it| it.gradient.iter().sum())).collect()
 }
 
@@ -105,8 +116,12 @@ fn group_sums<const W: usize>(set: InstructionSet, flights: &[Entrant<'_>]) -> V
 }
 
 /// Times `work` over all flights, `at_once` at a time, and prints the best rate of a block in millions
-/// of steps per second. Answers the sum over all flights, in their order.
-fn report(what: &str, asked: f64, at_once: usize, work: impl Fn(usize) -> Vec<f64>) -> f64 {
+/// of steps per second. Answers the sum over all flights, in their order; none where something else is asked for.
+fn report(what: &str, asked: f64, at_once: usize, work: impl Fn(usize) -> Vec<f64>) -> Option<f64> {
+    let wanted: Vec<String> = std::env::args().skip(1).filter(|it| !it.starts_with('-')).collect();
+    if !wanted.is_empty() && !wanted.iter().any(|it| what.contains(it)) {
+        return None;
+    }
     let (mut best, mut checksum) = (0.0_f64, None);
     for _ in 0..ROUNDS {
         let mut sum = 0.0;
@@ -122,7 +137,7 @@ fn report(what: &str, asked: f64, at_once: usize, work: impl Fn(usize) -> Vec<f6
     }
     let checksum = checksum.unwrap_or(0.0);
     println!("{what}: {best:.2} million steps/s (asked: {asked:.0}), checksum {checksum:?}");
-    checksum
+    Some(checksum)
 }
 
 fn table() -> RuleTable {

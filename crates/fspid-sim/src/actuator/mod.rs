@@ -323,13 +323,16 @@ impl Actuator {
         within(self.command_limits_rad, command_rad)
     }
 
+    /// Gap to its command, rad, within which a first-order servo is slower than its rate limit.
+    pub(crate) fn free_gap_rad(&self) -> f64 {
+        self.rate_limit_rad_s.map_or(f64::INFINITY, |limit| limit * self.lag.trailing_s())
+    }
+
     /// How a sample of `dt_s` passes when a first-order servo starts `gap_rad` short of its command: the rate [rad/s]
     /// at which it is held by its limit, and for how long [s].
     pub(crate) fn rate_limited_phase(&self, gap_rad: f64, dt_s: f64) -> Option<(f64, f64)> {
         let limit = self.rate_limit_rad_s?;
-        // Below this gap the lag alone is slower than the limit.
-        let free_gap_rad = limit * self.lag.trailing_s();
-        let duration_s = (gap_rad.abs() - free_gap_rad) / limit;
+        let duration_s = (gap_rad.abs() - self.free_gap_rad()) / limit;
         (duration_s > 0.0).then(|| (limit.copysign(gap_rad), duration_s.min(dt_s)))
     }
 

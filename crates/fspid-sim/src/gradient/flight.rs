@@ -4,7 +4,7 @@ use fearless_simd::dispatch;
 use fspid_numeric::InstructionSet;
 
 use super::SEGMENT;
-use super::law::{Laws, MEMORY, Structure};
+use super::law::{Laws, MEMORY, ROW, Row, Structure};
 use super::numbers::NUMBERS;
 use super::plant::{Held, Lane, Plants};
 use super::price::{Flown, Slopes};
@@ -73,20 +73,64 @@ type Lanes<const W: usize> = [f64; W];
 #[derive(Clone, Debug)]
 struct State<const W: usize> {
     plant: Vec<Lanes<W>>,
-    memory: [Lanes<W>; MEMORY],
+    /// The controllers' memory, and room for what they see.
+    row: Row<W>,
 }
 
-/// What the way back needs of a sample: nothing of the plant, which is linear.
+/// What the way back needs of samples: nothing of the plants, which are linear.
 #[derive(Clone, Debug)]
 struct Passed<const W: usize> {
-    memory: [Lanes<W>; MEMORY],
-    sample: [Lanes<W>; 3],
-    held: Vec<Held>,
+    rows: Vec<Row<W>>,
+    /// Samples in which a rate limit holds a lane, the first first.
+    held: Vec<(usize, Held)>,
+}
+
+impl<const W: usize> Passed<W> {
+    fn clear(&mut self) {
+        self.rows.clear();
+        self.held.clear();
+    }
+}
+
+/// What comes from outside, sample by sample; nothing where no lane has any.
+#[derive(Clone, Debug)]
+struct Signal<const W: usize>(Vec<Lanes<W>>);
+
+impl<const W: usize> Signal<W> {
+    fn new(
+        prepared: &[&Prepared],
+        rows: usize,
+        column: impl Fn(&Prepared) -> Option<&[f64]>,
+    ) -> Self {
+        let mut all = Vec::new();
+        for (lane, values) in prepared.iter().map(|it| column(it)).enumerate() {
+            let Some(values) = values else { continue };
+            all.resize(rows, [0.0; W]);
+            for (place, value) in all.iter_mut().zip(values) {
+                place[lane] = *value;
+            }
+        }
+        Self(all)
+    }
+
+    #[inline(always)]
+    fn at(&self, k: usize) -> Lanes<W> {
+        self.0.get(k).copied().unwrap_or([0.0; W])
+    }
 }
 
 struct Group<'a, const W: usize> {
     prepared: Vec<&'a Prepared>,
     rows: usize,
+    /// Samples between two states that are kept.
+    segment: usize,
+    setpoint_rad: Signal<W>,
+    at_servo: Signal<W>,
+    at_elevator: Signal<W>,
+    at_measurement: Signal<W>,
+    /// Samples between a command and its arrival; one number where it is that of all lanes.
+    delay_samples: [usize; W],
+    shared_delay: Option<usize>,
     plants: Plants<'a, W>,
     laws: Laws<'a, W>,
     seeing: Seeing<W>,
@@ -127,8 +171,22 @@ impl<'a, const W: usize> Group<'a, W> {
             guard[2][lane] = if controller.uses_rate() { limit } else { f64::INFINITY };
         }
         let rows = timing.map_or(0, |it| it.rows());
+        let mut delay_samples = [prepared.first().map_or(0, |it| it.delay_samples); W];
+        for (delay, prepared) in delay_samples.iter_mut().zip(&prepared) {
+            *delay = prepared.delay_samples;
+        }
         Ok(Self {
             rows,
+            segment: SEGMENT,
+            setpoint_rad: Signal::new(&prepared, rows, |it| Some(&it.setpoint_rad)),
+            at_servo: Signal::new(&prepared, rows, |it| it.at_servo.as_deref()),
+            at_elevator: Signal::new(&prepared, rows, |it| it.at_elevator.as_deref()),
+            at_measurement: Signal::new(&prepared, rows, |it| it.at_measurement.as_deref()),
+            shared_delay: delay_samples
+                .iter()
+                .all(|it| *it == delay_samples[0])
+                .then_some(delay_samples[0]),
+            delay_samples,
             plants: Plants::new(lanes),
             laws: Laws::new(&controllers)?,
             seeing: Seeing::new(&prepared, rows)?,
@@ -141,97 +199,109 @@ impl<'a, const W: usize> Group<'a, W> {
         })
     }
 
-    /// A signal at a sample; zero where there is none.
-    #[inline(always)]
-    fn at(&self, k: usize, column: impl Fn(&'a Prepared) -> &'a [f64]) -> Lanes<W> {
-        let mut values = [0.0; W];
-        for (value, prepared) in values.iter_mut().zip(&self.prepared) {
-            *value = column(prepared).get(k).copied().unwrap_or(0.0);
-        }
-        values
-    }
-
-    fn disturbance(&self, k: usize) -> Lanes<W> {
-        self.at(k, |it| it.at_elevator.as_deref().unwrap_or_default())
-    }
-
     /// The command that arrives at the servo at a sample.
     #[inline(always)]
     fn arriving(&self, k: usize) -> Lanes<W> {
-        let mut arriving = self.at(k, |it| it.at_servo.as_deref().unwrap_or_default());
-        for (lane, prepared) in self.prepared.iter().enumerate() {
-            if let Some(sent) = k.checked_sub(prepared.delay_samples) {
+        let mut arriving = self.at_servo.at(k);
+        if let Some(delay) = self.shared_delay {
+            let sent = k.checked_sub(delay).map_or([0.0; W], |sent| self.commands[sent]);
+            for lane in 0..W {
+                arriving[lane] += sent[lane];
+            }
+            return arriving;
+        }
+        for (lane, delay) in self.delay_samples.iter().enumerate() {
+            if let Some(sent) = k.checked_sub(*delay) {
                 arriving[lane] += self.commands[sent][lane];
             }
         }
         arriving
     }
 
-    /// What controllers see at a sample.
+    /// Puts what controllers see at a sample into its row.
     #[inline(always)]
-    fn look(&mut self, k: usize, plant: &[Lanes<W>]) -> [Lanes<W>; 3] {
-        let elevator_rad = self.plants.elevator_rad(plant, &self.disturbance(k));
+    fn look(&mut self, k: usize, State { plant, row }: &mut State<W>) {
+        let elevator_rad = self.plants.elevator_rad(plant, &self.at_elevator.at(k));
         self.elevators[k] = elevator_rad;
         let rate_rad_s = self.plants.rate_rad_s(plant, &elevator_rad);
         let [mut measurement_rad, rate_rad_s] = self.seeing.look(k, [plant[0], rate_rad_s]);
-        let added = self.at(k, |it| it.at_measurement.as_deref().unwrap_or_default());
+        let added = self.at_measurement.at(k);
         for lane in 0..W {
             measurement_rad[lane] += added[lane];
         }
-        let setpoint_rad = self.at(k, |it| &it.setpoint_rad);
-        [setpoint_rad, measurement_rad, rate_rad_s]
+        row[MEMORY..].copy_from_slice(&[self.setpoint_rad.at(k), measurement_rad, rate_rad_s]);
     }
 
     fn start(&mut self) -> State<W> {
         let plant = vec![[0.0; W]; self.plants.states()];
-        let sample = self.look(0, &plant);
-        State { memory: self.laws.first(&sample), plant }
+        let mut state = State { plant, row: [[0.0; W]; ROW] };
+        self.look(0, &mut state);
+        self.laws.first(&mut state.row);
+        state
     }
 
     /// One sample: the state at the next one, and what there was at this one.
     #[inline(always)]
-    fn pass(&mut self, k: usize, state: &mut State<W>) -> Result<Passed<W>, SimError> {
-        let sample = self.look(k, &state.plant);
-        let (memory, mut held) = (state.memory, Vec::new());
-        state.memory = self.laws.step(&memory, &sample);
-        self.commands[k] = state.memory[0];
-        let (command, disturbance) = (self.arriving(k), self.disturbance(k));
+    fn pass(
+        &mut self,
+        k: usize,
+        state: &mut State<W>,
+        passed: &mut Passed<W>,
+    ) -> Result<(), SimError> {
+        self.look(k, state);
+        passed.rows.push(state.row);
+        self.laws.step(&mut state.row);
+        self.commands[k] = state.row[0];
+        let (command, disturbance) = (self.arriving(k), self.at_elevator.at(k));
         let mut next = std::mem::take(&mut self.room);
         next.resize(state.plant.len(), [0.0; W]);
-        self.plants.advance((&mut next, &mut held), &state.plant, &command, &disturbance)?;
+        let held = |it| passed.held.push((k, it));
+        self.plants.advance((&mut next, held), &state.plant, &command, &disturbance)?;
         self.plants.add_air(k, &mut next);
         self.room = std::mem::replace(&mut state.plant, next);
-        Ok(Passed { memory, sample, held })
+        Ok(())
     }
 
     /// Finds flights that are lost at a sample.
     #[inline(always)]
-    fn watch(&mut self, theta_rad: &Lanes<W>, sample: &[Lanes<W>; 3]) {
+    fn watch(&mut self, theta_rad: &Lanes<W>, row: &Row<W>) {
         for lane in 0..W {
-            let near = (theta_rad[lane].abs() <= DIVERGED_RAD)
-                & sample.iter().zip(&self.guard).all(|(it, most)| it[lane].abs() <= most[lane]);
-            self.lost[lane] |= !near;
+            self.lost[lane] |= !(theta_rad[lane].abs() <= DIVERGED_RAD);
+        }
+        for (seen, most) in row[MEMORY..].iter().zip(&self.guard) {
+            for lane in 0..W {
+                self.lost[lane] |= !(seen[lane].abs() <= most[lane]);
+            }
         }
     }
 
     // Inlined with all below it, so that its loops are compiled for each set of instructions.
     #[inline(always)]
     fn flown(&mut self, price: &mut Price<'_>) -> Result<Vec<Option<Vec<f64>>>, SimError> {
-        let mut kept = Vec::with_capacity(self.rows / SEGMENT + 1);
+        let (mut kept, room) = (Vec::new(), self.segment.min(self.rows));
+        let mut passed = Passed { rows: Vec::with_capacity(room), held: Vec::new() };
         let mut state = self.start();
         for k in 0..self.rows {
-            if k.is_multiple_of(SEGMENT) {
+            if k.is_multiple_of(self.segment) {
                 kept.push(state.clone());
+                passed.clear();
             }
             let theta_rad = state.plant[0];
-            let passed = self.pass(k, &mut state)?;
-            self.watch(&theta_rad, &passed.sample);
+            self.pass(k, &mut state, &mut passed)?;
+            if let Some(row) = passed.rows.last() {
+                self.watch(&theta_rad, row);
+            }
         }
-        let mut slopes = vec![[[0.0; W]; 3]; self.rows];
-        for lane in (0..self.prepared.len()).filter(|lane| !self.lost[*lane]) {
-            put_slopes(&mut slopes, lane, &price(lane, &self.seen(lane)));
-        }
-        self.back(kept, &slopes)?;
+        let slopes: Vec<Slopes> = self
+            .seen()
+            .iter()
+            .enumerate()
+            .map(|(lane, seen)| match self.lost[lane] {
+                true => Slopes::default(),
+                false => price(lane, seen),
+            })
+            .collect();
+        self.back((kept, passed), &slopes)?;
         let laws =
             std::mem::replace(&mut self.laws, Laws::new(&[]).map_err(|_| SimError::NotLinear)?);
         let each = laws.gradients().into_iter().enumerate().map(|(lane, gradient)| {
@@ -241,35 +311,45 @@ impl<'a, const W: usize> Group<'a, W> {
         Ok(each.collect())
     }
 
-    /// A lane as it was flown.
-    fn seen(&self, lane: usize) -> Flown {
-        let column = |values: &[Lanes<W>]| values.iter().map(|it| it[lane]).collect();
-        Flown {
-            setpoint_rad: self.prepared[lane].setpoint_rad.clone(),
-            theta_rad: column(self.seeing.theta_rad()),
-            elevator_rad: column(&self.elevators),
-            command_rad: column(&self.commands),
-        }
+    /// The flights as they were flown.
+    fn seen(&self) -> Vec<Flown> {
+        let columns = [self.seeing.theta_rad(), &self.elevators, &self.commands];
+        let [theta_rad, elevator_rad, command_rad] = columns.map(by_lane);
+        let columns = theta_rad.into_iter().zip(elevator_rad).zip(command_rad);
+        let flown = self.prepared.iter().zip(columns);
+        let flown = flown.map(|(prepared, ((theta_rad, elevator_rad), command_rad))| Flown {
+            setpoint_rad: prepared.setpoint_rad.clone(),
+            theta_rad,
+            elevator_rad,
+            command_rad,
+        });
+        flown.collect()
     }
 
-    /// All samples, the last first.
+    /// All samples, the last first. What passed in the last segment is known; the others are flown again.
     #[inline(always)]
-    fn back(&mut self, kept: Vec<State<W>>, slopes: &[[Lanes<W>; 3]]) -> Result<(), SimError> {
+    fn back(
+        &mut self,
+        (kept, mut passed): (Vec<State<W>>, Passed<W>),
+        slopes: &[Slopes],
+    ) -> Result<(), SimError> {
         let mut worth = Worth::<W>::new(self.plants.states(), self.rows);
-        let mut passed: Vec<Passed<W>> = Vec::new();
         for (segment, mut state) in kept.into_iter().enumerate().rev() {
-            let from = segment * SEGMENT;
-            passed.clear();
-            for k in from..(from + SEGMENT).min(self.rows) {
-                passed.push(self.pass(k, &mut state)?);
+            let from = segment * self.segment;
+            let to = (from + self.segment).min(self.rows);
+            if to < self.rows {
+                passed.clear();
+                for k in from..to {
+                    self.pass(k, &mut state, &mut passed)?;
+                }
             }
-            for (place, at) in passed.iter().enumerate().rev() {
-                let k = from + place;
-                self.back_sample(k, at, &slopes[k], &mut worth);
+            for (k, row) in (from..to).zip(&passed.rows).rev() {
+                let first = passed.held.partition_point(|(at, _)| *at < k);
+                self.back_sample(k, (row, &passed.held[first..]), slopes, &mut worth);
+                passed.held.truncate(first);
             }
         }
-        let setpoint_rad = self.at(0, |it| &it.setpoint_rad);
-        self.laws.back_first(&setpoint_rad, &worth.memory);
+        self.laws.back_first(&self.setpoint_rad.at(0), &worth.row);
         Ok(())
     }
 
@@ -277,49 +357,75 @@ impl<'a, const W: usize> Group<'a, W> {
     fn back_sample(
         &mut self,
         k: usize,
-        at: &Passed<W>,
-        [by_theta, by_elevator, by_command]: &[Lanes<W>; 3],
+        (row, held): (&Row<W>, &[(usize, Held)]),
+        slopes: &[Slopes],
         worth: &mut Worth<W>,
     ) {
-        // The values of the recorded equations at this sample.
-        self.laws.step(&at.memory, &at.sample);
+        let [by_theta, by_elevator, by_command] = slopes_at(slopes, k);
+        self.laws.evaluate(row);
         let command = self.arriving(k);
-        let of_command = self.plants.back(&worth.plant, &command, &at.held, &mut worth.before);
+        let of_command = self.plants.back(&worth.plant, &command, held, &mut worth.before);
         std::mem::swap(&mut worth.plant, &mut worth.before);
-        for (lane, prepared) in self.prepared.iter().enumerate() {
-            if let Some(sent) = k.checked_sub(prepared.delay_samples) {
-                worth.commands[sent][lane] += of_command[lane];
-            }
-        }
+        self.back_arriving(k, &of_command, &mut worth.commands);
         let commanded = worth.commands[k];
         for lane in 0..W {
-            worth.memory[0][lane] += commanded[lane] + by_command[lane];
+            worth.row[0][lane] += commanded[lane] + by_command[lane];
         }
-        let (memory, sample) = self.laws.back(&worth.memory);
-        worth.memory = memory;
-        let [theta, rate] = self.seeing.back(k, [sample[1], sample[2]]);
+        self.laws.back(&mut worth.row);
+        let [theta, rate] = self.seeing.back(k, [worth.row[MEMORY + 1], worth.row[MEMORY + 2]]);
         for lane in 0..W {
             worth.plant[0][lane] += theta[lane] + by_theta[lane];
         }
-        self.plants.back_seen(&mut worth.plant, &rate, by_elevator);
+        self.plants.back_seen(&mut worth.plant, &rate, &by_elevator);
+    }
+
+    /// Hands what arrived at a sample back to when it was sent.
+    #[inline(always)]
+    fn back_arriving(&self, k: usize, worth: &Lanes<W>, commands: &mut [Lanes<W>]) {
+        if let Some(delay) = self.shared_delay {
+            let Some(sent) = k.checked_sub(delay) else { return };
+            for lane in 0..W {
+                commands[sent][lane] += worth[lane];
+            }
+            return;
+        }
+        for (lane, delay) in self.delay_samples.iter().enumerate() {
+            if let Some(sent) = k.checked_sub(*delay) {
+                commands[sent][lane] += worth[lane];
+            }
+        }
     }
 }
 
-/// Puts the slopes of a lane by pitch, elevator and command beside those of the others.
-fn put_slopes<const W: usize>(lanes: &mut [[Lanes<W>; 3]], lane: usize, slopes: &Slopes) {
-    let columns = [&slopes.theta_rad, &slopes.elevator_rad, &slopes.command_rad];
-    for (column, values) in columns.into_iter().enumerate() {
-        for (row, value) in lanes.iter_mut().zip(values) {
-            row[column][lane] = *value;
+/// What a little more of a sample's pitch, elevator and command costs.
+#[inline(always)]
+fn slopes_at<const W: usize>(slopes: &[Slopes], k: usize) -> [Lanes<W>; 3] {
+    let mut at = [[0.0; W]; 3];
+    for (lane, slopes) in slopes.iter().enumerate() {
+        let columns = [&slopes.theta_rad, &slopes.elevator_rad, &slopes.command_rad];
+        for (place, column) in at.iter_mut().zip(columns) {
+            place[lane] = column.get(k).copied().unwrap_or(0.0);
         }
     }
+    at
+}
+
+/// A column for each lane; some rows at a time, which stay in the nearest memory while all lanes read them.
+fn by_lane<const W: usize>(rows: &[Lanes<W>]) -> Vec<Vec<f64>> {
+    let mut lanes = vec![Vec::with_capacity(rows.len()); W];
+    for some in rows.chunks(64) {
+        for (lane, column) in lanes.iter_mut().enumerate() {
+            column.extend(some.iter().map(|row| row[lane]));
+        }
+    }
+    lanes
 }
 
 /// What everything is worth on the way back.
 struct Worth<const W: usize> {
     plant: Vec<Lanes<W>>,
     before: Vec<Lanes<W>>,
-    memory: [Lanes<W>; MEMORY],
+    row: Row<W>,
     commands: Vec<Lanes<W>>,
 }
 
@@ -328,8 +434,53 @@ impl<const W: usize> Worth<W> {
         Self {
             plant: vec![[0.0; W]; states],
             before: vec![[0.0; W]; states],
-            memory: [[0.0; W]; MEMORY],
+            row: [[0.0; W]; ROW],
             commands: vec![[0.0; W]; rows],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use fspid_core::{Gains, Pid, PidConfig};
+
+    use super::super::Weights;
+    use super::*;
+    use crate::signal::{Profile, Shape};
+    use crate::{Actuator, ElevatorSign, LinearPlant, Scenario, Timing};
+
+    #[test]
+    fn a_flight_of_many_segments_has_the_gradient_of_one_to_the_bit() {
+        let plant = LinearPlant::new(
+            &[11.7304, 22.578],
+            &[1.0, 4.9676, 12.941, 0.1],
+            ElevatorSign::NoseUpPositive,
+        );
+        // Noise that holds the servo at its rate limit, now and then, in every segment.
+        let noise = Profile::new(0.1, Shape::Noise { at_s: 0.05, seed: 3 }).expect("allowed");
+        let timing = Timing::new(0.01, 4.0).expect("allowed");
+        let servo = Actuator::first_order(0.1).and_then(|it| it.with_delay(2));
+        let servo = servo.and_then(|it| it.with_rate_limit(0.6)).expect("allowed");
+        let scenario = Scenario {
+            actuator: servo,
+            ..Scenario::new("segments", plant.expect("a plant"), timing, noise)
+        };
+        let prepared = scenario.prepare().expect("flies");
+        let gains = Gains { kp: 1.0, ki: 0.3, kd: 0.1 };
+        let config = PidConfig::sampled_every(0.01);
+        let controller = Controller::Fixed(Pid::new(gains, config).expect("allowed"));
+        let flight = Entrant { prepared: &prepared, controller: &controller };
+        let weights = Weights { iae_rad_s: 1.0, ise_rad2_s: 3.0, travel_rad: 0.05 };
+        let of = |segment: usize| {
+            let mut group = Group::<2>::new(&[flight]).expect("differentiable");
+            group.segment = segment;
+            group.flown(&mut |_, flown| weights.of(flown, 0.01).1).expect("finite")
+        };
+        let whole = of(SEGMENT);
+        let kp = whole[0].as_ref().expect("it flies")[super::super::numbers::GAINS_AT];
+        assert!(kp.abs() > 1e-3, "{kp}");
+        for segment in [1, 7, 50, 400, 401] {
+            assert_eq!(of(segment), whole, "{segment}");
         }
     }
 }

@@ -21,13 +21,17 @@ use crate::controller::Controller;
 pub(super) const MEMORY: usize = Memory::<f64>::COUNT;
 /// What a controller sees: set-point, pitch, pitch rate.
 const SAMPLE: usize = 3;
+/// What a sample begins with: the memory, and what is seen.
+pub(super) const ROW: usize = MEMORY + SAMPLE;
+/// [`ROW`] numbers of each lane.
+pub(super) type Row<const W: usize> = [[f64; W]; ROW];
 /// What its supervisor adds to each gain, before any factor.
 const DELTAS: usize = 3;
 /// Numbers that stand still through a flight.
 const STILL: usize = PID + TUNER + 3 * GAIN;
 /// Inputs of the way to the supervisor that change, and of the way from it.
-const BEFORE: usize = MEMORY + SAMPLE;
-const BEHIND: usize = MEMORY + SAMPLE + DELTAS;
+const BEFORE: usize = ROW;
+const BEHIND: usize = ROW + DELTAS;
 
 /// Numbers in a row, one after the other; zero where the row has ended.
 fn each_of<S: Scalar>(numbers: &[S]) -> impl FnMut() -> S {
@@ -354,27 +358,27 @@ impl<'a, const W: usize> Laws<'a, W> {
         self.behind.run_still(&mut self.behind_values);
     }
 
-    /// The memory with which the first sample is answered.
-    pub(super) fn first(&self, sample: &[[f64; W]; SAMPLE]) -> [[f64; W]; MEMORY] {
-        let mut memory = [[0.0; W]; MEMORY];
+    /// Puts the memory with which the first sample is answered before what is seen there.
+    pub(super) fn first(&self, row: &mut Row<W>) {
         for (lane, numbers) in self.numbers.iter().enumerate() {
-            let of_lane = Sample {
-                setpoint_rad: sample[0][lane],
-                measurement_rad: sample[1][lane],
-                rate_rad_s: sample[2][lane],
+            let sample = Sample {
+                setpoint_rad: row[MEMORY][lane],
+                measurement_rad: row[MEMORY + 1][lane],
+                rate_rad_s: row[MEMORY + 2][lane],
             };
             let nominal = |gain: usize| numbers[GAINS_AT + GAIN * gain];
             let nominal = Gains { kp: nominal(0), ki: nominal(1), kd: nominal(2) };
-            let first = pid_of(PLAIN, numbers).at_first(&of_lane, &nominal);
-            for (place, number) in memory.iter_mut().zip(row(&first)) {
-                place[lane] = number;
-            }
+            let mut memory = row.iter_mut();
+            pid_of(PLAIN, numbers).at_first(&sample, &nominal).map(|number| {
+                if let Some(place) = memory.next() {
+                    place[lane] = *number;
+                }
+            });
         }
-        memory
     }
 
     /// Hands what the first memory is worth to the numbers that it is made of; the rest is seen.
-    pub(super) fn back_first(&mut self, setpoint_rad: &[f64; W], worth: &[[f64; W]; MEMORY]) {
+    pub(super) fn back_first(&mut self, setpoint_rad: &[f64; W], worth: &Row<W>) {
         for (lane, gradient) in self.gradients.iter_mut().enumerate() {
             // c r - y
             gradient[5] += worth[4][lane] * setpoint_rad[lane];
@@ -384,63 +388,69 @@ impl<'a, const W: usize> Laws<'a, W> {
         }
     }
 
-    /// The next memory, whose first number is the command.
+    /// Puts the next memory, whose first number is the command, in the place of the one before.
     #[inline(always)]
-    pub(super) fn step(
-        &mut self,
-        memory: &[[f64; W]; MEMORY],
-        sample: &[[f64; W]; SAMPLE],
-    ) -> [[f64; W]; MEMORY] {
-        let mut deltas = [[0.0; W]; DELTAS];
+    pub(super) fn step(&mut self, row: &mut Row<W>) {
+        self.evaluate(row);
+        for (output, place) in row.iter_mut().take(MEMORY).enumerate() {
+            *place = self.behind.output(&self.behind_values, output);
+        }
+    }
+
+    /// Every value of the equations at a sample, which the way back goes by.
+    #[inline(always)]
+    pub(super) fn evaluate(&mut self, row: &Row<W>) {
+        self.behind.put(&mut self.behind_values, 0, row);
         if !self.rules.is_empty() {
-            self.before.put(&mut self.before_values, 0, memory);
-            self.before.put(&mut self.before_values, MEMORY, sample);
+            self.before.put(&mut self.before_values, 0, row);
             self.before.run(&mut self.before_values);
-            let parts: [[f64; W]; 4] =
-                [0, 1, 2, 3].map(|output| self.before.output(&self.before_values, output));
-            for (lane, rules) in self.rules.iter().enumerate() {
-                let [error, second, error_rad, second_rad] = parts.map(|it| it[lane]);
-                if !rules.is_silent([error_rad, second_rad]) {
-                    let of_lane = rules.deltas([error, second], &self.numbers[lane]);
-                    for (delta, of_lane) in deltas.iter_mut().zip(of_lane) {
-                        delta[lane] = of_lane;
-                    }
+            let deltas = self.deltas();
+            self.behind.put(&mut self.behind_values, ROW, &deltas);
+        }
+        self.behind.run(&mut self.behind_values);
+    }
+
+    /// What the supervisors add to each gain, before any factor.
+    #[inline(always)]
+    fn deltas(&self) -> [[f64; W]; DELTAS] {
+        let parts: [[f64; W]; 4] =
+            [0, 1, 2, 3].map(|output| self.before.output(&self.before_values, output));
+        let mut deltas = [[0.0; W]; DELTAS];
+        for (lane, rules) in self.rules.iter().enumerate() {
+            let [error, second, error_rad, second_rad] = parts.map(|it| it[lane]);
+            if !rules.is_silent([error_rad, second_rad]) {
+                let of_lane = rules.deltas([error, second], &self.numbers[lane]);
+                for (delta, of_lane) in deltas.iter_mut().zip(of_lane) {
+                    delta[lane] = of_lane;
                 }
             }
         }
-        self.behind.put(&mut self.behind_values, 0, memory);
-        self.behind.put(&mut self.behind_values, MEMORY, sample);
-        self.behind.put(&mut self.behind_values, MEMORY + SAMPLE, &deltas);
-        self.behind.run(&mut self.behind_values);
-        [0, 1, 2, 3, 4, 5, 6, 7, 8, 9].map(|output| self.behind.output(&self.behind_values, output))
+        deltas
     }
 
     /// Hands what the next memory is worth back: to the memory before and to what was seen. The sample must be the one
-    /// that was stepped last.
+    /// that was evaluated last.
     #[inline(always)]
-    pub(super) fn back(
-        &mut self,
-        worth: &[[f64; W]; MEMORY],
-    ) -> ([[f64; W]; MEMORY], [[f64; W]; SAMPLE]) {
-        for (output, worth) in worth.iter().enumerate() {
+    pub(super) fn back(&mut self, worth: &mut Row<W>) {
+        for (output, worth) in worth.iter().take(MEMORY).enumerate() {
             self.behind.credit(&mut self.behind_worth, output, worth);
         }
         self.behind.back(&self.behind_values, &mut self.behind_worth);
-        let mut taken = |input: usize| self.behind.take(&mut self.behind_worth, input);
-        let mut memory: [[f64; W]; MEMORY] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9].map(&mut taken);
-        let mut sample: [[f64; W]; SAMPLE] = [10, 11, 12].map(&mut taken);
-        let deltas: [[f64; W]; DELTAS] = [13, 14, 15].map(&mut taken);
-        if !self.rules.is_empty() {
-            self.back_rules(&deltas);
-            self.before.back(&self.before_values, &mut self.before_worth);
-            for (input, place) in memory.iter_mut().chain(&mut sample).enumerate() {
-                let more = self.before.take(&mut self.before_worth, input);
-                for lane in 0..W {
-                    place[lane] += more[lane];
-                }
+        for (input, place) in worth.iter_mut().enumerate() {
+            *place = self.behind.take(&mut self.behind_worth, input);
+        }
+        if self.rules.is_empty() {
+            return;
+        }
+        let deltas = [0, 1, 2].map(|delta| self.behind.take(&mut self.behind_worth, ROW + delta));
+        self.back_rules(&deltas);
+        self.before.back(&self.before_values, &mut self.before_worth);
+        for (input, place) in worth.iter_mut().enumerate() {
+            let more = self.before.take(&mut self.before_worth, input);
+            for lane in 0..W {
+                place[lane] += more[lane];
             }
         }
-        (memory, sample)
     }
 
     fn back_rules(&mut self, deltas: &[[f64; W]; DELTAS]) {

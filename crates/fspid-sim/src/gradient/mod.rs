@@ -6,8 +6,8 @@
 //! ```
 //!
 //! A difference asks for two flights for each number; the way back asks for a few flights' work for all of them, however
-//! many there are (reverse mode: the adjoint of the sampled loop). The state of every [`SEGMENT`]th sample is kept, and what
-//! lies between is flown again on the way back, so that memory grows with a small part of the samples.
+//! many there are (reverse mode: the adjoint of the sampled loop). What passes is kept for [`SEGMENT`] samples, and for longer
+//! flights the state at each of these: what lies between is flown again on the way back, so that no flight is too long.
 //!
 //! - **Plant and servo** are one exact matrix a sample (`Propagator`); backwards it is the matrix transposed. Where the rate
 //!   limit holds the servo for a part of a sample, the matrix is that of both parts; the instant at which the limit lets go
@@ -44,5 +44,5 @@ pub use price::{
     Differentiated, Flown, Slopes, Weights, add_variation, differentiate, differentiate_by,
 };
 
-/// Samples between two that are kept.
-pub const SEGMENT: usize = 64;
+/// Samples between two states that are kept: 6.5 MiB of what passes, for eight lanes.
+pub const SEGMENT: usize = 8192;

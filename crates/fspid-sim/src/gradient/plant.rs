@@ -30,6 +30,8 @@ pub(super) struct Plants<'a, const W: usize> {
     rate_feedthrough: [f64; W],
     elevator_per_command: [f64; W],
     limits_rad: [[f64; W]; 2],
+    /// Gaps to the command within which servos are slower than their rate limits.
+    free_gap_rad: [f64; W],
 }
 
 impl<'a, const W: usize> Plants<'a, W> {
@@ -45,6 +47,7 @@ impl<'a, const W: usize> Plants<'a, W> {
             rate_feedthrough: [0.0; W],
             elevator_per_command: [0.0; W],
             limits_rad: [[f64::NEG_INFINITY; W], [f64::INFINITY; W]],
+            free_gap_rad: [f64::INFINITY; W],
             propagators,
             air,
         };
@@ -57,6 +60,7 @@ impl<'a, const W: usize> Plants<'a, W> {
             }
             plants.rate_feedthrough[lane] = propagator.rate_feedthrough();
             plants.elevator_per_command[lane] = propagator.elevator_per_command;
+            plants.free_gap_rad[lane] = propagator.servo.free_gap_rad();
             if let Some((least, most)) = propagator.servo.command_limits_rad() {
                 (plants.limits_rad[0][lane], plants.limits_rad[1][lane]) = (least, most);
             }
@@ -137,7 +141,7 @@ impl<'a, const W: usize> Plants<'a, W> {
     #[inline(always)]
     pub(super) fn advance(
         &self,
-        (next, held): (&mut [[f64; W]], &mut Vec<Held>),
+        (next, mut held): (&mut [[f64; W]], impl FnMut(Held)),
         states: &[[f64; W]],
         command: &[f64; W],
         disturbance: &[f64; W],
@@ -158,8 +162,16 @@ impl<'a, const W: usize> Plants<'a, W> {
                     + by_disturbance[lane] * disturbance[lane];
             }
         }
+        let deflection = states[self.order];
+        let mut is_held = false;
+        for lane in 0..W {
+            is_held |= (command[lane] - deflection[lane]).abs() > self.free_gap_rad[lane];
+        }
+        if !is_held {
+            return Ok(());
+        }
         for (lane, propagator) in self.propagators.iter().enumerate() {
-            let gap_rad = command[lane] - states[self.order][lane];
+            let gap_rad = command[lane] - deflection[lane];
             let Some((rate_rad_s, duration_s)) =
                 propagator.servo.rate_limited_phase(gap_rad, propagator.dt_s())
             else {
@@ -174,7 +186,7 @@ impl<'a, const W: usize> Plants<'a, W> {
             for (next, ((row, by_command), added)) in next.iter_mut().zip(rows) {
                 next[lane] = states_of(row) + by_command * command[lane] + added;
             }
-            held.push(it);
+            held(it);
         }
         Ok(())
     }
@@ -185,7 +197,7 @@ impl<'a, const W: usize> Plants<'a, W> {
         &self,
         worth: &[[f64; W]],
         command: &[f64; W],
-        held: &[Held],
+        held: &[(usize, Held)],
         before: &mut [[f64; W]],
     ) -> [f64; W] {
         let (width, mut of_command) = (self.states() + INPUTS, [0.0; W]);
@@ -200,7 +212,7 @@ impl<'a, const W: usize> Plants<'a, W> {
                 of_command[lane] += row[width - 2][lane] * worth[lane];
             }
         }
-        for it in held {
+        for (_, it) in held {
             let lane = it.lane;
             for (state, before) in before.iter_mut().enumerate() {
                 let column = it.rows.iter().skip(state).step_by(self.states());

@@ -98,7 +98,7 @@ pub fn differentiate_by<const W: usize>(
 
 impl Weights {
     /// What a flight has of each, and its slopes.
-    fn of(&self, flown: &Flown, dt_s: f64) -> ([f64; 3], Slopes) {
+    pub(super) fn of(&self, flown: &Flown, dt_s: f64) -> ([f64; 3], Slopes) {
         let mut slopes = Slopes::zero(flown.theta_rad.len());
         let (mut iae, mut ise) = (0.0, 0.0);
         let errors = flown.setpoint_rad.iter().zip(&flown.theta_rad).map(|(r, theta)| r - theta);

@@ -16,19 +16,22 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use fspid_numeric::Scalar;
 
+/// A place among the values; as small as can be, so that a list of operations is read quickly.
+type Place = u32;
+
 /// An operation, by the places of its operands, which stand before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Operation {
     Input,
     Constant(f64),
-    Add(usize, usize),
-    Subtract(usize, usize),
-    Multiply(usize, usize),
-    Divide(usize, usize),
-    Negative(usize),
-    Magnitude(usize),
+    Add(Place, Place),
+    Subtract(Place, Place),
+    Multiply(Place, Place),
+    Divide(Place, Place),
+    Negative(Place),
+    Magnitude(Place),
     /// The third where the first is less than the second, else the fourth.
-    IfLess([usize; 4]),
+    IfLess([Place; 4]),
     /// No controller's equation asks for it; it answers NaN.
     Foreign,
 }
@@ -39,7 +42,7 @@ thread_local! {
 
 /// A number that records what is done with it: the place of its operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Recorded(usize);
+pub(super) struct Recorded(Place);
 
 fn recorded(operation: Operation) -> Recorded {
     RECORD.with_borrow_mut(|record| {
@@ -52,7 +55,8 @@ fn recorded(operation: Operation) -> Recorded {
         if place == record.len() {
             record.push(operation);
         }
-        Recorded(place)
+        #[allow(clippy::cast_possible_truncation, reason = "equations have hundreds of operations")]
+        Recorded(place as Place)
     })
 }
 
@@ -114,15 +118,21 @@ impl Scalar for Recorded {
     foreign!(exp, ln, sqrt, sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, floor);
 }
 
-/// A list of operations from inputs to outputs.
+/// An operation and the place of its answer.
+#[derive(Clone, Copy, Debug)]
+struct Step {
+    operation: Operation,
+    to: Place,
+}
+
+/// A list of operations from inputs to outputs. The inputs are the first places.
 #[derive(Clone, Debug)]
 pub(super) struct Program {
-    operations: Vec<Operation>,
-    inputs: Vec<usize>,
-    outputs: Vec<usize>,
+    places: usize,
+    outputs: Vec<Place>,
     /// Operations that depend on inputs that stand still alone, and those that are left, each in order.
-    still: Vec<usize>,
-    moving: Vec<usize>,
+    still: Vec<Step>,
+    moving: Vec<Step>,
 }
 
 impl Program {
@@ -134,36 +144,36 @@ impl Program {
     ) -> Self {
         RECORD.with_borrow_mut(Vec::clear);
         let given: Vec<Recorded> = (0..inputs).map(|_| recorded(Operation::Input)).collect();
-        let outputs: Vec<usize> = equation(&given).iter().map(|output| output.0).collect();
+        let outputs: Vec<Place> = equation(&given).iter().map(|output| output.0).collect();
         let operations = RECORD.with_borrow_mut(std::mem::take);
-        let inputs: Vec<usize> = given.iter().map(|input| input.0).collect();
         let (mut moves, mut needed) =
             (vec![false; operations.len()], vec![false; operations.len()]);
         for (place, operation) in operations.iter().enumerate() {
             moves[place] = match operation {
                 Operation::Input => place < moving,
-                other => operands(other).any(|operand| moves[operand]),
+                other => operands(other).any(|operand| moves[operand as usize]),
             };
         }
-        outputs.iter().for_each(|&output| needed[output] = true);
+        outputs.iter().for_each(|&output| needed[output as usize] = true);
         for (place, operation) in operations.iter().enumerate().rev() {
             if needed[place] {
-                operands(operation).for_each(|operand| needed[operand] = true);
+                operands(operation).for_each(|operand| needed[operand as usize] = true);
             }
         }
         let of = |wanted: bool| {
-            let places = (0..operations.len()).filter(|&place| {
-                needed[place] && moves[place] == wanted && operations[place] != Operation::Input
+            let steps = operations.iter().zip(0..).filter(|(operation, to)| {
+                let place = *to as usize;
+                needed[place] && moves[place] == wanted && **operation != Operation::Input
             });
-            places.collect()
+            steps.map(|(operation, to)| Step { operation: *operation, to }).collect()
         };
         let (still, moving) = (of(false), of(true));
-        Self { inputs, outputs, still, moving, operations }
+        Self { places: operations.len(), outputs, still, moving }
     }
 
     /// Room for the values of all operations.
     pub(super) fn room<const W: usize>(&self) -> Vec<[f64; W]> {
-        vec![[0.0; W]; self.operations.len()]
+        vec![[0.0; W]; self.places]
     }
 
     /// Puts inputs from a place on.
@@ -174,15 +184,13 @@ impl Program {
         from: usize,
         inputs: &[[f64; W]],
     ) {
-        for (place, input) in self.inputs.iter().skip(from).zip(inputs) {
-            values[*place] = *input;
-        }
+        values[from..from + inputs.len()].copy_from_slice(inputs);
     }
 
     /// An output.
     #[inline(always)]
     pub(super) fn output<const W: usize>(&self, values: &[[f64; W]], output: usize) -> [f64; W] {
-        values[self.outputs[output]]
+        values[self.outputs[output] as usize]
     }
 
     /// Adds what an output is worth.
@@ -193,120 +201,119 @@ impl Program {
         output: usize,
         by: &[f64; W],
     ) {
-        let place = &mut worth[self.outputs[output]];
-        for lane in 0..W {
-            place[lane] += by[lane];
-        }
+        let place = self.outputs[output] as usize;
+        worth[place] = each(worth[place], *by, |worth, by| worth + by);
     }
 
     /// What an input is worth, which is forgotten.
     #[inline(always)]
     pub(super) fn take<const W: usize>(&self, worth: &mut [[f64; W]], input: usize) -> [f64; W] {
-        std::mem::replace(&mut worth[self.inputs[input]], [0.0; W])
+        std::mem::replace(&mut worth[input], [0.0; W])
     }
 
     /// Computes what depends on inputs that stand still alone.
     pub(super) fn run_still<const W: usize>(&self, values: &mut [[f64; W]]) {
-        self.run_places(&self.still, values);
+        run_steps(&self.still, values);
     }
 
     /// Computes the rest.
     #[inline(always)]
     pub(super) fn run<const W: usize>(&self, values: &mut [[f64; W]]) {
-        self.run_places(&self.moving, values);
+        run_steps(&self.moving, values);
     }
 
     /// Hands what the outputs are worth to the inputs, and to what stands still, whose sums grow on.
     #[inline(always)]
     pub(super) fn back<const W: usize>(&self, values: &[[f64; W]], worth: &mut [[f64; W]]) {
-        self.back_places(&self.moving, values, worth);
+        back_steps(&self.moving, values, worth);
     }
 
     /// Hands the sums of what stands still to the inputs, once for a flight.
     pub(super) fn back_still<const W: usize>(&self, values: &[[f64; W]], worth: &mut [[f64; W]]) {
-        self.back_places(&self.still, values, worth);
+        back_steps(&self.still, values, worth);
     }
+}
 
-    #[inline(always)]
-    fn run_places<const W: usize>(&self, places: &[usize], values: &mut [[f64; W]]) {
-        for &place in places {
-            let value = match self.operations[place] {
+#[inline(always)]
+fn run_steps<const W: usize>(steps: &[Step], values: &mut [[f64; W]]) {
+    for step in steps {
+        let value = {
+            let of = |place: Place| values[place as usize];
+            match step.operation {
                 Operation::Input => continue,
                 Operation::Constant(constant) => [constant; W],
                 Operation::Foreign => [f64::NAN; W],
-                Operation::Add(a, b) => each(&values[a], &values[b], |a, b| a + b),
-                Operation::Subtract(a, b) => each(&values[a], &values[b], |a, b| a - b),
-                Operation::Multiply(a, b) => each(&values[a], &values[b], |a, b| a * b),
-                Operation::Divide(a, b) => each(&values[a], &values[b], |a, b| a / b),
-                Operation::Negative(a) => values[a].map(|a| -a),
-                Operation::Magnitude(a) => values[a].map(f64::abs),
+                Operation::Add(a, b) => each(of(a), of(b), |a, b| a + b),
+                Operation::Subtract(a, b) => each(of(a), of(b), |a, b| a - b),
+                Operation::Multiply(a, b) => each(of(a), of(b), times),
+                Operation::Divide(a, b) => each(of(a), of(b), |a, b| a / b),
+                Operation::Negative(a) => of(a).map(|a| -a),
+                Operation::Magnitude(a) => of(a).map(f64::abs),
                 Operation::IfLess(four) => {
-                    let [a, b, then, otherwise] = four.map(|operand| &values[operand]);
-                    let mut value = *otherwise;
+                    let [a, b, then, otherwise] = four.map(of);
+                    let mut value = otherwise;
                     for lane in 0..W {
-                        let is_less = a[lane] < b[lane];
-                        value[lane] = if is_less { then[lane] } else { otherwise[lane] };
+                        value[lane] = if a[lane] < b[lane] { then[lane] } else { otherwise[lane] };
                     }
                     value
                 }
-            };
-            values[place] = value;
-        }
+            }
+        };
+        values[step.to as usize] = value;
     }
+}
 
-    #[inline(always)]
-    fn back_places<const W: usize>(
-        &self,
-        places: &[usize],
-        values: &[[f64; W]],
-        worth: &mut [[f64; W]],
-    ) {
-        for &place in places.iter().rev() {
-            let of = std::mem::replace(&mut worth[place], [0.0; W]);
-            match self.operations[place] {
-                Operation::Input | Operation::Constant(_) | Operation::Foreign => {}
-                Operation::Add(a, b) => {
-                    add(&mut worth[a], &of);
-                    add(&mut worth[b], &of);
+#[inline(always)]
+fn back_steps<const W: usize>(steps: &[Step], values: &[[f64; W]], worth: &mut [[f64; W]]) {
+    let value = |place: Place| values[place as usize];
+    for step in steps.iter().rev() {
+        let of = std::mem::replace(&mut worth[step.to as usize], [0.0; W]);
+        let mut more = |place: Place, by: [f64; W]| {
+            let place = &mut worth[place as usize];
+            *place = each(*place, by, |worth, by| worth + by);
+        };
+        match step.operation {
+            Operation::Input | Operation::Constant(_) | Operation::Foreign => {}
+            Operation::Add(a, b) => {
+                more(a, of);
+                more(b, of);
+            }
+            Operation::Subtract(a, b) => {
+                more(a, of);
+                more(b, of.map(|of| -of));
+            }
+            Operation::Multiply(a, b) => {
+                more(a, each(of, value(b), times));
+                more(b, each(of, value(a), times));
+            }
+            Operation::Divide(a, b) => {
+                let up = each(of, value(b), |of, divisor| of / divisor);
+                more(a, up);
+                more(b, each(up, value(step.to), |up, quotient| -(up * quotient)));
+            }
+            Operation::Negative(a) => more(a, of.map(|of| -of)),
+            Operation::Magnitude(a) => {
+                more(a, each(value(a), of, |a, of| if a < 0.0 { -of } else { of }));
+            }
+            Operation::IfLess([a, b, then, otherwise]) => {
+                let (a, b) = (value(a), value(b));
+                let (mut less, mut not_less) = (of, of);
+                for lane in 0..W {
+                    let is_less = a[lane] < b[lane];
+                    less[lane] = if is_less { of[lane] } else { 0.0 };
+                    not_less[lane] = if is_less { 0.0 } else { of[lane] };
                 }
-                Operation::Subtract(a, b) => {
-                    add(&mut worth[a], &of);
-                    subtract(&mut worth[b], &of);
-                }
-                Operation::Multiply(a, b) => {
-                    add_product(&mut worth[a], &of, &values[b]);
-                    add_product(&mut worth[b], &of, &values[a]);
-                }
-                Operation::Divide(a, b) => {
-                    let up = each(&of, &values[b], |of, divisor| of / divisor);
-                    let down = each(&up, &values[place], |up, quotient| up * quotient);
-                    add(&mut worth[a], &up);
-                    subtract(&mut worth[b], &down);
-                }
-                Operation::Negative(a) => subtract(&mut worth[a], &of),
-                Operation::Magnitude(a) => {
-                    let signed = each(&values[a], &of, |a, of| if a < 0.0 { -of } else { of });
-                    add(&mut worth[a], &signed);
-                }
-                Operation::IfLess([a, b, then, otherwise]) => {
-                    let (a, b) = (&values[a], &values[b]);
-                    let (mut less, mut not_less) = (of, of);
-                    for lane in 0..W {
-                        let is_less = a[lane] < b[lane];
-                        less[lane] = if is_less { of[lane] } else { 0.0 };
-                        not_less[lane] = if is_less { 0.0 } else { of[lane] };
-                    }
-                    add(&mut worth[then], &less);
-                    add(&mut worth[otherwise], &not_less);
-                }
+                more(then, less);
+                more(otherwise, not_less);
             }
         }
     }
 }
 
-/// A function of two numbers in each lane.
+/// A function of two numbers in each lane. The numbers are copied, so that nothing they come from can change beneath them:
+/// then a compiler makes vectors of them.
 #[inline(always)]
-fn each<const W: usize>(a: &[f64; W], b: &[f64; W], of: impl Fn(f64, f64) -> f64) -> [f64; W] {
+fn each<const W: usize>(a: [f64; W], b: [f64; W], of: impl Fn(f64, f64) -> f64) -> [f64; W] {
     let mut value = [0.0; W];
     for lane in 0..W {
         value[lane] = of(a[lane], b[lane]);
@@ -315,27 +322,11 @@ fn each<const W: usize>(a: &[f64; W], b: &[f64; W], of: impl Fn(f64, f64) -> f64
 }
 
 #[inline(always)]
-fn add<const W: usize>(to: &mut [f64; W], by: &[f64; W]) {
-    for lane in 0..W {
-        to[lane] += by[lane];
-    }
+fn times(a: f64, b: f64) -> f64 {
+    a * b
 }
 
-#[inline(always)]
-fn subtract<const W: usize>(from: &mut [f64; W], by: &[f64; W]) {
-    for lane in 0..W {
-        from[lane] -= by[lane];
-    }
-}
-
-#[inline(always)]
-fn add_product<const W: usize>(to: &mut [f64; W], a: &[f64; W], b: &[f64; W]) {
-    for lane in 0..W {
-        to[lane] += a[lane] * b[lane];
-    }
-}
-
-fn operands(operation: &Operation) -> impl Iterator<Item = usize> {
+fn operands(operation: &Operation) -> impl Iterator<Item = Place> {
     let (operands, count) = match *operation {
         Operation::Input | Operation::Constant(_) | Operation::Foreign => ([0; 4], 0),
         Operation::Negative(a) | Operation::Magnitude(a) => ([a, 0, 0, 0], 1),

@@ -22,7 +22,7 @@ fn check(flight: usize, sensor: &Sensor) -> Result<(), Refusal> {
 struct Quantity<const W: usize> {
     /// What there was at all samples.
     values: Vec<Lanes<W>>,
-    /// What those are worth on the way back.
+    /// What those are worth on the way back; nothing without a sensor.
     worth: Vec<Lanes<W>>,
     /// For each lane with a sensor, how it looks at each sample, and its scale error.
     sensors: Vec<Option<(Vec<View>, f64)>>,
@@ -42,9 +42,10 @@ impl<const W: usize> Quantity<W> {
             let views = views.map_err(|_| refused("a sensor with too long a delay"))?;
             Ok(Some((views, sensor.model().scale_error)))
         });
-        let zeros = || vec![[0.0; W]; rows];
-        let sensors = sensors.collect::<Result<_, _>>()?;
-        Ok(Self { values: zeros(), worth: zeros(), sensors })
+        let sensors: Vec<Option<(Vec<View>, f64)>> = sensors.collect::<Result<_, _>>()?;
+        let has_any = sensors.iter().any(Option::is_some);
+        let worth = vec![[0.0; W]; if has_any { rows } else { 0 }];
+        Ok(Self { values: vec![[0.0; W]; rows], worth, sensors })
     }
 
     /// Takes what there is at a sample, and answers what is shown of it.
@@ -52,6 +53,9 @@ impl<const W: usize> Quantity<W> {
     fn look(&mut self, k: usize, value: Lanes<W>) -> Lanes<W> {
         self.values[k] = value;
         let mut shown = value;
+        if self.worth.is_empty() {
+            return shown;
+        }
         for (lane, sensor) in self.sensors.iter().enumerate() {
             let Some((views, scale_error)) = sensor else { continue };
             let view = &views[k];
@@ -65,6 +69,9 @@ impl<const W: usize> Quantity<W> {
     #[inline(always)]
     fn back(&mut self, k: usize, shown: Lanes<W>) -> Lanes<W> {
         let mut worth = shown;
+        if self.worth.is_empty() {
+            return worth;
+        }
         for (lane, sensor) in self.sensors.iter().enumerate() {
             let Some((views, scale_error)) = sensor else { continue };
             let (view, by) = (&views[k], (1.0 + scale_error) * shown[lane]);
