@@ -5,7 +5,7 @@ use core::fmt;
 use fspid_sim::Controller;
 
 use crate::certificate::{Certificate, Claim};
-use crate::recheck::{Kept, Rechecked};
+use crate::recheck::Rechecked;
 use crate::scope::LeftOut;
 
 /// What proved inequalities bear on.
@@ -43,10 +43,10 @@ impl Certificate {
             false => Bearing::Stable,
         };
         let is_fixed = matches!(self.description.controller, Controller::Fixed(_));
-        match (&self.claim, rechecked.kept) {
+        match (&self.claim, rechecked.keeps_to_the_rate) {
             (Claim::CommonQuadratic { .. } | Claim::SProcedure { .. }, _) => stable,
-            (Claim::BoundedRate(_), Some(Kept::Everywhere | Kept::WithinLevel)) => stable,
-            (Claim::BoundedRate(_), None) => Bearing::RateNotKept,
+            (Claim::BoundedRate(_), true) => stable,
+            (Claim::BoundedRate(_), false) => Bearing::RateNotKept,
             (Claim::FrozenGrowth { .. } | Claim::SequenceGrowth { .. }, _) if is_fixed => {
                 Bearing::Grows
             }

@@ -110,9 +110,6 @@ pub struct BoundedRate {
     pub forms: [Matrix; 4],
     /// ρ, at most 1.
     pub rate: f64,
-    /// Bounds of error and change in magnitude, supervisor units, within the level of the certificate, for a
-    /// law that ties the gains to them: there it keeps to the rate.
-    pub inputs: Option<[f64; 2]>,
 }
 
 impl Certificate {

@@ -48,7 +48,7 @@ pub use nonlinear::{
 pub use prove::{
     Effort, Largest, Outcome, Unbounded, Verdict, bound_disturbances, certify, is_proved,
 };
-pub use recheck::{Kept, RecheckError, Rechecked, Remains};
+pub use recheck::{RecheckError, Rechecked, Remains};
 pub use rest::NoRest;
 pub use scope::{Asked, LeftOut, Range, Scope};
 pub use steps::{

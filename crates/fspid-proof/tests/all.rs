@@ -5,6 +5,7 @@ mod check_definite;
 mod check_disturbed;
 mod check_driven;
 mod check_exponential;
+mod check_forged;
 mod check_growth;
 mod check_lyapunov;
 mod check_matrix;

@@ -71,13 +71,7 @@ fn asked(setpoint_deg: f64, load_deg: f64) -> Asked {
 }
 
 fn answer(description: &LoopDescription, asked: &Asked) -> Outcome {
-    let effort = Effort {
-        divisions: 12,
-        halvings: 3,
-        largest_factor: 1.0,
-        changes: &[],
-        ..Effort::default()
-    };
+    let effort = Effort { divisions: 12, halvings: 3, largest_factor: 1.0, ..Effort::default() };
     certify(description, asked, &effort).expect("provable")
 }
 

@@ -28,7 +28,7 @@ pub use crate::check::MOST_PARAMETERS;
 use crate::check::{NotProved, PlantSet, from_middle};
 use crate::description::LoopDescription;
 use crate::gain_set::{GainSet, KnownSlopes};
-use crate::recheck::{Kept, Recheck, RecheckError, Rechecked};
+use crate::recheck::{Recheck, RecheckError, Rechecked};
 use crate::scope::Range;
 
 use moves::Off;
@@ -274,7 +274,7 @@ impl Family {
 /// True if a proved claim bears on the flights of a loop: one about gains of bounded rate says something only of laws that
 /// keep to it everywhere.
 fn bears(claim: &Claim, rechecked: &Rechecked) -> bool {
-    !matches!(claim, Claim::BoundedRate(_)) || rechecked.kept == Some(Kept::Everywhere)
+    !matches!(claim, Claim::BoundedRate(_)) || rechecked.keeps_to_the_rate
 }
 
 /// True if a claim about each of some loops is one about those between them, as far as sensors are concerned: what cells of

@@ -1,14 +1,14 @@
 //! Forms that move with the gains, for gains of bounded rate.
 
-use fspid_core::{Gains, Law};
+use fspid_core::Gains;
 use fspid_lti::Matrix;
 use fspid_numeric::scalar::Interval;
 
-use super::{Prover, region::Region};
+use super::Prover;
 use crate::certificate::{BoundedRate, Certificate, Claim};
 use crate::check::Ends;
 use crate::gain_set::GainSet;
-use crate::recheck::{Kept, Rechecked, part_in};
+use crate::recheck::{Rechecked, part_in};
 use crate::solve::{self, GainFamily, MovingProblem, MovingVerdict};
 
 /// Corners of the set may lie outside of those that are begun with by this share of half its extent.
@@ -91,14 +91,12 @@ impl Sides {
 }
 
 impl Prover<'_> {
-    /// A certificate for gains of the largest rate that can be proved, with where the law keeps to it.
+    /// A certificate for gains that move as fast as their law makes them; none of a law that lets them jump.
     pub(super) fn bounded(&self, set: &GainSet, factor: f64) -> Option<(Certificate, Rechecked)> {
-        let of_law = self.changes_of_law(set);
-        let changes: Vec<[f64; 3]> = match of_law {
-            Some(changes) => vec![changes],
-            None => self.effort.changes.iter().map(|&change| [change; 3]).collect(),
-        };
-        changes.iter().find_map(|changes| self.bounded_by(set, factor, *changes))
+        let claim = self.moving_form(set, self.changes_of_law(set)?)?;
+        let found = self.rechecked(Claim::BoundedRate(claim.clone()), factor, None)?;
+        let within_limits = self.within_limits(set, factor, claim);
+        Some(within_limits.unwrap_or(found))
     }
 
     /// What a law that remembers can change each gain by in a sample, in half widths.
@@ -112,39 +110,17 @@ impl Prover<'_> {
         }))
     }
 
-    /// A certificate for gains that change by no more than so many half widths in a sample.
-    pub(super) fn bounded_by(
-        &self,
-        set: &GainSet,
-        factor: f64,
-        changes: [f64; 3],
-    ) -> Option<(Certificate, Rechecked)> {
-        let claim = self.moving_form(set, changes)?;
-        let found = self.rechecked(Claim::BoundedRate(claim.clone()), factor, None)?;
-        let regional = self.regional(set, factor, claim, found.1.kept);
-        Some(regional.unwrap_or(found))
-    }
-
-    /// The claim with a level within which the law keeps to the rate and no limit acts.
-    fn regional(
+    /// The claim with a level within which no limit acts.
+    fn within_limits(
         &self,
         set: &GainSet,
         factor: f64,
         claim: BoundedRate,
-        kept: Option<Kept>,
     ) -> Option<(Certificate, Rechecked)> {
-        let covers_limits = self.covers_limits() && !self.description.limits().is_empty();
-        let region = Region::of(self, set, factor, &claim)?;
-        let memoryless = self.tuned()?.tuner().settings().law == Law::Memoryless;
-        let (level, inputs) = match kept {
-            None if memoryless => {
-                let (level, inputs) = region.keeping_to_the_rate(covers_limits)?;
-                (level, Some(inputs))
-            }
-            _ if covers_limits => (region.within_limits()?, None),
-            _ => return None,
-        };
-        let claim = BoundedRate { inputs, ..claim };
+        if !self.covers_limits() || self.description.limits().is_empty() {
+            return None;
+        }
+        let level = self.level_within_limits(set, factor, &claim)?;
         self.rechecked(Claim::BoundedRate(claim), factor, Some(level))
     }
 
@@ -161,7 +137,7 @@ impl Prover<'_> {
         for (place, form) in places.zip(found.forms) {
             forms[place] = form;
         }
-        Some(BoundedRate { ends: sides.ends, changes, forms, rate: 1.0, inputs: None })
+        Some(BoundedRate { ends: sides.ends, changes, forms, rate: 1.0 })
     }
 
     /// What is asked of a form that moves with the gains, for somebody who answers it.

@@ -7,7 +7,7 @@ use super::{Effort, Prover, disturbed_moving};
 use crate::certificate::{Certificate, Claim};
 use crate::description::NotProvable;
 use crate::disturbances::{DisturbanceBound, Extent, Quantity, Way};
-use crate::recheck::{DrivenLoop, Kept, Recheck, RecheckError, Rechecked};
+use crate::recheck::{DrivenLoop, Recheck, RecheckError, Rechecked};
 use crate::scope::Asked;
 use crate::solve::{
     self, CountedRow, DrivenCorner, DrivenProblem, driven_form, form_at, kept_of, least_gain,
@@ -50,11 +50,9 @@ pub enum Unbounded {
         "bounded are disturbances of loops that are stable however fast their gains move, or at a rate that their law keeps to; this one is proved with gains that are tied to something"
     )]
     OtherClaim,
-    /// The law keeps its gains to the rate near rest alone, which a disturbance may leave.
-    #[error(
-        "the law keeps its gains to the rate of the proof near rest alone, and a disturbance may take the loop anywhere"
-    )]
-    RateNearRest,
+    /// The law is not shown to keep its gains to the rate.
+    #[error("the law is not shown to keep its gains to the rate of the proof")]
+    RateNotKept,
     /// Nothing was found for any way.
     #[error("no form was found that bounds what a disturbance does")]
     NotFound,
@@ -86,8 +84,8 @@ pub fn bound_disturbances(
     let rechecked = recheck.run()?;
     let places = match &certificate.claim {
         Claim::CommonQuadratic { form, .. } => Places::still(&recheck, form)?,
-        Claim::BoundedRate(_) if rechecked.kept != Some(Kept::Everywhere) => {
-            return Err(Unbounded::RateNearRest);
+        Claim::BoundedRate(_) if !rechecked.keeps_to_the_rate => {
+            return Err(Unbounded::RateNotKept);
         }
         Claim::BoundedRate(claim) => {
             let set = prover.set(certificate.output_factor);

@@ -4,9 +4,9 @@ mod bounded;
 mod disturbed;
 mod disturbed_moving;
 mod largest;
-mod region;
 mod stable;
 mod unstable;
+mod within_limits;
 
 pub use disturbed::{Unbounded, bound_disturbances};
 
@@ -23,7 +23,7 @@ use crate::description::{LoopDescription, NotProvable};
 use crate::family::Family;
 use crate::gain_set::{GainSet, HeldGains, IncrementMap, KnownSlopes, NoSlopes};
 use crate::limits;
-use crate::recheck::{Kept, Recheck, RecheckError, Rechecked};
+use crate::recheck::{Recheck, RecheckError, Rechecked};
 use crate::rest::{NoRest, Rest};
 use crate::scope::{Asked, Range};
 use crate::sizes;
@@ -43,9 +43,6 @@ pub struct Effort {
     pub largest_factor: f64,
     /// Points along each input at which frozen gains are looked at.
     pub frozen_points: usize,
-    /// Changes of gains in a sample, in half widths of their box, largest first: those that a proof for
-    /// gains of bounded rate is tried with.
-    pub changes: &'static [f64],
     /// Whether the sets of flights that take long are flown, a minute or two: steps with limits of gains that remember, and
     /// the flights that the scenario commands.
     pub long_flights: bool,
@@ -62,7 +59,6 @@ impl Default for Effort {
             halvings: 6,
             largest_factor: 64.0,
             frozen_points: 33,
-            changes: &[0.1, 0.03, 0.01, 0.003, 0.001, 0.0003],
             long_flights: true,
             stops: never,
         }
@@ -295,7 +291,7 @@ impl<'a> Prover<'a> {
         }
         // A claim about gains of bounded rate is one about this loop only if its law keeps to the rate.
         let bounded = set.rate_per_s.and_then(|_| self.bounded(set, 1.0));
-        bounded.filter(|(_, rechecked)| rechecked.kept == Some(Kept::Everywhere))
+        bounded.filter(|(_, rechecked)| rechecked.keeps_to_the_rate)
     }
 
     /// What can be proved for less than the range that is asked for: the largest part of it, by halving, down

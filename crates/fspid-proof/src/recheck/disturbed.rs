@@ -265,7 +265,7 @@ impl Recheck<'_> {
         let DisturbanceBound { way, quantity, decay, gain, form, .. } = bound;
         let [kp, ki, kd] = by_gain.clone();
         let forms = [form.clone(), kp, ki, kd];
-        let own = BoundedRate { forms, rate: 1.0, inputs: None, ..claim.clone() };
+        let own = BoundedRate { forms, rate: 1.0, ..claim.clone() };
         let size = self.model.size();
         let entry = exact(&way.entry(&self.certificate.description, size)?);
         let drive = MovingDrive { decay: *decay, gain: *gain, entry: &entry, seen: None };

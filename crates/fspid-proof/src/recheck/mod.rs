@@ -25,7 +25,7 @@ use crate::solve::never;
 use crate::steps::{Checked, Ended, Stepped, Terminal, corners_within};
 
 pub(crate) use disturbed::DrivenLoop;
-pub(crate) use moving::{Corner, moved_inputs, part_in};
+pub(crate) use moving::{Corner, part_in};
 pub use remains::Remains;
 
 /// What was re-checked.
@@ -37,9 +37,9 @@ pub struct Rechecked {
     pub inequalities: usize,
     /// Bounds of each gain.
     pub bounds: [Interval; 3],
-    /// Where the law was proved to keep to the rate that is claimed; none where it was not, and for claims
-    /// that are not about a rate.
-    pub kept: Option<Kept>,
+    /// Whether the law was proved to keep to the rate that is claimed, in every flight; false for claims that are not about
+    /// a rate.
+    pub keeps_to_the_rate: bool,
     /// Where a level is claimed: how far the pitch angle may be off, everything else at rest, to lie within,
     /// rad.
     pub pitch_within_rad: Option<f64>,
@@ -65,20 +65,11 @@ pub struct Rechecked {
     pub nonlinear: Option<CheckedNonlinear>,
 }
 
-/// Where a law keeps its gains to a rate.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kept {
-    /// In every flight.
-    Everywhere,
-    /// In flights that begin within the level of the certificate, and so never leave it.
-    WithinLevel,
-}
-
 /// What the proof of a claim came to.
 #[derive(Clone, Debug, Default)]
 struct Proved {
     inequalities: usize,
-    kept: Option<Kept>,
+    keeps_to_the_rate: bool,
     pitch_within_rad: Option<f64>,
     remains_rad: f64,
 }
@@ -263,7 +254,8 @@ impl<'a> Recheck<'a> {
         {
             return Err(malformed(what));
         }
-        let Proved { inequalities, kept, pitch_within_rad, remains_rad } = self.proved()?;
+        let Proved { inequalities, keeps_to_the_rate, pitch_within_rad, remains_rad } =
+            self.proved()?;
         let stepped = self.stepped()?;
         let ended = self.ended()?;
         let disturbed = self.disturbed(remains_rad)?;
@@ -284,7 +276,7 @@ impl<'a> Recheck<'a> {
             cells: self.set.cells.len(),
             inequalities,
             bounds,
-            kept,
+            keeps_to_the_rate,
             pitch_within_rad,
             any_setpoint: self.rest.any_setpoint,
             any_load: self.rest.any_load,
@@ -377,7 +369,7 @@ impl<'a> Recheck<'a> {
         let pitch_within_rad = level.and_then(within);
         let remains_rad = self.remains(form, rate)?;
         self.is_little(remains_rad)?;
-        Ok(Proved { inequalities, kept: None, pitch_within_rad, remains_rad })
+        Ok(Proved { inequalities, keeps_to_the_rate: false, pitch_within_rad, remains_rad })
     }
 
     /// The closed loop at gains.

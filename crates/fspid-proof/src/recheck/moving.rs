@@ -2,19 +2,17 @@
 
 use core::cmp::Ordering;
 
-use fspid_core::{Gains, SecondInput};
+use fspid_core::Gains;
 use fspid_lti::Matrix;
-use fspid_numeric::Scalar;
 use fspid_numeric::scalar::Interval;
-use fspid_sim::Controller;
 
-use super::{Kept, Proved, Recheck, RecheckError, allowed_rate, input_rows, malformed};
+use super::{Proved, Recheck, RecheckError, allowed_rate, malformed};
 use crate::certificate::BoundedRate;
 use crate::check::{
     Ends, IntervalMatrix, Moving, MovingDrive, MovingProof, NotProved, NotProvedAt,
     falls_while_moving, grows_no_faster_while_moving, inside_limits,
 };
-use crate::gain_set::{GainSet, IncrementSlopes};
+use crate::gain_set::GainSet;
 use crate::limits;
 
 /// Rounding of the tuner's last sums and products, as a share of the gain.
@@ -218,15 +216,12 @@ impl Recheck<'_> {
         }
         let decrease = self.moving_decrease(claim)?;
         let mut proved = Proved { inequalities: decrease.proof.inequalities, ..Proved::default() };
-        if self.keeps_everywhere(claim, &decrease) {
-            proved.kept = Some(Kept::Everywhere);
-        }
+        proved.keeps_to_the_rate = self.keeps_everywhere(claim, &decrease);
         let Some(level) = self.certificate.level else { return Ok(proved) };
-        let corners = decrease.corners(claim)?;
-        if proved.kept.is_none() {
-            proved.inequalities += self.keeps_within(claim, &decrease, &corners, level)?;
-            proved.kept = Some(Kept::WithinLevel);
+        if !proved.keeps_to_the_rate {
+            return Err(malformed("a level of a law that is not shown to keep to the rate"));
         }
+        let corners = decrease.corners(claim)?;
         if limits::not_covered(&self.certificate.description).is_none() {
             proved.inequalities += self.limits_at(&corners, level)?;
         }
@@ -290,54 +285,6 @@ impl Recheck<'_> {
         allowed.iter().all(keeps)
     }
 
-    /// Proves that gains tied to error and change keep to the rate as long as $z^T P(\kappa) z$ is within
-    /// a level, which as it decreases is for ever.
-    ///
-    /// With the rows $r_x$ of the supervisor's inputs, they move by $r_x (M(\kappa) - I) z$ in a sample, and
-    /// each gain by no more than its slopes times that.
-    fn keeps_within(
-        &self,
-        claim: &BoundedRate,
-        decrease: &Decrease,
-        corners: &[Corner],
-        level: f64,
-    ) -> Result<usize, RecheckError> {
-        let Controller::SelfTuning(fspid) = &self.certificate.description.controller else {
-            return Err(malformed("fixed gains have no rate"));
-        };
-        if fspid.tuner().settings().second_input != SecondInput::Change {
-            return Err(malformed("gains are tied to another input than the change of the error"));
-        }
-        let Some(inputs) = claim.inputs else {
-            return Err(malformed("a level without bounds of error and change"));
-        };
-        let known = IncrementSlopes::of(fspid.tuner(), inputs)
-            .map_err(|_| malformed("nothing is known of how fast the law moves the gains"))?;
-        let factor = Interval::point(self.certificate.output_factor);
-        let scales = fspid.tuner().settings().output_scale;
-        let scales = [scales.kp, scales.ki, scales.kd].map(|s| factor * Interval::point(s.abs()));
-        let allowed: Vec<(usize, f64)> = decrease
-            .allowed(claim)
-            .into_iter()
-            .filter(|(gain, _)| scales[*gain].upper() > 0.0)
-            .map(|(gain, most)| (gain, (most / scales[gain] - Interval::point(known.off)).lower()))
-            .collect();
-        let rows_of_inputs = input_rows(&self.model, fspid);
-        for corner in corners {
-            let moved = moved_inputs(&rows_of_inputs, &self.model.closed(corner.gains));
-            let mut rows: Vec<(Vec<Interval>, f64)> =
-                rows_of_inputs.iter().cloned().zip(inputs).collect();
-            for &(gain, most) in &allowed {
-                rows.extend(steepest(known.slopes[gain], &moved).map(|row| (row, most)));
-            }
-            rows.retain(|(row, _)| row.iter().any(|entry| entry.magnitude() > 0.0));
-            let gains = Some(middles(corner.gains));
-            inside_limits(&corner.form, level, &rows)
-                .map_err(|reason| RecheckError::Inequality { gains, reason })?;
-        }
-        Ok(corners.len() * (2 + 4 * allowed.len()))
-    }
-
     /// Proves that no limit acts within a level.
     fn limits_at(&self, corners: &[Corner], level: f64) -> Result<usize, RecheckError> {
         let mut proved = 0;
@@ -351,31 +298,6 @@ impl Recheck<'_> {
         }
         Ok(proved)
     }
-}
-
-/// What a sample adds to the supervisor's inputs, by state: $r_x (M - I)$.
-pub(crate) fn moved_inputs<T: Scalar>(inputs: &[Vec<T>; 2], closed: &[Vec<T>]) -> [Vec<T>; 2] {
-    inputs.each_ref().map(|row| {
-        let mut moved: Vec<T> = row.iter().map(|entry| -*entry).collect();
-        for (factor, line) in row.iter().zip(closed) {
-            for (sum, entry) in moved.iter_mut().zip(line) {
-                *sum = *sum + *factor * *entry;
-            }
-        }
-        moved
-    })
-}
-
-/// Rows of which one is the steepest that a gain can have over the way of the inputs: with the ends of both
-/// slopes.
-fn steepest(slopes: [Interval; 2], moved: &[Vec<Interval>; 2]) -> [Vec<Interval>; 4] {
-    let [by_error, by_change] = slopes.map(|slope| [slope.lower(), slope.upper()]);
-    let [error, change] = moved;
-    [0, 1, 2, 3].map(|end: usize| {
-        let (one, other) =
-            (Interval::point(by_error[end & 1]), Interval::point(by_change[end >> 1]));
-        error.iter().zip(change).map(|(e, c)| one * *e + other * *c).collect()
-    })
 }
 
 fn middles(gains: Gains<Interval>) -> Gains<f64> {

@@ -47,7 +47,6 @@ pub(crate) fn quick() -> Effort {
         halvings: 2,
         largest_factor: 1.0,
         frozen_points: 13,
-        changes: &[],
         ..Effort::default()
     }
 }

@@ -7,8 +7,8 @@ use std::sync::OnceLock;
 use fspid_core::Gains;
 use fspid_lti::Matrix;
 use fspid_proof::{
-    Asked, BoundedRate, Certificate, Claim, DisturbanceBound, Extent, Kept, LoopDescription,
-    Rechecked, Verdict, bound_disturbances, certify, ways_of,
+    Asked, BoundedRate, Certificate, Claim, DisturbanceBound, Extent, LoopDescription, Rechecked,
+    Verdict, bound_disturbances, certify, ways_of,
 };
 use fspid_sim::Scenario;
 
@@ -50,7 +50,7 @@ fn claim_of(certificate: &Certificate) -> &BoundedRate {
 #[test]
 fn no_motion_of_the_gains_within_their_rate_makes_more_of_a_disturbance_than_is_bounded() {
     let (certificate, rechecked) = moving();
-    assert_eq!(rechecked.kept, Some(Kept::Everywhere));
+    assert!(rechecked.keeps_to_the_rate);
     let corners = corners(certificate);
     let mut dice = Dice::new(7);
     // Standing still at a corner, from corner to corner without a stop, and resonances of some periods.
@@ -117,9 +117,16 @@ fn a_form_that_moves_with_a_gain_whose_rate_is_not_kept_bounds_nothing() {
     let claim = Claim::BoundedRate(slower);
     let slower = Certificate { claim, level: None, steps: None, ..certificate.clone() };
     let alone = slower;
-    assert_eq!(alone.check().expect("falls").kept, None);
+    assert!(!alone.check().expect("falls").keeps_to_the_rate);
     let scenario = scenario();
     let ways = ways_of(scenario.plant.linear().expect("linear"));
     let refused = bound_disturbances(&alone, &ways, &quick()).expect_err("not kept").to_string();
-    assert!(refused.contains("near rest alone"), "{refused}");
+    assert!(refused.contains("not shown to keep"), "{refused}");
+    let (bounded, _) = moving();
+    let forged = Certificate { disturbances: bounded.disturbances.clone(), ..alone.clone() };
+    let refused = forged.check().expect_err("not kept").to_string();
+    assert!(refused.contains("not shown to keep to the rate in every flight"), "{refused}");
+    let forged = Certificate { level: Some(1e-6), ..alone };
+    let refused = forged.check().expect_err("not kept").to_string();
+    assert!(refused.contains("a level of a law that is not shown to keep"), "{refused}");
 }

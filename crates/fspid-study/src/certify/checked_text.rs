@@ -1,6 +1,6 @@
 //! The answer of `certify --check` in words.
 
-use fspid_proof::{Certificate, Claim, Kept, Rechecked};
+use fspid_proof::{Certificate, Claim, Rechecked};
 
 use super::checked::{Answer, CheckedFile};
 use super::comparison::Comparison;
@@ -77,11 +77,7 @@ fn push_kept(out: &mut String, certificate: &Certificate, rechecked: &Rechecked)
     if !matches!(certificate.claim, Claim::BoundedRate(_)) {
         return;
     }
-    let kept = match rechecked.kept {
-        Some(Kept::Everywhere) => "in every flight",
-        Some(Kept::WithinLevel) => "in flights that begin near enough to rest",
-        None => "not shown",
-    };
+    let kept = if rechecked.keeps_to_the_rate { "in every flight" } else { "not shown" };
     out.push_str(&format!("  law keeps to this  {kept}\n"));
 }
 

@@ -121,8 +121,6 @@ pub(super) enum ClaimFile {
         ends: [[f64; 2]; 3],
         changes: [f64; 3],
         forms: [Rows; 4],
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        inputs: Option<[f64; 2]>,
     },
     UnstableWithFrozenGains {
         input: [f64; 2],
@@ -348,13 +346,12 @@ impl ClaimFile {
                 form: rows(form),
                 multipliers: multipliers.clone(),
             },
-            Claim::BoundedRate(BoundedRate { ends, changes, forms, rate, inputs }) => {
+            Claim::BoundedRate(BoundedRate { ends, changes, forms, rate }) => {
                 ClaimFile::StableAtBoundedRate {
                     rate: *rate,
                     ends: *ends,
                     changes: *changes,
                     forms: forms.each_ref().map(rows),
-                    inputs: *inputs,
                 }
             }
             Claim::FrozenGrowth { input, factor, form, direction } => {
@@ -384,10 +381,10 @@ impl ClaimFile {
             Self::StableAsTiedToTheError { rate, form, multipliers } => {
                 Claim::SProcedure { form: matrix(&form)?, rate, multipliers }
             }
-            Self::StableAtBoundedRate { rate, ends, changes, forms, inputs } => {
+            Self::StableAtBoundedRate { rate, ends, changes, forms } => {
                 let [constant, kp, ki, kd] = &forms;
                 let forms = [matrix(constant)?, matrix(kp)?, matrix(ki)?, matrix(kd)?];
-                Claim::BoundedRate(BoundedRate { ends, changes, forms, rate, inputs })
+                Claim::BoundedRate(BoundedRate { ends, changes, forms, rate })
             }
             Self::UnstableWithFrozenGains { input, factor, form, direction } => {
                 Claim::FrozenGrowth { input, factor, form: matrix(&form)?, direction }

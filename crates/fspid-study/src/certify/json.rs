@@ -1,7 +1,7 @@
 //! Certificates for programs.
 
 use fspid_numeric::scalar::Interval;
-use fspid_proof::{Bearing, Certificate, Kept, Outcome, Rechecked, Verdict};
+use fspid_proof::{Bearing, Certificate, Outcome, Rechecked, Verdict};
 use serde_json::{Value, json};
 
 use super::scope::{Told, told_deg};
@@ -171,10 +171,7 @@ impl CheckedFile {
 
 /// Where the law keeps to the rate of a claim about one; `null` where that is not shown, or not asked.
 fn kept(rechecked: &Rechecked) -> Option<&'static str> {
-    rechecked.kept.map(|kept| match kept {
-        Kept::Everywhere => "everywhere",
-        Kept::WithinLevel => "within the level",
-    })
+    rechecked.keeps_to_the_rate.then_some("everywhere")
 }
 
 fn comparison(against: &Comparison) -> Value {

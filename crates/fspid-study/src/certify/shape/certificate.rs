@@ -411,5 +411,4 @@ const BOUNDED_RATE: &[Key] = &[
     key("ends", List(&List(&REAL, [2, 2]), [3, 3])),
     key("changes", List(&NOT_NEGATIVE, [3, 3])),
     key("forms", List(&FORM, [4, 4])),
-    optional("inputs", List(&NOT_NEGATIVE, [2, 2])),
 ];

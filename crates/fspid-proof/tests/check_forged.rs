@@ -1,0 +1,145 @@
+//! Certificates whose claim does not fit their loop, as nobody writes them who has found one: each is refused in words.
+
+use fspid_core::{Fspid, Gains, Law, ReferenceModel, SecondInput, SelfTuner, TunerSettings};
+use fspid_lti::Matrix;
+use fspid_proof::{
+    Asked, BoundedRate, Certificate, Claim, DisturbanceBound, Extent, Quantity, Verdict, Way,
+    certify,
+};
+use fspid_sim::Controller;
+
+use crate::certify::{config, fixed, loop_of, proved, quick, tuned};
+
+const SCALE: Gains<f64> = Gains { kp: 0.09, ki: 0.02, kd: 0.045 };
+const NOMINAL: Gains<f64> = Gains { kp: 2.0, ki: 0.5, kd: 1.0 };
+
+fn good() -> Certificate {
+    proved(&loop_of(tuned(SCALE, Law::Memoryless)))
+}
+
+fn form_of(certificate: &Certificate) -> Matrix {
+    let Claim::CommonQuadratic { form, .. } = &certificate.claim else {
+        panic!("{:?}", certificate.claim)
+    };
+    form.clone()
+}
+
+fn tied_to_the_error(certificate: &Certificate) -> Certificate {
+    let form = form_of(certificate);
+    let claim = Claim::SProcedure { form, rate: 1.0, multipliers: vec![0.0; 8] };
+    Certificate { claim, level: None, steps: None, ..certificate.clone() }
+}
+
+/// One whose form moves with kp by a hundred thousandth of itself, for a kp that moves slowly.
+fn at_bounded_rate(certificate: &Certificate, ends: [[f64; 2]; 3]) -> Certificate {
+    let form = form_of(certificate);
+    let none = Matrix::zeros(form.rows(), form.columns());
+    let forms = [form.clone(), form.scaled(1e-5), none.clone(), none];
+    let changes = [0.01, 2.0, 2.0];
+    let claim = Claim::BoundedRate(BoundedRate { ends, changes, forms, rate: 1.0 });
+    Certificate { claim, level: None, steps: None, ..certificate.clone() }
+}
+
+fn refused(certificate: &Certificate) -> String {
+    certificate.check().expect_err("forged").to_string()
+}
+
+#[test]
+fn gains_that_no_error_of_the_moment_makes_are_tied_to_none() {
+    let of_fixed = proved(&loop_of(fixed(NOMINAL)));
+    let told = refused(&tied_to_the_error(&of_fixed));
+    assert!(told.contains("fixed gains are tied to nothing"), "{told}");
+
+    let slow = Gains { kp: 0.01, ki: 0.001, kd: 0.005 };
+    let law = Law::Accumulating { leakage_per_s: 0.5 };
+    let remembers = loop_of(tuned(slow, law));
+    let other = Certificate { description: remembers, ..tied_to_the_error(&good()) };
+    let told = refused(&other);
+    assert!(told.contains("gains that remember are not tied"), "{told}");
+}
+
+#[test]
+fn gains_that_see_a_reference_model_are_not_tied_to_the_change_of_the_error() {
+    let Controller::SelfTuning(fspid) = tuned(SCALE, Law::Memoryless) else { panic!("tuned") };
+    let model = ReferenceModel { bandwidth_rad_s: 1.0, damping: 1.0 };
+    let settings =
+        TunerSettings { second_input: SecondInput::ModelError(model), ..*fspid.tuner().settings() };
+    let tuner = SelfTuner::new(NOMINAL, *fspid.tuner().supervisor(), settings).expect("allowed");
+    let seen = loop_of(Controller::SelfTuning(Fspid::new(tuner, config()).expect("allowed")));
+    let told = refused(&tied_to_the_error(&Certificate { description: seen, ..good() }));
+    assert!(told.contains("another input than the change"), "{told}");
+}
+
+#[test]
+fn a_box_of_gains_that_move_holds_every_gain_of_the_law() {
+    let scale = Gains { kp: 0.09, ki: 0.0, kd: 0.0 };
+    let good = proved(&loop_of(tuned(scale, Law::Memoryless)));
+    let ends = good.check().expect("it holds").bounds.map(|it| [it.lower(), it.upper()]);
+    at_bounded_rate(&good, ends).check().expect("it holds of a box with all gains");
+    for gain in 0..3 {
+        for side in 0..2 {
+            let mut narrow = ends;
+            // Of a gain that stands still the box is a point.
+            let inwards = [1.0, -1.0][side] * 1e-3;
+            narrow[gain] = if gain == 0 { ends[gain] } else { ends[gain].map(|it| it + inwards) };
+            narrow[gain][side] = ends[gain][side] + inwards;
+            let told = refused(&at_bounded_rate(&good, narrow));
+            assert!(told.contains("does not hold every gain"), "{gain} {side}: {told}");
+        }
+        let mut endless = ends;
+        endless[gain][1] = f64::INFINITY;
+        let told = refused(&at_bounded_rate(&good, endless));
+        assert!(told.contains("two finite numbers in order"), "{gain}: {told}");
+    }
+    let [[lower, upper], ki, kd] = ends;
+    let told = refused(&at_bounded_rate(&good, [[upper, lower], ki, kd]));
+    assert!(told.contains("two finite numbers in order"), "{told}");
+}
+
+#[test]
+fn growth_is_at_least_one_and_bounds_no_disturbance_and_no_step() {
+    let unstable = loop_of(fixed(Gains { kp: 10.0, ki: 0.0, kd: 0.0 }));
+    let outcome = certify(&unstable, &Asked::rest(), &quick()).expect("provable");
+    let Verdict::Refuted(grows, _) = outcome.verdict else { panic!("{outcome:?}") };
+    let Claim::FrozenGrowth { input, factor, form, direction } = grows.claim.clone() else {
+        panic!("{:?}", grows.claim)
+    };
+    assert!(factor > 1.0);
+    for factor in [1.0 - 1e-12, 0.5, 0.0, f64::INFINITY, f64::NAN] {
+        let claim =
+            Claim::FrozenGrowth { input, factor, form: form.clone(), direction: direction.clone() };
+        let told = refused(&Certificate { claim, ..grows.clone() });
+        assert!(told.contains("factor of the growth is below 1"), "{factor}: {told}");
+    }
+    let bound = DisturbanceBound {
+        way: Way::Elevator,
+        quantity: Quantity::Pitch,
+        extent: Extent::Energy,
+        decay: 1.0,
+        gain: 1.0,
+        form: form.clone(),
+        by_gain: None,
+    };
+    let told = refused(&Certificate { disturbances: vec![bound], ..grows.clone() });
+    assert!(told.contains("bounded are those of a loop that is stable"), "{told}");
+}
+
+#[test]
+fn forms_have_the_size_of_the_loop() {
+    let good = good();
+    let form = form_of(&good);
+    let size = form.rows();
+    let small = Matrix::identity(size - 1);
+    let claim = Claim::CommonQuadratic { form: small.clone(), rate: 1.0 };
+    let told = refused(&Certificate { claim, ..good.clone() });
+    assert!(told.contains("claim.form"), "{told}");
+    let ends = good.check().expect("it holds").bounds.map(|it| [it.lower(), it.upper()]);
+    let moving = at_bounded_rate(&good, ends);
+    let Claim::BoundedRate(claim) = &moving.claim else { panic!("just made") };
+    for place in 0..4 {
+        let mut claim = claim.clone();
+        claim.forms[place] = small.clone();
+        let told = refused(&Certificate { claim: Claim::BoundedRate(claim), ..moving.clone() });
+        assert!(told.contains("forms"), "{place}: {told}");
+    }
+}
