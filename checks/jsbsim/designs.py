@@ -1,4 +1,4 @@
-"""Flies the shipped designs, and the PID that was tuned alike, at trims of JSBSim; called by designs.sh.
+"""Flies the shipped designs, or those named, and the PID that was tuned alike, at trims of JSBSim; called by designs.sh.
 
 Everything but the aircraft is that of the design's file: servo, noise, the change of trim, the step of 5 deg, and the same
 down, in calm air and in moderate turbulence. Prints the table in Markdown: means over both steps, of the PID's.
@@ -11,6 +11,7 @@ import subprocess
 import sys
 
 FSPID, ROOT, WORK = sys.argv[1:4]
+NAMED = sys.argv[4:]
 
 # The trims of checks/jsbsim/flights.py and some more of the same aircraft.
 CONDITIONS = {
@@ -32,7 +33,13 @@ CONDITIONS = {
     ],
 }
 # Which designs fly them.
-DESIGNS = {"light": "light", "transport": "transport", "light-steps": "light", "transport-steps": "transport"}
+DESIGNS = {
+    "light": "light",
+    "transport": "transport",
+    "light-steps": "light",
+    "light-network": "light",
+    "transport-steps": "transport",
+}
 MEASURES = ("iae_deg_s", "elevator_travel_deg", "overshoot_pct")
 # Asked for their numbers; the limit of the overshoot is that of the design.
 ASKED = "".join(
@@ -87,7 +94,8 @@ def words(verdicts):
 
 
 def main():
-    for design, kind in DESIGNS.items():
+    for design in NAMED or DESIGNS:
+        kind = DESIGNS[design]
         conditions = CONDITIONS[kind]
         print(f"\n| {design}, not tuned on | IAE of the PID, deg s | controller | IAE | travel | overshoot (PID) | verdict (PID) | IAE in turbulence | travel |")
         print("| --- | --- | --- | --- | --- | --- | --- | --- | --- |")

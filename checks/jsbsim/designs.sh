@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The shipped designs on JSBSim's aircraft, on which nobody was tuned: the table of data/designs/learned/README.md.
-# designs.sh [fspid]; installs jsbsim 1.3.3 from PyPI into a folder of its own.
+# designs.sh [fspid [design …]]; installs jsbsim 1.3.3 from PyPI into a folder of its own.
 set -euo pipefail
 here="$(cd "$(dirname "$0")" && pwd)"
 root="$(cd "$here/../.." && pwd)"
@@ -13,4 +13,4 @@ if [ -z "${FSPID_PYTHON:-}" ]; then
     "$work/python/bin/pip" install --quiet --disable-pip-version-check jsbsim==1.3.3
     export FSPID_PYTHON="$work/python/bin/python"
 fi
-"$FSPID_PYTHON" "$here/designs.py" "$fspid" "$root" "$work"
+"$FSPID_PYTHON" "$here/designs.py" "$fspid" "$root" "$work" "${@:2}"

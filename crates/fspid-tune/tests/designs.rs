@@ -99,3 +99,13 @@ fn the_proved_self_tuner_of_light_aircraft_has_0_85_of_the_error_at_less_travel_
 {
     is_first("light-steps", [0.85, 0.98], [0, 0]);
 }
+
+#[test]
+fn the_proved_network_of_light_aircraft_has_less_than_0_85_of_the_error_at_less_travel() {
+    is_first("light-network", [0.85, 0.97], [1, 1]);
+}
+
+#[test]
+fn the_proved_network_of_small_unmanned_aircraft_has_a_quarter_less_error_at_less_travel() {
+    is_first("uav-network", [0.77, 0.94], [2, 1]);
+}

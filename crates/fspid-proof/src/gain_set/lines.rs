@@ -1,16 +1,21 @@
-//! Straight lines along what rules that conclude numbers answer over a box, and how far the answer is from them.
+//! Straight lines along what a supervisor answers over a box, and how far the answer is from them.
 //!
 //! $$ \Delta k(e, x) = m_e e + m_x x + \rho, \qquad \rho \in R $$
 //!
-//! Between the centres of neighbouring sets the answer is linear along either input, so that with its lines taken away it is
+//! **Rules that conclude numbers.** Between the centres of neighbouring sets the answer is linear along either input, so that with its lines taken away it is
 //! largest and smallest where a border of the box or a centre meets another. The lines go through the ends of the box, so that
 //! R shrinks with the square of the box where no centre is inside, and with the box where one is.
+//!
+//! **A network.** Its lines have the middle of the slopes that it has anywhere in the box; what is left is what it answers in
+//! the middle and how much the slopes differ on the way from there (mean value theorem), which shrinks with the square of the
+//! box. Where a box is so wide that what it answers anywhere is less, the line is level.
 
 use fspid_core::{SelfTuner, SetCentres};
 use fspid_fuzzy::{NumberTable, OutOfRange, Output};
 use fspid_numeric::scalar::Interval;
 
 use super::increments::ROUNDING;
+use super::network::Net;
 use super::numbers::Numbers;
 
 /// A line along an output, and what is left beside it.
@@ -22,9 +27,18 @@ pub(crate) struct Line {
     pub(crate) beside: Interval,
 }
 
-/// The rules of a tuner that conclude numbers, over inputs as the tuner scales them.
+/// What a tuner's supervisor answers, over inputs as the tuner scales them.
 #[derive(Clone)]
-pub(crate) struct Lines<'a> {
+pub(crate) enum Lines<'a> {
+    /// Rules that conclude numbers.
+    Numbers(AlongNumbers<'a>),
+    /// A network.
+    Network(Net<'a>),
+}
+
+/// Rules that conclude numbers.
+#[derive(Clone)]
+pub(crate) struct AlongNumbers<'a> {
     numbers: Numbers<'a>,
     /// Where the centres of each input's sets lie, rising.
     centres: [[Interval; 7]; 2],
@@ -34,27 +48,46 @@ pub(crate) struct Lines<'a> {
 type Place = (usize, Interval);
 
 impl<'a> Lines<'a> {
-    /// Those of a tuner; none where rules do not conclude numbers, or refuse inputs.
+    /// Those of a tuner; none where rules conclude labels, or inputs are refused.
     pub(crate) fn of(tuner: &'a SelfTuner<f64>) -> Option<Self> {
         let supervisor = tuner.supervisor();
-        let table: &NumberTable<f64> = supervisor.numbers()?;
         let range = supervisor.range();
         if supervisor.out_of_range() == OutOfRange::Error {
             return None;
         }
+        if let Some(network) = supervisor.network() {
+            return Some(Self::Network(Net { network, range }));
+        }
+        let table: &NumberTable<f64> = supervisor.numbers()?;
         let sets = tuner.settings().input_sets;
         let centres = [sets.error, sets.change].map(|sets| centres(sets, range));
-        Some(Self { numbers: Numbers { table, range }, centres })
+        Some(Self::Numbers(AlongNumbers { numbers: Numbers { table, range }, centres }))
     }
 
     /// Every answer where error and second input lie between bounds.
     pub(crate) fn over(&self, inputs: [Interval; 2]) -> [Interval; 3] {
-        let places = [0, 1].map(|input: usize| self.places(input, inputs[input]));
-        Output::ALL.map(|output| self.beside(output, &places, [0.0; 2]))
+        match self {
+            Self::Numbers(numbers) => numbers.over(inputs),
+            Self::Network(network) => network.answers(inputs),
+        }
     }
 
     /// Lines along the answers there.
     pub(crate) fn along(&self, inputs: [Interval; 2]) -> [Line; 3] {
+        match self {
+            Self::Numbers(numbers) => numbers.along(inputs),
+            Self::Network(network) => network.along(inputs),
+        }
+    }
+}
+
+impl AlongNumbers<'_> {
+    fn over(&self, inputs: [Interval; 2]) -> [Interval; 3] {
+        let places = [0, 1].map(|input: usize| self.places(input, inputs[input]));
+        Output::ALL.map(|output| self.beside(output, &places, [0.0; 2]))
+    }
+
+    fn along(&self, inputs: [Interval; 2]) -> [Line; 3] {
         let places = [0, 1].map(|input: usize| self.places(input, inputs[input]));
         Output::ALL.map(|output| {
             let slopes = [0, 1].map(|input| self.slope(output, input, inputs));
@@ -128,9 +161,20 @@ fn centres(sets: Option<SetCentres<f64>>, range: f64) -> [Interval; 7] {
 #[cfg(test)]
 mod tests {
     use fspid_core::{Gains, InputSets, TunerSettings};
-    use fspid_fuzzy::Supervisor;
+    use fspid_fuzzy::{Network, Supervisor};
 
     use super::*;
+
+    fn networked() -> SelfTuner<f64> {
+        let row = |seed: usize| {
+            core::array::from_fn(|unit| ((unit * 7 + seed * 5) % 11) as f64 / 2.0 - 2.4)
+        };
+        let network = Network::new([row(0), row(3), row(4), row(7), row(9), row(10)]);
+        let network = network.expect("weights");
+        let supervisor = Supervisor::of_network(&network, 2.0, OutOfRange::Clamp).expect("allowed");
+        let settings = TunerSettings::literal();
+        SelfTuner::new(Gains { kp: 1.0, ki: 1.0, kd: 1.0 }, supervisor, settings).expect("allowed")
+    }
 
     fn tuner(sets: Option<SetCentres<f64>>) -> SelfTuner<f64> {
         let grid = |seed: usize| {
@@ -151,9 +195,9 @@ mod tests {
 
     #[test]
     fn every_answer_lies_beside_its_lines() {
-        for sets in [None, Some(SetCentres::new(0.1, 0.7).expect("rising"))] {
-            let tuner = tuner(sets);
-            let lines = Lines::of(&tuner).expect("numbers");
+        let moved = SetCentres::new(0.1, 0.7).expect("rising");
+        for tuner in [tuner(None), tuner(Some(moved)), networked()] {
+            let lines = Lines::of(&tuner).expect("no labels");
             for (from, width) in [(-2.4, 0.3), (-0.1, 0.2), (0.3, 1.9), (0.21, 1e-3), (-2.4, 4.9)] {
                 let inputs = [from, -0.7 * from].map(|at| Interval::between(at, at + width));
                 let [along, over] = [
@@ -182,17 +226,14 @@ mod tests {
 
     #[test]
     fn what_is_left_beside_a_line_shrinks_with_the_square_of_the_box() {
-        let tuner = tuner(None);
-        let lines = Lines::of(&tuner).expect("numbers");
-        let left = |width: f64| {
-            let inputs = [0.1, 0.9].map(|at| Interval::between(at, at + width));
-            lines.along(inputs).map(|line| line.beside.width()).into_iter().fold(0.0, f64::max)
-        };
-        assert!(
-            left(0.02) > 1e-5 && left(0.002) < 0.011 * left(0.02),
-            "{} {}",
-            left(0.02),
-            left(0.002)
-        );
+        for tuner in [tuner(None), networked()] {
+            let lines = Lines::of(&tuner).expect("no labels");
+            let left = |width: f64| {
+                let inputs = [0.1, 0.9].map(|at| Interval::between(at, at + width));
+                lines.along(inputs).map(|line| line.beside.width()).into_iter().fold(0.0, f64::max)
+            };
+            let [wide, narrow] = [left(0.02), left(0.002)];
+            assert!(wide > 1e-5 && narrow < 0.011 * wide, "{wide} {narrow}");
+        }
     }
 }

@@ -3,6 +3,8 @@
 use fspid_fuzzy::{Network, Output};
 use fspid_numeric::scalar::Interval;
 
+use super::lines::Line;
+
 /// What the arithmetic of a network may be off by, as a share of what [`Net::slack`] sums up: $2^{-46}$, which is
 /// $128 \epsilon$ with $\epsilon = 2^{-53}$.
 ///
@@ -17,7 +19,7 @@ const PARTS: usize = 64;
 
 /// A network over its range.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Net<'a> {
+pub(crate) struct Net<'a> {
     pub(super) network: &'a Network<f64>,
     /// Half range of the inputs.
     pub(super) range: f64,
@@ -76,6 +78,43 @@ impl Net<'_> {
             let (sum, _) = self.sum_with_slopes(output, inputs);
             Interval::point(self.range) * softsign(sum)
         })
+    }
+
+    /// All answers over inputs, with the rounding of the supervisor's own arithmetic.
+    pub(super) fn answers(&self, asked: [Interval; 2]) -> [Interval; 3] {
+        let slack = self.slack();
+        self.over(asked).map(|answer| answer + Interval::between(-slack, slack))
+    }
+
+    /// Lines along the answers over inputs, with the rounding of the supervisor's own arithmetic.
+    pub(super) fn along(&self, asked: [Interval; 2]) -> [Line; 3] {
+        let level = self.answers(asked).map(|beside| Line { slopes: [0.0; 2], beside });
+        let middle = asked.map(|side| Interval::point(side.midpoint()));
+        if !asked.iter().all(|side| side.width().is_finite()) {
+            return level;
+        }
+        let in_middle = self.answers(middle);
+        let inputs = asked.map(|side| self.part(side));
+        // Beyond the range answers are level.
+        let ends = [0, 1].map(|input: usize| asked[input].magnitude() > self.range);
+        let mut lines = level;
+        for ((output, line), answer) in Output::ALL.into_iter().zip(&mut lines).zip(in_middle) {
+            let (sum, by_inputs) = self.sum_with_slopes(output, inputs);
+            let (mut slopes, mut beside) = ([0.0; 2], answer);
+            for input in 0..2 {
+                // The range that answers are multiplied by is the one that inputs are divided by.
+                let by = slope(sum) * by_inputs[input];
+                let by = if ends[input] { by.hull(Interval::ZERO) } else { by };
+                slopes[input] = by.midpoint();
+                let along = Interval::point(slopes[input]);
+                beside =
+                    beside - along * middle[input] + (by - along) * (asked[input] - middle[input]);
+            }
+            if beside.width() < line.beside.width() {
+                *line = Line { slopes, beside };
+            }
+        }
+        lines
     }
 
     /// The sum over a box, and its slopes there along both inputs in parts of the range.

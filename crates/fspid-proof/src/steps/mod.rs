@@ -170,7 +170,7 @@ fn not_flown(fspid: &Fspid<f64>) -> Option<&'static str> {
     }
     if Tuner::of(fspid).is_none() {
         return Some(
-            "gains that remember are flown in sets where they leak, by rules that conclude numbers, refuse no input and have no dead zone, and see the change of the error or the error of a model",
+            "gains that remember are flown in sets where they leak, by rules that conclude numbers or a network, refuse no input and have no dead zone, and see the change of the error or the error of a model",
         );
     }
     // Rest then depends on the gains, which come to theirs as late as they like.
@@ -218,8 +218,12 @@ fn is_odd(description: &LoopDescription) -> bool {
     [clamps, output, actuator.command_limits_rad(), actuator.travel_rad()].into_iter().all(even)
 }
 
-/// True where rules that conclude numbers answer the same to inputs of the other sign.
+/// True for a supervisor that answers the same to inputs of the other sign: a network by its form, and rules whose numbers
+/// are so.
 fn answers_evenly(tuner: &SelfTuner<f64>) -> bool {
+    if tuner.supervisor().network().is_some() {
+        return true;
+    }
     let Some(table) = tuner.supervisor().numbers() else { return false };
     Output::ALL.into_iter().all(|output| {
         let numbers: Vec<u64> =

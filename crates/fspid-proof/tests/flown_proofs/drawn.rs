@@ -231,29 +231,43 @@ pub(crate) fn with_limits(dice: &mut Dice) -> Scenario {
 /// The same with a self-tuner that remembers, by rules that conclude numbers, and moves nothing that holds a set-point.
 #[allow(dead_code, reason = "asked by a test inside of the crate")]
 pub(crate) fn remembering_with_limits(dice: &mut Dice) -> Scenario {
-    let mut scenario = structured_by(dice, |dice, _, settings| {
-        let leakage_per_s = dice.sized(0.3, 3.0);
-        let scale = settings.output_scale;
-        let of_law = |gain: f64| 0.6 * leakage_per_s * gain;
-        let coupling = GainCoupling { setpoint_weight: 0.0, ..settings.gain_coupling };
-        let second_input = match settings.second_input {
-            SecondInput::Rate => SecondInput::Change,
-            other => other,
-        };
-        let settings = TunerSettings {
-            law: Law::Accumulating { leakage_per_s },
-            output_scale: Gains {
-                kp: of_law(scale.kp),
-                ki: of_law(scale.ki),
-                kd: of_law(scale.kd),
-            },
-            gain_coupling: coupling,
-            second_input,
-            dead_zone: None,
-            ..settings
-        };
+    remembering_by(dice, |dice, _, settings| {
+        let settings = remembering(dice, settings);
         (numbers(dice, 5.0, OutOfRange::Clamp), settings)
-    });
+    })
+}
+
+/// The same by a network.
+#[allow(dead_code, reason = "asked by a test inside of the crate")]
+pub(crate) fn remembering_network_with_limits(dice: &mut Dice) -> Scenario {
+    remembering_by(dice, |dice, _, settings| {
+        let settings = TunerSettings { input_sets: InputSets::EVEN, ..settings };
+        let settings = remembering(dice, settings);
+        (network(dice, 5.0, OutOfRange::Clamp), settings)
+    })
+}
+
+fn remembering(dice: &mut Dice, settings: TunerSettings<f64>) -> TunerSettings<f64> {
+    let leakage_per_s = dice.sized(0.3, 3.0);
+    let scale = settings.output_scale;
+    let of_law = |gain: f64| 0.6 * leakage_per_s * gain;
+    let coupling = GainCoupling { setpoint_weight: 0.0, ..settings.gain_coupling };
+    let second_input = match settings.second_input {
+        SecondInput::Rate => SecondInput::Change,
+        other => other,
+    };
+    TunerSettings {
+        law: Law::Accumulating { leakage_per_s },
+        output_scale: Gains { kp: of_law(scale.kp), ki: of_law(scale.ki), kd: of_law(scale.kd) },
+        gain_coupling: coupling,
+        second_input,
+        dead_zone: None,
+        ..settings
+    }
+}
+
+fn remembering_by(dice: &mut Dice, another_of: Another) -> Scenario {
+    let mut scenario = structured_by(dice, another_of);
     let controller = scenario.controllers[0].controller;
     let limited = with_limits(dice);
     if let Controller::SelfTuning(fspid) = controller {

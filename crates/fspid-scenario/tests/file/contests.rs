@@ -54,6 +54,8 @@ fn the_contests_of_six_train_and_judge_on_all_six_kinds_of_their_class_and_on_no
         ("light-steps.toml", "light"),
         ("transport-steps.toml", "transport"),
         ("uav-steps.toml", "uav"),
+        ("light-network.toml", "light"),
+        ("uav-network.toml", "uav"),
     ] {
         let study = contest(name);
         let (_, kinds) = AIRCRAFT_CLASSES.iter().find(|it| it.0 == class).expect("a class");
@@ -95,6 +97,8 @@ fn flights_that_a_proved_design_is_judged_on_were_judged_by_no_other() {
         ("light-steps.toml", ["light-six.toml", "light-six-choose.toml"]),
         ("transport-steps.toml", ["transport-six.toml", "transport-six-choose.toml"]),
         ("uav-steps.toml", ["uav.toml", "uav-commands.toml"]),
+        ("light-network.toml", ["light-six.toml", "light-steps.toml"]),
+        ("uav-network.toml", ["uav-commands.toml", "uav-steps.toml"]),
     ] {
         let judge = contest(name);
         for other in before {
