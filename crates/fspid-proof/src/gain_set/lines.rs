@@ -31,7 +31,7 @@ pub(crate) struct Line {
 #[derive(Clone)]
 pub(crate) enum Lines<'a> {
     /// Rules that conclude numbers.
-    Numbers(AlongNumbers<'a>),
+    Numbers(Box<AlongNumbers<'a>>),
     /// A network.
     Network(Net<'a>),
 }
@@ -61,7 +61,8 @@ impl<'a> Lines<'a> {
         let table: &NumberTable<f64> = supervisor.numbers()?;
         let sets = tuner.settings().input_sets;
         let centres = [sets.error, sets.change].map(|sets| centres(sets, range));
-        Some(Self::Numbers(AlongNumbers { numbers: Numbers { table, range }, centres }))
+        let numbers = Numbers { table, range };
+        Some(Self::Numbers(Box::new(AlongNumbers { numbers, centres })))
     }
 
     /// Every answer where error and second input lie between bounds.
