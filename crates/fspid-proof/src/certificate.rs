@@ -26,9 +26,7 @@ pub struct Certificate {
     pub left_out: Vec<LeftOut>,
     /// What is claimed.
     pub claim: Claim,
-    /// Level c of the ellipsoid $z^T P z \le c$, where one is claimed. In it no limit acts; of a claim about
-    /// a bounded rate, in it the law keeps to the rate as well, and limits are left out that an ellipsoid does
-    /// not cover.
+    /// Level c of the ellipsoid $z^T P z \le c$, where one is claimed. In it no limit acts.
     pub level: Option<f64>,
     /// Steps from rest whose flights may meet limits, where such are claimed.
     pub steps: Option<Steps>,

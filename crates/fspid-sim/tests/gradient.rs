@@ -392,12 +392,17 @@ fn designs(seed: u64) -> [Controller; 2] {
 
 #[test]
 fn costs_are_those_of_the_flights_and_lanes_do_not_show() {
-    let servo = servo(0.1, Some([0.35, 0.65]), 1);
     for which in 0..2 {
         let prepared: Vec<Prepared> = (0..5_u32)
             .map(|it| {
                 let step_rad = 0.03 * f64::from(it) + 0.02;
-                scenario(0.01, servo, [step_rad, 0.01]).prepare().expect("flies")
+                // Other delays, a lane without limits, and one with a sensor.
+                let limits = (it != 1).then_some([0.35, 0.65]);
+                let servo = servo(0.1, limits, it as usize % 3);
+                let mut scenario = scenario(0.01, servo, [step_rad, 0.01]);
+                scenario.surroundings.pitch_sensor =
+                    (it == 3).then(|| sensor(PITCH, [0.02, 0.013]));
+                scenario.prepare().expect("flies")
             })
             .collect();
         let controllers: Vec<Controller> = (0..5).map(|seed| designs(seed)[which]).collect();

@@ -82,39 +82,41 @@ impl Net<'_> {
 
     /// All answers over inputs, with the rounding of the supervisor's own arithmetic.
     pub(super) fn answers(&self, asked: [Interval; 2]) -> [Interval; 3] {
+        let slack = self.rounding();
+        self.over(asked).map(|answer| answer + slack)
+    }
+
+    fn rounding(&self) -> Interval {
         let slack = self.slack();
-        self.over(asked).map(|answer| answer + Interval::between(-slack, slack))
+        Interval::between(-slack, slack)
     }
 
     /// Lines along the answers over inputs, with the rounding of the supervisor's own arithmetic.
     pub(super) fn along(&self, asked: [Interval; 2]) -> [Line; 3] {
-        let level = self.answers(asked).map(|beside| Line { slopes: [0.0; 2], beside });
+        let (rounding, inputs) = (self.rounding(), asked.map(|side| self.part(side)));
+        let is_finite = asked.iter().all(|side| side.width().is_finite());
         let middle = asked.map(|side| Interval::point(side.midpoint()));
-        if !asked.iter().all(|side| side.width().is_finite()) {
-            return level;
-        }
-        let in_middle = self.answers(middle);
-        let inputs = asked.map(|side| self.part(side));
         // Beyond the range answers are level.
-        let ends = [0, 1].map(|input: usize| asked[input].magnitude() > self.range);
-        let mut lines = level;
-        for ((output, line), answer) in Output::ALL.into_iter().zip(&mut lines).zip(in_middle) {
+        let is_beyond = asked.map(|side| side.magnitude() > self.range);
+        Output::ALL.map(|output| {
             let (sum, by_inputs) = self.sum_with_slopes(output, inputs);
-            let (mut slopes, mut beside) = ([0.0; 2], answer);
+            let answer = |sum| Interval::point(self.range) * softsign(sum) + rounding;
+            let level = Line { slopes: [0.0; 2], beside: answer(sum) };
+            if !is_finite {
+                return level;
+            }
+            let in_middle = self.sum(output, middle.map(|side| self.part(side)));
+            let (mut slopes, mut beside) = ([0.0; 2], answer(in_middle));
             for input in 0..2 {
                 // The range that answers are multiplied by is the one that inputs are divided by.
                 let by = slope(sum) * by_inputs[input];
-                let by = if ends[input] { by.hull(Interval::ZERO) } else { by };
+                let by = if is_beyond[input] { by.hull(Interval::ZERO) } else { by };
                 slopes[input] = by.midpoint();
-                let along = Interval::point(slopes[input]);
-                beside =
-                    beside - along * middle[input] + (by - along) * (asked[input] - middle[input]);
+                let (along, away) = (Interval::point(slopes[input]), asked[input] - middle[input]);
+                beside = beside - along * middle[input] + (by - along) * away;
             }
-            if beside.width() < line.beside.width() {
-                *line = Line { slopes, beside };
-            }
-        }
-        lines
+            if beside.width() < level.beside.width() { Line { slopes, beside } } else { level }
+        })
     }
 
     /// The sum over a box, and its slopes there along both inputs in parts of the range.

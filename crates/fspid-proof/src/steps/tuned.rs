@@ -1,7 +1,7 @@
 //! A self-tuner that remembers, for all flights of a set at once: its gains and its reference model are numbers over the
 //! unknowns of the set, as the states of the loop are.
 //!
-//! What the rules add to a gain is a straight line along what the supervisor sees, and an unknown for the rest; what a gain
+//! What the rules, or a network, add to a gain is a straight line along what the supervisor sees, and an unknown for the rest; what a gain
 //! multiplies is the linear part of the product, and an unknown for the rest. Both rests shrink with the square of a box, but
 //! where what is seen passes the centre of a set.
 
@@ -57,7 +57,7 @@ pub(super) struct Shown<'a> {
 }
 
 impl<'a> Tuner<'a> {
-    /// The tuner of a law with leakage whose rules conclude numbers; nothing of another.
+    /// The tuner of a law with leakage whose supervisor has rules that conclude numbers, or a network; nothing of another.
     pub(super) fn of(fspid: &'a Fspid<f64>) -> Option<Self> {
         let equations = *fspid.tuner_equations();
         let structure = equations.structure;

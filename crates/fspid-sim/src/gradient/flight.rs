@@ -122,7 +122,7 @@ impl<const W: usize> Signal<W> {
 struct Group<'a, const W: usize> {
     prepared: Vec<&'a Prepared>,
     rows: usize,
-    /// Samples between two states that are kept.
+    /// Most samples between two states that are kept, and most samples of lanes that a rate limit holds there.
     segment: usize,
     setpoint_rad: Signal<W>,
     at_servo: Signal<W>,
@@ -278,12 +278,12 @@ impl<'a, const W: usize> Group<'a, W> {
     // Inlined with all below it, so that its loops are compiled for each set of instructions.
     #[inline(always)]
     fn flown(&mut self, price: &mut Price<'_>) -> Result<Vec<Option<Vec<f64>>>, SimError> {
-        let (mut kept, room) = (Vec::new(), self.segment.min(self.rows));
+        let (mut kept, room) = (Vec::<(usize, State<W>)>::new(), self.segment.min(self.rows));
         let mut passed = Passed { rows: Vec::with_capacity(room), held: Vec::new() };
         let mut state = self.start();
         for k in 0..self.rows {
-            if k.is_multiple_of(self.segment) {
-                kept.push(state.clone());
+            if k == 0 || passed.rows.len().max(passed.held.len()) >= self.segment {
+                kept.push((k, state.clone()));
                 passed.clear();
             }
             let theta_rad = state.plant[0];
@@ -330,13 +330,12 @@ impl<'a, const W: usize> Group<'a, W> {
     #[inline(always)]
     fn back(
         &mut self,
-        (kept, mut passed): (Vec<State<W>>, Passed<W>),
+        (kept, mut passed): (Vec<(usize, State<W>)>, Passed<W>),
         slopes: &[Slopes],
     ) -> Result<(), SimError> {
         let mut worth = Worth::<W>::new(self.plants.states(), self.rows);
-        for (segment, mut state) in kept.into_iter().enumerate().rev() {
-            let from = segment * self.segment;
-            let to = (from + self.segment).min(self.rows);
+        let mut to = self.rows;
+        for (from, mut state) in kept.into_iter().rev() {
             if to < self.rows {
                 passed.clear();
                 for k in from..to {
@@ -348,6 +347,7 @@ impl<'a, const W: usize> Group<'a, W> {
                 self.back_sample(k, (row, &passed.held[first..]), slopes, &mut worth);
                 passed.held.truncate(first);
             }
+            to = from;
         }
         self.laws.back_first(&self.setpoint_rad.at(0), &worth.row);
         Ok(())

@@ -44,5 +44,6 @@ pub use price::{
     Differentiated, Flown, Slopes, Weights, add_variation, differentiate, differentiate_by,
 };
 
-/// Samples between two states that are kept: 6.5 MiB of what passes, for eight lanes.
+/// Most samples between two states that are kept, and most samples of lanes that a rate limit holds there: 6.5 MiB of what
+/// passes for eight lanes, and 3 MiB more of matrices of such samples for a plant of fourth order.
 pub const SEGMENT: usize = 8192;
