@@ -6,6 +6,7 @@
 //!
 //! for every row r that some gain gives a limited quantity $r z$, $|r z| \le L$ holds at every sample.
 
+use core::borrow::Borrow;
 use core::fmt;
 
 use fspid_core::{AntiWindup, Gains, Limits};
@@ -226,24 +227,29 @@ fn around_zero(limits: &Limits<f64>) -> f64 {
     (-limits.lower()).min(limits.upper())
 }
 
-/// The largest level for which ordinary arithmetic finds no limit at work; none without limits, or
-/// where the resolution of the sensors alone may bring one about.
-pub(crate) fn level(
+/// The [`rows`] of gains with what a held command makes of them.
+pub(crate) fn rows_held(
     description: &LoopDescription,
     model: &LoopModel<f64>,
-    corners: &[HeldGains],
-    form: &Matrix,
+    held: &HeldGains,
     rest: &Rest,
+) -> Vec<(Vec<f64>, f64)> {
+    rows(description, &model.with_change_gain(held.change_gain), held.gains, rest)
+}
+
+/// The largest level for which ordinary arithmetic finds no limit at work, of forms each with the [`rows`] at its gains; none
+/// without limits, or where rest is at one or the resolution of the sensors alone may bring one about.
+pub(crate) fn level<F: Borrow<Matrix>>(
+    places: impl IntoIterator<Item = (F, Vec<(Vec<f64>, f64)>)>,
 ) -> Option<f64> {
     let mut level = f64::INFINITY;
-    for HeldGains { gains, change_gain, .. } in corners {
-        let model = model.with_change_gain(*change_gain);
-        for (row, limit) in rows(description, &model, *gains, rest) {
+    for (form, rows) in places {
+        for (row, limit) in rows {
             if !(limit > 0.0) {
                 return None;
             }
             let column = Matrix::from_rows(&row.iter().map(|value| [*value]).collect::<Vec<_>>());
-            let solved = form.solve(&column.ok()?).ok()?;
+            let solved = form.borrow().solve(&column.ok()?).ok()?;
             let size: f64 = row.iter().zip(solved.data()).map(|(r, x)| r * x).sum();
             if size > 0.0 {
                 level = level.min(CLAIMED * limit * limit / size);

@@ -1,8 +1,9 @@
 //! How fast one core is: closed-loop steps per second. Inferences alone are measured in `fspid-fuzzy`.
 //!
-//! `cargo bench` prints the best rate (behind `--`, words that what is measured shall have) over blocks of work so short that some are not interrupted by
+//! `cargo bench` prints the best rate over blocks of work so short that some are not interrupted by
 //! whoever else uses the machine, with a checksum that holds the compiler to doing the work and shows
-//! that every round did the same, and that flights side by side did what single ones do.
+//! that every round did the same, and that flights side by side did what single ones do. Behind `--` it
+//! takes words of which what is measured shall have one.
 
 #![allow(
     clippy::disallowed_types,

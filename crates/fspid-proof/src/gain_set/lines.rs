@@ -2,9 +2,10 @@
 //!
 //! $$ \Delta k(e, x) = m_e e + m_x x + \rho, \qquad \rho \in R $$
 //!
-//! **Rules that conclude numbers.** Between the centres of neighbouring sets the answer is linear along either input, so that with its lines taken away it is
-//! largest and smallest where a border of the box or a centre meets another. The lines go through the ends of the box, so that
-//! R shrinks with the square of the box where no centre is inside, and with the box where one is.
+//! **Rules that conclude numbers.** Between the centres of neighbouring sets the answer is linear along either input, so that
+//! with its lines taken away it is largest and smallest where a border of the box or a centre meets another. The lines go
+//! through the ends of the box, so that R shrinks with the square of the box where no centre is inside, and with the box where
+//! one is.
 //!
 //! **A network.** Its lines have the middle of the slopes that it has anywhere in the box; what is left is what it answers in
 //! the middle and how much the slopes differ on the way from there (mean value theorem), which shrinks with the square of the

@@ -8,7 +8,8 @@ use super::Prover;
 use crate::certificate::{BoundedRate, Certificate, Claim};
 use crate::check::Ends;
 use crate::gain_set::GainSet;
-use crate::recheck::{Rechecked, part_in};
+use crate::limits;
+use crate::recheck::{Recheck, Rechecked, part_in};
 use crate::solve::{self, GainFamily, MovingProblem, MovingVerdict};
 
 /// Corners of the set may lie outside of those that are begun with by this share of half its extent.
@@ -94,9 +95,11 @@ impl Prover<'_> {
     /// A certificate for gains that move as fast as their law makes them; none of a law that lets them jump.
     pub(super) fn bounded(&self, set: &GainSet, factor: f64) -> Option<(Certificate, Rechecked)> {
         let claim = self.moving_form(set, self.changes_of_law(set)?)?;
-        let found = self.rechecked(Claim::BoundedRate(claim.clone()), factor, None)?;
-        let within_limits = self.within_limits(set, factor, claim);
-        Some(within_limits.unwrap_or(found))
+        let (alone, rechecked) = self.rechecked(Claim::BoundedRate(claim.clone()), factor, None)?;
+        let within_limits = self.level_within_limits(set, &alone, &claim);
+        let found = within_limits
+            .and_then(|level| self.rechecked(Claim::BoundedRate(claim), factor, Some(level)));
+        Some(found.unwrap_or((alone, rechecked)))
     }
 
     /// What a law that remembers can change each gain by in a sample, in half widths.
@@ -110,18 +113,24 @@ impl Prover<'_> {
         }))
     }
 
-    /// The claim with a level within which no limit acts.
-    fn within_limits(
+    /// The largest level of a claim, with its certificate, within which no limit acts.
+    fn level_within_limits(
         &self,
         set: &GainSet,
-        factor: f64,
-        claim: BoundedRate,
-    ) -> Option<(Certificate, Rechecked)> {
+        certificate: &Certificate,
+        claim: &BoundedRate,
+    ) -> Option<f64> {
         if !self.covers_limits() || self.description.limits().is_empty() {
             return None;
         }
-        let level = self.level_within_limits(set, factor, &claim)?;
-        self.rechecked(Claim::BoundedRate(claim), factor, Some(level))
+        let recheck =
+            Recheck::with(certificate, self.enclosed.clone(), set.clone(), &self.slopes).ok()?;
+        let rest = self.rest(set).ok()?;
+        let corners = recheck.moving_decrease(claim).ok()?.corners(claim).ok()?;
+        limits::level(corners.iter().map(|corner| {
+            let gains = corner.gains_middle();
+            (corner.form.midpoint(), limits::rows(self.description, &self.model, gains, &rest))
+        }))
     }
 
     /// A form that moves with the gains, not proved.

@@ -6,7 +6,6 @@ mod disturbed_moving;
 mod largest;
 mod stable;
 mod unstable;
-mod within_limits;
 
 pub use disturbed::{Unbounded, bound_disturbances};
 
@@ -425,7 +424,8 @@ impl<'a> Prover<'a> {
         if corners.iter().any(|held| held.remembered.is_some()) {
             return None;
         }
-        limits::level(self.description, &self.model, corners, form, rest)
+        let rows = |held| limits::rows_held(self.description, &self.model, held, rest);
+        limits::level(corners.iter().map(|held| (form, rows(held))))
     }
 
     /// Closed loops at some gains, if each of them is stable on its own.

@@ -68,10 +68,8 @@ impl Prover<'_> {
     pub(crate) fn limited(&self, set: &GainSet) -> Option<Vec<Vec<f64>>> {
         let rest = self.rest(set).ok()?;
         let corners = self.held(set, 1.0, &rest).ok()?.held_hull(THINNED);
-        let rows = corners.iter().flat_map(|held| {
-            let model = self.model.with_change_gain(held.change_gain);
-            limits::rows(self.description, &model, held.gains, &rest)
-        });
+        let rows = |held| limits::rows_held(self.description, &self.model, held, &rest);
+        let rows = corners.iter().flat_map(rows);
         let over = |(row, limit): (Vec<f64>, f64)| {
             (limit > 0.0).then(|| row.iter().map(|it| it / limit).collect())
         };

@@ -159,7 +159,8 @@ impl NearRest<'_> {
         // A little above what the form was made for, so that the difference stands clear of rounding.
         let rate = rate + 0.5 * (1.0 - rate);
         let corner = HeldGains { gains, change_gain: 0.0, remembered: None };
-        let most = limits::level(description, model, &[corner], &form, self.rest)?;
+        let most =
+            limits::level([(&form, limits::rows_held(description, model, &corner, self.rest))])?;
         let levels = (0..QUARTERS).map(|quarter| most * 0.95 * libm::ldexp(1.0, -2 * quarter));
         (rate < 1.0).then_some(())?;
         let terminals =

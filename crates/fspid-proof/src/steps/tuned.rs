@@ -1,9 +1,9 @@
 //! A self-tuner that remembers, for all flights of a set at once: its gains and its reference model are numbers over the
 //! unknowns of the set, as the states of the loop are.
 //!
-//! What the rules, or a network, add to a gain is a straight line along what the supervisor sees, and an unknown for the rest; what a gain
-//! multiplies is the linear part of the product, and an unknown for the rest. Both rests shrink with the square of a box, but
-//! where what is seen passes the centre of a set.
+//! What the rules, or a network, add to a gain is a straight line along what the supervisor sees, and an unknown for the rest;
+//! what a gain multiplies is the linear part of the product, and an unknown for the rest. Both rests shrink with the square of
+//! a box, but where what is seen passes the centre of a set.
 
 use fspid_core::Fspid;
 use fspid_core::equations::{LawKind, SecondInputKind, TunerEquations};
