@@ -54,6 +54,7 @@ class Change(NamedTuple):
 
     number: int
     name: str
+    line: int
     begin: int
     end: int
     replacement: str
@@ -126,7 +127,7 @@ def listed(files: list[str], texts: dict[str, str]) -> list[Change]:
         begin, end = span(one["file"], one["span"])
         within = [body for body in choices[one["file"]].values() if body and body.begin < begin and end <= body.end]
         name = re.sub(r"^([^:]+):\d+:\d+: ", r"\1: ", one["name"])
-        changes.append(Change(number, name, begin, end, one["replacement"], within[0] if within and one["function"] else None))
+        changes.append(Change(number, name, one["span"]["start"]["line"], begin, end, one["replacement"], within[0] if within and one["function"] else None))
     return changes
 
 
@@ -255,7 +256,7 @@ def main() -> int:
         if change.body and change.number not in unviable:
             found[change] = asked(programs, folder, filters, change.number, LONGEST_S)
             if found[change] == "missed":
-                print(f"missed: {change.name}", flush=True)
+                print(f"missed: {change.name}, in line {change.line}", flush=True)
     lines = (ROOT / "checks/mutation/equivalent.txt").read_text().splitlines()
     explained = {line.split("\t")[0] for line in lines if not line.startswith("#")}
     missed = [change.name for change, what in found.items() if what == "missed"]

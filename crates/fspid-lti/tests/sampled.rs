@@ -5,7 +5,7 @@ use crate::support;
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use fspid_lti::{
-    Complex, DiskMargin, LtiError, Matrix, SampledLoop, SampledMargins, Stability,
+    Complex, DiskMargin, FineMatrix, LtiError, Matrix, SampledLoop, SampledMargins, Stability,
     TransferFunction, modulus, quotient, zero_order_hold,
 };
 use support::Random;
@@ -292,6 +292,71 @@ fn the_phase_of_a_delay_falls_without_jumps_over_many_turns() -> Outcome {
 }
 
 #[test]
+fn a_phase_that_turns_late_between_two_frequencies_is_followed_there() -> Outcome {
+    // Between 1 and 3.5 rad/s: hardly any turn up to the middle, more than half a circle behind it.
+    let resonance = TransferFunction::new(&[1.0], &[1.0, 0.02, 9.0])?;
+    let open = sampled(&resonance, 0.1, 1)?;
+    let ends = [1.0, 3.5];
+    let fine: Vec<f64> = (0..=2500).map(|k| 1.0 + 1e-3 * f64::from(k)).collect();
+    let (rough, followed) = (open.bode(&ends), open.bode(&fine));
+    assert!(followed[2500].1 - followed[0].1 < -PI, "{:?}", followed[2500]);
+    for (rough, followed) in rough.iter().zip([followed[0], followed[2500]]) {
+        assert!((rough.1 - followed.1).abs() < 1e-12, "{rough:?} {followed:?}");
+    }
+    Ok(())
+}
+
+#[test]
+fn across_a_pole_without_damping_the_phase_jumps_by_half_a_turn() -> Outcome {
+    // 1/(z² − 2 z cos θ + 1): real everywhere but for the two samples of delay.
+    let cosine = libm::cos(0.5);
+    let a = Matrix::from_rows(&[[0.0, 1.0], [-1.0, 2.0 * cosine]])?;
+    let open = SampledLoop::new(a, vec![0.0, 1.0], vec![1.0, 0.0], 1.0)?;
+    let shown = open.bode(&[0.25, 0.75]);
+    let jump = shown[1].1 - shown[0].1 + 0.5;
+    assert!((jump.abs() - PI).abs() < 1e-9, "{shown:?}");
+    Ok(())
+}
+
+#[test]
+fn the_change_of_another_loop_is_refused_with_its_entry() -> Outcome {
+    let lag = TransferFunction::new(&[1.0], &[1.0, 0.4, 0.0])?;
+    let open = sampled(&lag, 0.05, 1)?;
+    let order = open.order();
+    let fine = |values: Matrix| {
+        let none = Matrix::zeros(values.rows(), values.columns());
+        FineMatrix::new(values, none)
+    };
+    // The closed matrix of a loop without output is its own.
+    let (zeros, own) = (vec![0.0; order], open.closed_matrix());
+    let input: Vec<f64> = (0..order).map(|row| if row + 1 == order { 1.0 } else { 0.0 }).collect();
+    let change = |off: [f64; 2]| {
+        let entry = |row: usize, column: usize| {
+            let one = if row == column { 1.0 } else { 0.0 };
+            let off = if (row, column) == (1, 0) { off[0] } else { 0.0 };
+            own.get(row, column).expect("inside") - one + off
+        };
+        let entries = Matrix::from_rows(&[
+            [entry(0, 0), entry(0, 1), entry(0, 2)],
+            [entry(1, 0), entry(1, 1), entry(1, 2)],
+            [entry(2, 0), entry(2, 1), entry(2, 2)],
+        ])?;
+        let inputs = Matrix::from_rows(&[[input[0]], [input[1]], [input[2] + off[1]]])?;
+        SampledLoop::new(own.clone(), input.clone(), zeros.clone(), 0.05)?
+            .with_change(fine(entries)?, fine(inputs)?)
+    };
+    assert!(change([0.0, 0.0]).is_ok() && change([1e-12, 1e-12]).is_ok());
+    for (off, entry) in [([1e-8, 0.0], 3), ([0.0, 1e-8], 2)] {
+        let found = change(off);
+        assert!(
+            matches!(found, Err(LtiError::OtherLoop { index, .. }) if index == entry),
+            "{found:?}"
+        );
+    }
+    Ok(())
+}
+
+#[test]
 fn integrators_lag_by_a_quarter_turn_each_at_low_frequency() -> Outcome {
     for (integrators, lag) in [(1, -FRAC_PI_2), (2, -PI)] {
         let mut denominator = vec![1.0];
@@ -331,6 +396,31 @@ fn poles_and_zeros_belong_to_the_loop_and_move_with_the_gain() -> Outcome {
     Ok(())
 }
 
+/// $\sum c_k / (z - p_k)$ with a factor on its input.
+fn sum_of_poles(poles: [f64; 3], parts: [f64; 3], factor: f64) -> SampledLoop {
+    let [one, two, three] = poles;
+    let a = Matrix::from_rows(&[[one, 0.0, 0.0], [0.0, two, 0.0], [0.0, 0.0, three]]);
+    SampledLoop::new(a.expect("a matrix"), vec![factor; 3], parts.to_vec(), 0.1).expect("a loop")
+}
+
+#[test]
+fn parts_that_cancel_but_for_rounding_make_no_zero() -> Outcome {
+    // Sums that are not 0 in floating point: a pole more than zeros each.
+    assert!(0.1 + 0.2 - 0.3 != 0.0);
+    // However small the input is.
+    for factor in [1.0, 1e-9, 1e-20] {
+        let one = sum_of_poles([0.5, 0.6, 0.7], [0.1, 0.2, -0.3], factor).zeros()?;
+        assert!(one.len() == 1 && modulus(one[0] - 0.55) < 1e-12, "{factor}: {one:?}");
+        let none = sum_of_poles([0.1, 0.2, 0.3], [0.1, -0.2, 0.1], factor).zeros()?;
+        assert!(none.is_empty(), "{factor}: {none:?}");
+        let two = sum_of_poles([0.5, 0.6, 0.7], [0.1, 0.2, -0.3 + 1e-14], factor).zeros()?;
+        assert_eq!(two.len(), 2, "{factor}: {two:?}");
+        let nothing = sum_of_poles([0.5, 0.5, 0.5], [0.1, 0.2, -0.3], factor).zeros()?;
+        assert!(nothing.is_empty(), "{factor}: {nothing:?}");
+    }
+    Ok(())
+}
+
 #[test]
 fn crossings_of_any_level_and_of_the_real_axis_are_found() -> Outcome {
     let open = sampled(&b747(1.0)?, 0.02, 1)?;
@@ -348,7 +438,14 @@ fn crossings_of_any_level_and_of_the_real_axis_are_found() -> Outcome {
         let value = open.at(omega);
         assert!(value.im.abs() < 1e-11 * modulus(value), "{omega}: {value}");
     }
-    assert!(open.gain_crossings(0.0).is_err() && open.gain_crossings(f64::NAN).is_err());
+    for level in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let found = open.gain_crossings(level);
+        let what = "gain to be crossed";
+        assert!(
+            matches!(found, Err(LtiError::NotPositive { what: told, .. }) if told == what),
+            "{level}: {found:?}"
+        );
+    }
     Ok(())
 }
 

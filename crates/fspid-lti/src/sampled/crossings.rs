@@ -91,3 +91,18 @@ pub(super) fn sine(response: Response) -> f64 {
     let size = (over.norm_sqr() * under.norm_sqr()).sqrt();
     if size > 0.0 { (over * under.conj()).im / size } else { 0.0 }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::complex::Complex;
+
+    #[test]
+    fn at_a_zero_and_at_a_pole_there_is_no_side() {
+        let (nothing, one) = (Complex::new(0.0, 0.0), Complex::new(0.0, 1.0));
+        for (over, under) in [(nothing, one), (one, nothing)] {
+            assert_eq!(sine(Response { over, under }), 0.0);
+        }
+        assert_eq!(sine(Response { over: one, under: Complex::new(2.0, 0.0) }), 1.0);
+    }
+}

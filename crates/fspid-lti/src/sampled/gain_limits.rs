@@ -162,6 +162,40 @@ mod tests {
     }
 
     #[test]
+    fn of_candidates_at_one_factor_the_lowest_frequency_is_told() {
+        let at = |factor: f64, omega_rad_s: f64| GainLimit { factor, omega_rad_s };
+        let open = two_poles(0.5);
+        // Nearer to each other than a billionth of the factor: one crossing of two pairs of poles.
+        let together = vec![at(3.0, 0.5), at(3.0 * (1.0 + 8e-10), 0.25)];
+        let found = open.limit_towards(FACTOR_MAX, together.clone(), None).expect("converges");
+        assert_eq!(found, Some(together[1]));
+        // Three and four are two.
+        let found = open.limit_towards(FACTOR_MAX, vec![at(3.0, 0.5), at(4.0, 0.25)], None);
+        assert_eq!(found, Ok(Some(at(3.0, 0.5))));
+    }
+
+    #[test]
+    fn a_candidate_a_little_beside_the_limit_is_not_the_limit() {
+        let open = two_poles(0.5);
+        for factor in [3.0 - 1e-4, 3.0 + 1e-4] {
+            // With another one behind, so that beside is near.
+            let candidates = vec![candidate(factor), candidate(3.2)];
+            let found = open.limit_towards(FACTOR_MAX, candidates, None);
+            let found = found.expect("converges").expect("a limit");
+            assert!((found.factor - 3.0).abs() < 1e-12, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn frequencies_of_limits_found_by_halving_are_those_of_their_period() {
+        let a = Matrix::from_rows(&[[0.0, 1.0], [0.5, 0.0]]).expect("a matrix");
+        let open = SampledLoop::new(a, vec![0.0, 1.0], vec![0.5, 0.0], 0.25).expect("a loop");
+        let found = open.limit_towards(FACTOR_MAX, vec![], None).expect("converges");
+        let omega_rad_s = found.expect("a limit").omega_rad_s;
+        assert!((omega_rad_s - 4.0 * core::f64::consts::FRAC_PI_2).abs() < 1e-6, "{omega_rad_s}");
+    }
+
+    #[test]
     fn a_limit_that_no_candidate_names_is_found_by_halving() {
         let open = two_poles(0.5);
         for candidates in [vec![], vec![candidate(7.0)], vec![candidate(1.5), candidate(1e3)]] {

@@ -118,3 +118,33 @@ impl Mapped {
         if self.inverse { 2.0 * libm::atan2(1.0, s.abs()) } else { 2.0 * libm::atan(s.abs()) }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::complex::modulus;
+    use crate::sampled::zeta;
+
+    #[test]
+    fn either_map_finds_every_angle_at_which_the_distance_has_a_value() {
+        // (z − 0.2)/((z − 0.9)(z − 0.5)) times 0.4.
+        let a = Matrix::from_rows(&[[0.0, 1.0], [-0.45, 1.4]]).expect("a matrix");
+        let reduced = Reduced::new(&a, &[0.0, 1.0], &[-0.08, 0.4]);
+        let distance =
+            |angle_rad: f64, centre: f64| modulus(reduced.at(zeta(angle_rad)).closed_less(centre));
+        for (centre, angle_rad) in [(1.0, 0.4), (1.0, 2.0), (0.0, 0.7), (0.5, 1.1), (0.5, 2.9)] {
+            let value = distance(angle_rad, centre);
+            for map in Mapped::both(&reduced).expect("two maps") {
+                let inverse = map.inverse;
+                let found = Mapped::angles_of_distance(&[map], centre, value).expect("converges");
+                let near = |at: &f64| (distance(*at, centre) / value - 1.0).abs() < 1e-9;
+                assert!(
+                    found.iter().any(|at| (at - angle_rad).abs() < 1e-7),
+                    "{inverse} {found:?}"
+                );
+                let on_axis = found.iter().filter(|at| near(at)).count();
+                assert!(on_axis > 0, "{inverse} {centre} {angle_rad}: {found:?}");
+            }
+        }
+    }
+}

@@ -260,3 +260,14 @@ fn zeta(angle_rad: f64) -> Complex {
     let (sin, cos) = libm::sincos(0.5 * angle_rad);
     Complex::new(-2.0 * sin * sin, 2.0 * sin * cos)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_phase_of_a_quarter_turn_ahead_stays_one() {
+        assert_eq!(phase_rad(Complex::new(0.0, 2.0)), FRAC_PI_2);
+        assert!(phase_rad(Complex::new(-1e-9, 2.0)) < -PI);
+    }
+}

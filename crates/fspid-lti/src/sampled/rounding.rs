@@ -72,6 +72,7 @@ impl Reduced {
 
 #[cfg(test)]
 mod tests {
+    use crate::complex::Complex;
     use crate::error::LtiError;
     use crate::matrix::Matrix;
     use crate::sampled::{SampledLoop, Stability};
@@ -138,6 +139,38 @@ mod tests {
     fn a_refusal_says_how_far_rounding_reaches() {
         let poles = |share: f64| LtiError::Blurred { spectral_radius: 0.99, share, allowed: 0.1 };
         assert!(poles(0.5).to_string().contains("by 0.5 of their distance"));
+    }
+
+    /// The same norm by the real system of twice the order.
+    fn inverse_norm(matrix: &Matrix, zeta: Complex) -> f64 {
+        let n = matrix.rows();
+        let doubled = Matrix::from_function(2 * n, 2 * n, |row, column| {
+            let own = if row % n == column % n { 1.0 } else { 0.0 };
+            match (row < n, column < n) {
+                (true, false) => -own * zeta.im,
+                (false, true) => own * zeta.im,
+                _ => own * zeta.re - matrix.at(row % n, column % n),
+            }
+        });
+        let inverse = doubled.solve(&Matrix::identity(2 * n)).expect("regular");
+        (0.5 * inverse.data().iter().map(|entry| entry * entry).sum::<f64>()).sqrt()
+    }
+
+    #[test]
+    fn the_norm_of_an_inverse_is_that_of_another_elimination() {
+        // Entries of the last rows are larger, so that rows change places.
+        for (order, zeta) in [(1, (0.5, 0.2)), (2, (-0.1, 0.3)), (4, (0.3, -0.7)), (6, (2.0, 0.0))]
+        {
+            let a = Matrix::from_function(order, order, |row, column| {
+                libm::sin((3 * row * row + 7 * column + row * column) as f64) * (1 + row) as f64
+            });
+            let (b, c) = (vec![1.0; order], vec![0.5; order]);
+            let open = SampledLoop::new(a, b, c, 1.0).expect("a loop");
+            let zeta = Complex::new(zeta.0, zeta.1);
+            let found = open.reduced.inverse_norm(zeta);
+            let expected = inverse_norm(&open.reduced.closed(1.0), zeta);
+            assert!((found / expected - 1.0).abs() < 1e-12, "{order}: {found} {expected}");
+        }
     }
 
     #[test]
