@@ -4,7 +4,7 @@ use fspid_aircraft::qualities::{Category, Level, cap_level};
 use fspid_scenario::measure::Measure;
 use fspid_scenario::requirement::{Confidence, Requirement, SET_NAMES, set};
 
-use crate::requirements::{JUMBO, study};
+use crate::requirements::{JUMBO, study, verified, written};
 
 /// The requirements of a set under choices such as `level = 2`.
 fn lines(name: &str, choices: &str) -> Vec<Requirement> {
@@ -185,4 +185,30 @@ fn a_set_twice_at_different_levels_gets_ids_of_its_own() {
     ids.sort_unstable();
     ids.dedup();
     assert_eq!(ids.len(), requirements.len());
+}
+
+#[test]
+fn a_set_s_own_step_is_flown_only_where_the_command_has_none_of_its_size() {
+    let size_deg = 0.2_f64.to_degrees();
+    let amplitude = format!("setpoint.amplitude_deg={size_deg}");
+    // Down by half of it first, so that the way back up is a step of the size.
+    let doublet = format!("setpoint.amplitude_deg={}", -0.5 * size_deg);
+    let flown = |set: &[&str]| {
+        let (_folder, path) = written(JUMBO);
+        let verification = verified(&path, &[&["ctms", "loop.duration_s=20"], set].concat(), &[]);
+        let steps = verification.judgements.iter().map(|it| it.own_step_deg);
+        let steps: Vec<Option<f64>> = steps.collect();
+        assert_eq!(steps.len(), 8);
+        assert!(steps.iter().all(|step| *step == steps[0]), "{steps:?}");
+        steps[0]
+    };
+    assert_eq!(flown(&["setpoint.amplitude_deg=5"]), Some(size_deg));
+    assert_eq!(flown(&[&amplitude]), None);
+    assert_eq!(flown(&[&amplitude, "setpoint.at_s=19.99"]), None);
+    // At the last sample nothing can answer it.
+    assert_eq!(flown(&[&amplitude, "setpoint.at_s=20"]), Some(size_deg));
+    let width = ["setpoint.kind=doublet", "setpoint.width_s=6"];
+    assert_eq!(flown(&[&width[..], &[doublet.as_str()]].concat()), None);
+    assert_eq!(flown(&[&width[..], &[amplitude.as_str()]].concat()), None);
+    assert_eq!(flown(&[&width[..], &["setpoint.amplitude_deg=5"]].concat()), Some(size_deg));
 }
