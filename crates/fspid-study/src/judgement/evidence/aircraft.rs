@@ -165,3 +165,76 @@ impl Seen<'_> {
         self.least("alpha_rad", |alpha_rad| degrees(most_rad - alpha_rad))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use fspid_core::Faults;
+    use fspid_sim::{Column, Outcome};
+
+    use super::*;
+
+    /// What another simulator shows, one value a second.
+    fn trace(name: &'static str, values: &[f64]) -> Trace {
+        let none = || vec![0.0; values.len()];
+        Trace {
+            time_s: (0..values.len()).map(|k| k as f64).collect(),
+            setpoint_rad: none(),
+            theta_rad: none(),
+            q_rad_s: none(),
+            command_rad: none(),
+            elevator_rad: none(),
+            gains: Vec::new(),
+            columns: vec![Column { name, values: values.to_vec() }],
+            exit: None,
+            outcome: Outcome::Completed,
+            saturated_samples: 0,
+            faults: Faults::NONE,
+        }
+    }
+
+    fn seen(trace: &Trace, target_ft: Option<f64>) -> Seen<'_> {
+        let time = 0..=trace.time_s.len() - 1;
+        Seen { plant: None, trace, time, target_m: target_ft.map(|target_ft| target_ft * FOOT_M) }
+    }
+
+    fn overshoot(altitudes_ft: &[f64], target_ft: f64) -> Result<(f64, f64), String> {
+        let altitudes_m: Vec<f64> = altitudes_ft.iter().map(|it| it * FOOT_M).collect();
+        let found = seen(&trace("altitude_m", &altitudes_m), Some(target_ft)).overshoot();
+        let found = found.map_err(|why| why.to_string())?;
+        // To a billionth of a foot: metres there and back.
+        Ok(((found.value * 1e9).round() / 1e9, found.place.at_s.expect("a time")))
+    }
+
+    #[test]
+    fn beyond_the_target_is_on_the_side_that_the_flight_does_not_come_from() {
+        assert_eq!(overshoot(&[1000.0, 1100.0, 1230.0, 1190.0], 1200.0), Ok((30.0, 2.0)));
+        assert_eq!(overshoot(&[1000.0, 900.0, 850.0, 790.0], 800.0), Ok((10.0, 3.0)));
+        // Just there is there.
+        assert_eq!(overshoot(&[0.0, 500.0, 400.0], 500.0), Ok((0.0, 1.0)));
+        let short = overshoot(&[1000.0, 1100.0, 1150.0, 1120.0], 1200.0).expect_err("not there");
+        assert!(short.contains("1200 ft was not reached: 50 ft were left"), "{short}");
+        let there = overshoot(&[800.0, 850.0], 800.0).expect_err("nothing to climb");
+        assert!(there.contains("800 ft"), "{there}");
+    }
+
+    #[test]
+    fn of_equal_values_the_first_is_told_and_none_that_is_no_number_is_passed_over() {
+        let flat = trace("climb_m_s", &[2.0, 1.0, 2.0, 1.0]);
+        let of = |case: Result<Case, NotEvaluated>| {
+            let case = case.expect("a value");
+            (case.value, case.place.at_s.expect("a time"))
+        };
+        assert_eq!(of(seen(&flat, None).largest("climb_m_s", |it| it)), (2.0, 0.0));
+        assert_eq!(of(seen(&flat, None).least("climb_m_s", |it| it)), (1.0, 1.0));
+        let broken = trace("climb_m_s", &[2.0, f64::NAN, 3.0]);
+        let (value, at_s) = of(seen(&broken, None).largest("climb_m_s", |it| it));
+        assert!(value.is_nan() && at_s == 1.0, "{value} {at_s}");
+        assert!(seen(&flat, None).largest("bank_rad", |it| it).is_err());
+    }
+
+    #[test]
+    fn level_flight_sinks_by_zero_and_not_by_less() {
+        assert!(sink_ft_min(0.0).is_sign_positive());
+        assert_eq!(sink_ft_min(-FOOT_M), 60.0);
+    }
+}
