@@ -186,6 +186,23 @@ fn a_phugoid_that_the_model_does_not_have_is_not_met() {
     assert!(matches!(judgement.found, Err(NotEvaluated::Quality(_))), "{:?}", judgement.found);
 }
 
+/// Slow poles at -0.02 and -0.05 rad/s, and at 0.01 and -0.05, before a short period of (s² + 1.5 s + 4).
+#[test]
+fn a_phugoid_that_creeps_is_damped_where_it_falls_and_not_where_it_grows() {
+    let creeping = |denominator: &str| {
+        let plant = format!(
+            "numerator = [1.0, 0.8, 0.02]\ndenominator = {denominator}\nelevator_sign = \"nose-up-positive\""
+        );
+        let text = JUMBO.replace("preset = \"b747-paper\"", &plant);
+        [Measure::PhugoidDamping, Measure::PhugoidDoubling]
+            .map(|measure| values(&text, measure, "", &[])[0])
+    };
+    assert_eq!(creeping("[1.0, 1.57, 4.106, 0.2815, 0.004]"), [1.0, f64::INFINITY]);
+    let [damping, doubles_s] = creeping("[1.0, 1.54, 4.0595, 0.15925, -0.002]");
+    assert_eq!(damping, -1.0);
+    assert!((doubles_s - 2.0_f64.ln() / 0.01).abs() < 1e-6, "{doubles_s}");
+}
+
 #[test]
 fn an_aircraft_of_unknown_speed_has_no_control_anticipation_but_has_its_modes() {
     let plant = "numerator = [11.7304, 22.578]\ndenominator = [1.0, 4.9676, 12.941, 0.0]\nelevator_sign = \"nose-up-positive\"";
