@@ -410,6 +410,48 @@ fn a_self_tuning_loop_that_is_unstable_at_rest_is_not_believed() {
     assert!(matches!(judgement.found, Err(NotEvaluated::Unstable { .. })), "{judgement:?}");
 }
 
+/// Where a calm flight is refused for its loop, the plant and the rest that are not held are told.
+#[test]
+fn the_plant_and_the_rest_at_which_a_loop_is_unstable_are_told() {
+    let calm = "[[requirement]]\nmeasure = \"largest_error_deg\"\nmost = 99.0\nto_s = 2.0\ncontroller = \"FSPID\"\n";
+    let place = |text: &str, set: &[&str]| match &judged(text, calm, set)[0].found {
+        Err(NotEvaluated::Unstable { place, .. }) => place.clone(),
+        other => panic!("{other:?}"),
+    };
+    // After 10 s the elevator acts to the other side.
+    let change = "[[plant_change]]\nat_s = 10.0\nnumerator = [1.69, 0.843, 0.0099]\ndenominator = [1.0, 1.17103, 1.55405, 0.012538, 0.0072771]\n";
+    let found = place(&format!("{JUMBO}{change}"), &["loop.duration_s=11.0"]);
+    let plant = found.plant.expect("there are two");
+    assert_eq!((plant.index, plant.from_s, found.rest), (1, 10.0, None));
+    // Without an integral an error stays at rest, at which the rules ask for more gain than the loop bears.
+    let set = [
+        "controller.FSPID.nominal.kp=2.0",
+        "controller.FSPID.nominal.ki=0.0",
+        "controller.FSPID.nominal.kd=0.0",
+        "controller.FSPID.supervisor.output_scale.kp=20.0",
+        "controller.FSPID.supervisor.output_scale.ki=0.0",
+        "controller.FSPID.supervisor.output_scale.kd=0.0",
+        "controller.FSPID.supervisor.error_scale=2.0",
+        "loop.duration_s=2.0",
+    ];
+    let found = place(JUMBO, &set);
+    let rest = found.rest.expect("it is not the trim");
+    assert!(found.plant.is_none() && rest.setpoint_rad != 0.0, "{rest:?}");
+    // At the trim alone: gains that hold nothing.
+    let trim = place(
+        JUMBO,
+        &[
+            "controller.FSPID.nominal.kp=-0.02",
+            "controller.FSPID.nominal.ki=0.0",
+            "controller.FSPID.nominal.kd=0.0",
+            "controller.FSPID.supervisor.output_scale={kp=0.0,ki=0.0,kd=0.0}",
+            "setpoint.amplitude_deg=0.1",
+            "loop.duration_s=2.5",
+        ],
+    );
+    assert_eq!((trim.plant, trim.rest), (None, None));
+}
+
 #[test]
 fn the_worst_of_all_steps_and_all_plants_counts() {
     let changing = format!(
