@@ -39,6 +39,7 @@ DESIGNS = {
     "light-steps": "light",
     "light-network": "light",
     "transport-steps": "transport",
+    "transport-damped": "transport",
 }
 MEASURES = ("iae_deg_s", "elevator_travel_deg", "overshoot_pct")
 # Asked for their numbers; the limit of the overshoot is that of the design.

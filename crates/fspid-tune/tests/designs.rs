@@ -109,3 +109,9 @@ fn the_proved_network_of_light_aircraft_has_less_than_0_85_of_the_error_at_less_
 fn the_proved_network_of_small_unmanned_aircraft_has_a_quarter_less_error_at_less_travel() {
     is_first("uav-network", [0.77, 0.94], [2, 1]);
 }
+
+/// Proved where the law may go, and no doublet overshoots.
+#[test]
+fn the_damped_self_tuner_of_transports_has_a_fifth_less_error_at_less_travel_and_breaks_nothing() {
+    is_first("transport-damped", [0.81, 0.99], [0, 4]);
+}

@@ -56,6 +56,7 @@ fn the_contests_of_six_train_and_judge_on_all_six_kinds_of_their_class_and_on_no
         ("uav-steps.toml", "uav"),
         ("light-network.toml", "light"),
         ("uav-network.toml", "uav"),
+        ("transport-damped.toml", "transport"),
     ] {
         let study = contest(name);
         let (_, kinds) = AIRCRAFT_CLASSES.iter().find(|it| it.0 == class).expect("a class");
@@ -97,6 +98,8 @@ fn flights_that_a_proved_design_is_judged_on_were_judged_by_no_other() {
         ("light-steps.toml", ["light-six.toml", "light-six-choose.toml"]),
         ("transport-steps.toml", ["transport-six.toml", "transport-six-choose.toml"]),
         ("uav-steps.toml", ["uav.toml", "uav-commands.toml"]),
+        ("transport-damped.toml", ["transport-six.toml", "transport-six-choose.toml"]),
+        ("transport-damped.toml", ["transport-commands.toml", "transport-steps.toml"]),
     ] {
         let judge = contest(name);
         for other in before {
