@@ -106,6 +106,9 @@ fn every_crossing_is_judged_in_the_band_of_its_frequency() {
     let (all, low, high) = (phase(""), phase("to_hz = 0.06"), phase("from_hz = 0.06"));
     assert!(low.is_finite(), "the phugoid crosses at some 0.011 Hz");
     assert_eq!(all, low.min(high));
+    let asked = "measure = \"phase_margin_deg\"\nleast = 0.0\nto_hz = 0.06";
+    let at_rad_s = of("P", asked, &weak).place().frequency_rad_s.expect("where it crosses");
+    assert!(at_rad_s < 0.06 * std::f64::consts::TAU, "{at_rad_s}");
     let analysis = Analysis::of(&study(JUMBO, &weak), Question::default()).expect("analysed");
     let found = analysis.loops[0].plants[0].worst.sampled.as_ref().expect("it is stable");
     let crossover = |at: &fspid_lti::SampledCrossover| {
@@ -133,6 +136,57 @@ fn the_bands_of_the_gain_margin_together_have_the_whole_one() {
     let something = values(JUMBO, Measure::GainMargin, "controller = \"P\"\nto_hz = 0.5", &[]);
     assert_eq!(nothing, [f64::INFINITY]);
     assert!(something[0].is_finite());
+}
+
+/// 0.7/(s - 0.5): the loop is lost at 0.5/0.7 of its gain, which is nearer than the gain that the servo bears.
+const GROWING: &str =
+    "numerator = [1.0]\ndenominator = [1.0, -0.5]\nelevator_sign = \"nose-up-positive\"";
+
+#[test]
+fn a_gain_that_may_not_fall_is_a_margin_of_its_own() {
+    let text = JUMBO.replace("preset = \"b747-paper\"", GROWING);
+    let set = ["controller.P.kp=0.7", "controller.P.output_limits_deg=[-60.0, 60.0]"];
+    let of = |measure: Measure, conditions: &str| {
+        let requirement = format!(
+            "measure = \"{}\"\nleast = 0.0\ncontroller = \"P\"\n{conditions}",
+            measure.name()
+        );
+        let case = one(&text, &requirement, &set).found.expect("a margin");
+        (case.value, case.place.frequency_rad_s)
+    };
+    let low_db = 20.0 * 1.4_f64.log10();
+    let (high_db, high_rad_s) = of(Measure::GainMarginHigh, "");
+    let high_rad_s = high_rad_s.expect("where it oscillates");
+    assert!(high_db > 12.0 && high_rad_s > 1.0, "{high_db} {high_rad_s}");
+    for measure in [Measure::GainMargin, Measure::GainMarginLow] {
+        // In the band of what lies below a hertz as well: at rest.
+        for conditions in ["", "to_hz = 0.1"] {
+            let (found, at_rad_s) = of(measure, conditions);
+            assert!((found - low_db).abs() < 1e-9, "{} {conditions}: {found}", measure.name());
+            assert_eq!(at_rad_s, Some(0.0), "{} {conditions}", measure.name());
+        }
+    }
+    assert_eq!(of(Measure::GainMarginHigh, "to_hz = 0.1"), (f64::INFINITY, None));
+    assert_eq!(of(Measure::GainMarginLow, "from_hz = 0.1"), (f64::INFINITY, None));
+    let (found, at_rad_s) = of(Measure::GainMargin, "from_hz = 0.1");
+    assert!((found - high_db).abs() < 1e-9, "{found} {high_db}");
+    assert!((at_rad_s.expect("there") - high_rad_s).abs() < 1e-6);
+}
+
+#[test]
+fn a_loop_that_is_stable_at_rest_and_whose_flight_diverges_is_not_stable() {
+    // More is commanded than the elevator can hold.
+    let text = JUMBO.replace("preset = \"b747-paper\"", GROWING);
+    let set =
+        ["controller.P.kp=0.7", "controller.P.output_limits_deg=[-1.0, 1.0]", "loop.duration_s=60"];
+    let stable = "measure = \"stable\"\ncontroller = \"P\"";
+    let judgement = one(&text, stable, &set);
+    let case = judgement.found.clone().expect("known");
+    assert!(!judgement.met && case.value == 0.0 && case.place.at_s.is_some(), "{judgement:?}");
+    // A margin is one of the loop at rest.
+    assert!(one(&text, "measure = \"disk_margin\"\nleast = 0.0\ncontroller = \"P\"", &set).met);
+    let held = one(&text, stable, &["controller.P.kp=0.7", "setpoint.amplitude_deg=0.1"]);
+    assert!(held.met && held.place().plant.is_none(), "{held:?}");
 }
 
 /// From the poles of the sampled loop, by the definition of a damping ratio.
