@@ -3,6 +3,7 @@
 
     at_once.py FILE… [-- FILTER…]   files of one crate; of its tests those whose names have one of the words
     at_once.py crates/fspid-lti/src/frequency/*.rs -- frequency:: loops::
+    at_once.py --again LOG FILE… -- FILTER…     of all changes those alone whose names a log of before calls missed
 
 The body of each function becomes a choice among itself and its changes (as cargo-mutants, from the registry, lists them), in a copy
 of the repository under target/mutation. Changes that do not compile are found by the compiler and left out, all at once. Not for
@@ -242,7 +243,10 @@ def main() -> int:
     words, filters = sys.argv[1:], []
     if "--" in words:
         words, filters = words[: words.index("--")], words[words.index("--") + 1:]
-    files = [str(Path(file)) for file in parser.parse_args(words).files]
+    parser.add_argument("--again", metavar="LOG", type=Path)
+    options = parser.parse_args(words)
+    files = [str(Path(file)) for file in options.files]
+    again = options.again and set(re.findall(r"(?m)^missed: (.*?)(?:, in line \d+)?$", options.again.read_text()))
     [crate] = {"/".join(Path(file).parts[:2]) for file in files}
     install = ["cargo", "install", "cargo-mutants", "--version", "27.1.0", "--locked", "--debug", "--quiet", "--root", TOOLS]
     subprocess.run(install, check=True)
@@ -253,7 +257,7 @@ def main() -> int:
         raise SystemExit("the tests fail without a change")
     found = {}
     for change in changes:
-        if change.body and change.number not in unviable:
+        if change.body and change.number not in unviable and (again is None or change.name in again):
             found[change] = asked(programs, folder, filters, change.number, LONGEST_S)
             if found[change] == "missed":
                 print(f"missed: {change.name}, in line {change.line}", flush=True)

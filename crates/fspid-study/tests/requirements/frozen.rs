@@ -20,6 +20,10 @@ fn the_frozen_margins_are_the_least_of_the_map() {
     assert_eq!(ours(Measure::FrozenPhaseMargin), least(|m| m.phase_margin_deg));
     assert_eq!(ours(Measure::FrozenDiskMargin), least(|m| m.disk_margin));
     assert_eq!(ours(Measure::FrozenGainMargin), least(Margins::smaller_gain_margin_db));
+    let disk = of("FSPID", "measure = \"frozen_disk_margin\"\nleast = 0.0", &[]);
+    let points = || map.points.iter().chain([&map.worst]).filter_map(|it| it.margins.ok());
+    let at = points().min_by(|one, other| one.disk_margin.total_cmp(&other.disk_margin));
+    assert_eq!(disk.place().frequency_rad_s, at.map(|it| it.disk_rad_s));
     assert!(ours(Measure::FrozenPhaseMargin) <= values(JUMBO, Measure::PhaseMargin, "", &[])[1]);
     // Fixed gains are frozen as they are.
     let fixed = |measure| values(JUMBO, measure, "controller = \"P\"", &[])[0];

@@ -233,6 +233,38 @@ mod tests {
     }
 
     #[test]
+    fn of_a_plant_without_equations_of_ours_what_its_trace_shows_is_judged() {
+        let text = r#"
+schema = 1
+name = "x"
+[plant]
+preset = "navion-paper"
+[loop]
+sample_period_s = 1.0
+duration_s = 2.0
+[setpoint]
+kind = "step"
+amplitude_deg = 1.0
+[[controller]]
+name = "P"
+kind = "pid"
+kp = 0.1
+[[requirement]]
+measure = "largest_error_deg"
+most = 9.0
+"#;
+        let study = fspid_scenario::file::parse(text, "x.toml", None, &[]).expect("it reads");
+        let measure = Measure::LargestAirspeed;
+        let requirement = Requirement { measure, ..study.requirements[0].clone() };
+        let shown = trace("airspeed_m_s", &[100.0 * KNOT_M_S, 120.0 * KNOT_M_S, 90.0 * KNOT_M_S]);
+        let found = case(&study, &shown, &requirement, 0..=2).expect("an airspeed");
+        assert_eq!((found.value, found.place.at_s), (120.0, Some(1.0)));
+        let other = trace("bank_rad", &[0.0; 3]);
+        let refused = case(&study, &other, &requirement, 0..=2);
+        assert_eq!(refused, Err(NotEvaluated::NoAircraft { measure: measure.name() }));
+    }
+
+    #[test]
     fn level_flight_sinks_by_zero_and_not_by_less() {
         assert!(sink_ft_min(0.0).is_sign_positive());
         assert_eq!(sink_ft_min(-FOOT_M), 60.0);
