@@ -168,3 +168,23 @@ pub(super) fn nearest(crossovers: &[SampledCrossover]) -> Option<SampledCrossove
     let size = |at: &SampledCrossover| at.phase_margin_rad.abs();
     crossovers.iter().copied().min_by(|left, right| size(left).total_cmp(&size(right)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_nothing_is_known_of_is_not_tight() {
+        let tight = Bracket { at_least: 2.0, at_most: 2.0 };
+        let all = Proved { sensitivity: tight, complementary: tight, disk: tight };
+        assert!(all.is_tight() && !Proved::nothing().is_tight());
+        let unknown = Bracket::unknown();
+        for one in [
+            Proved { sensitivity: unknown, ..all },
+            Proved { complementary: unknown, ..all },
+            Proved { disk: unknown, ..all },
+        ] {
+            assert!(!one.is_tight());
+        }
+    }
+}

@@ -123,6 +123,14 @@ mod tests {
     }
 
     #[test]
+    fn candidates_beyond_the_ends_are_left_out_and_each_part_has_a_middle() {
+        assert_eq!(with_middles(&[0.5, 5.0, 1.0, 3.0], (1.0, 3.0)), [1.0, 3.0_f64.sqrt(), 3.0]);
+        assert_eq!(with_middles(&[], (0.0, 1.0)), [0.0, 0.5, 1.0]);
+        assert_eq!(with_middles(&[1.5], (1.0, 2.0)), [1.0, 1.25, 1.5, 1.75, 2.0]);
+        assert_eq!(middle(-1.0, 3.0), 1.0);
+    }
+
+    #[test]
     fn two_zeros_around_a_candidate_are_told_apart() {
         let found = sign_changes(|x| (x - 2.0) * (x - 2.0) - 1e-12, &[2.0], (1.0, 3.0));
         assert_eq!(found.len(), 2, "{found:?}");

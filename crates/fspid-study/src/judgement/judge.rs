@@ -169,6 +169,12 @@ mod tests {
         assert_eq!(worst_of(&requirement(None, Some(2.0)), &[0.9, 1.5, 0.4]), 1.5);
         assert_eq!(worst_of(&requirement(Some(0.3), Some(2.0)), &[0.9, 0.2, 2.5]), 2.5);
         assert!(worst_of(&requirement(Some(0.3), None), &[0.9, f64::NAN]).is_nan());
+        let at = |at_s: f64| Case {
+            value: 0.4,
+            place: CasePlace { at_s: Some(at_s), ..CasePlace::default() },
+        };
+        let first = worst(&requirement(Some(0.3), None), &[at(1.0), at(2.0)]).expect("two");
+        assert_eq!(first.place.at_s, Some(1.0));
     }
 
     #[test]

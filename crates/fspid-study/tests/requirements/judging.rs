@@ -183,10 +183,10 @@ fn a_loop_that_is_stable_at_rest_and_whose_flight_diverges_is_not_stable() {
     let judgement = one(&text, stable, &set);
     let case = judgement.found.clone().expect("known");
     assert!(!judgement.met && case.value == 0.0 && case.place.at_s.is_some(), "{judgement:?}");
-    // A margin is one of the loop at rest.
-    assert!(one(&text, "measure = \"disk_margin\"\nleast = 0.0\ncontroller = \"P\"", &set).met);
-    let held = one(&text, stable, &["controller.P.kp=0.7", "setpoint.amplitude_deg=0.1"]);
-    assert!(held.met && held.place().plant.is_none(), "{held:?}");
+    // A margin is one of the loop at rest, of the only plant that there is.
+    let disk = one(&text, "measure = \"disk_margin\"\nleast = 0.0\ncontroller = \"P\"", &set);
+    assert!(disk.met && disk.place().plant.is_none(), "{disk:?}");
+    assert!(one(&text, stable, &["controller.P.kp=0.7", "setpoint.amplitude_deg=0.1"]).met);
 }
 
 /// From the poles of the sampled loop, by the definition of a damping ratio.
@@ -204,6 +204,10 @@ fn the_damping_is_that_of_the_least_damped_closed_loop_pole() {
         let least = damping.fold(f64::INFINITY, f64::min);
         assert!((ours - least).abs() < 1e-9, "{ours} {least}");
     }
+    // The phugoid's, at the place that a band around it has.
+    let band = "measure = \"mode_damping\"\nleast = 0.0\nto_hz = 0.05";
+    let at_rad_s = of("P", band, &[]).place().frequency_rad_s.expect("the mode's");
+    assert!((0.01..0.3).contains(&at_rad_s), "{at_rad_s}");
 }
 
 #[test]
@@ -582,6 +586,18 @@ fn a_loop_that_is_proved_meets_it_and_one_that_grows_standing_still_does_not() {
     assert!(proved.iter().all(|it| it.met && it.value_in_words() == "proved stable"), "{proved:?}");
     let refuted = judged("FSPID", "1.0");
     assert!(!refuted.met && refuted.value_in_words() == "not proved stable", "{refuted:?}");
+}
+
+#[test]
+fn every_plant_has_to_be_proved_and_the_one_that_is_not_is_told() {
+    let turned = "numerator = [1.69, 0.843, 0.0099]\ndenominator = [1.0, 1.17103, 1.55405, 0.012538, 0.0072771]\n";
+    let asked = |text: &str| one(text, "measure = \"certified\"\ncontroller = \"P\"", &[]);
+    let only = format!("{turned}elevator_sign = \"nose-down-positive\"");
+    let alone = asked(&JUMBO.replace("preset = \"b747-paper\"", &only));
+    assert!(!alone.met && alone.place().plant.is_none(), "{alone:?}");
+    let second = asked(&format!("{JUMBO}\n[[plant_change]]\nat_s = 10.0\n{turned}"));
+    let plant = second.place().plant.expect("there are two");
+    assert_eq!((second.met, plant.index, plant.from_s), (false, 1, 10.0));
 }
 
 #[test]
