@@ -703,6 +703,11 @@ fn what_an_external_controller_says_of_its_own_limits_is_no_measure() {
     let own = study.scenario.flyers().next().expect("a controller");
     let evidence = Evidence::new(&study, own, &result);
     assert!(evidence.cases(&study.requirements[0]).is_ok());
+    // Margins of ours do not wait for a library that is not there.
+    let mut beside = study.clone();
+    beside.scenario.externals.push(external);
+    let own = beside.scenario.flyers().next().expect("a controller");
+    assert!(Evidence::new(&beside, own, &result).cases(&asked(Measure::PhaseMargin)).is_ok());
 }
 
 #[test]
