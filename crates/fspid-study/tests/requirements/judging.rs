@@ -12,7 +12,7 @@ use fspid_study::judgement::{
 use fspid_study::metrics::Absent;
 use fspid_study::simulation::Simulation;
 
-use crate::requirements::{JUMBO, judged, study, values};
+use crate::requirements::{JUMBO, judged, repository, study, values};
 
 /// The only judgement.
 pub(super) fn one(text: &str, requirement: &str, set: &[&str]) -> Judgement {
@@ -598,6 +598,20 @@ fn every_plant_has_to_be_proved_and_the_one_that_is_not_is_told() {
     let second = asked(&format!("{JUMBO}\n[[plant_change]]\nat_s = 10.0\n{turned}"));
     let plant = second.place().plant.expect("there are two");
     assert_eq!((second.met, plant.index, plant.from_s), (false, 1, 10.0));
+}
+
+/// A mode of its outer loops grows, whatever is proved of the pitch loop (erratum E-10).
+#[test]
+fn an_autopilot_that_is_not_held_at_rest_is_not_proved() {
+    let path = repository("crates/fspid-scenario/tests/scenarios/every-key-autopilot.toml");
+    let text = std::fs::read_to_string(&path).expect("it is there");
+    let text = format!("{text}\n[[requirement]]\nmeasure = \"certified\"\n");
+    let study = file::parse(&text, "autopilot.toml", path.parent(), &[]).expect("it reads");
+    let judgements = Simulation::of(&study).expect("it flies").judgements;
+    let proved = judgements.iter().filter(|it| it.requirement.measure == Measure::Certified);
+    let proved: Vec<&Judgement> = proved.collect();
+    assert!(!proved.is_empty() && proved.iter().all(|it| !it.met), "{proved:?}");
+    assert!(proved.iter().all(|it| it.value_in_words() == "not proved stable"), "{proved:?}");
 }
 
 #[test]
