@@ -93,6 +93,7 @@ pub(super) fn sine(response: Response) -> f64 {
 }
 
 #[cfg(test)]
+#[allow(clippy::float_cmp, reason = "the same bits are asked for")]
 mod tests {
     use super::*;
     use crate::complex::Complex;

@@ -262,6 +262,7 @@ fn zeta(angle_rad: f64) -> Complex {
 }
 
 #[cfg(test)]
+#[allow(clippy::float_cmp, reason = "the same bits are asked for")]
 mod tests {
     use super::*;
 

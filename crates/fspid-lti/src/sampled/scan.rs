@@ -106,6 +106,7 @@ fn next_share(near: (f64, f64), far: (f64, f64), old: (f64, f64)) -> f64 {
 }
 
 #[cfg(test)]
+#[allow(clippy::float_cmp, reason = "the same bits are asked for")]
 mod tests {
     use super::*;
 
