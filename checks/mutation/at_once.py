@@ -128,7 +128,8 @@ def listed(files: list[str], texts: dict[str, str]) -> list[Change]:
         begin, end = span(one["file"], one["span"])
         within = [body for body in choices[one["file"]].values() if body and body.begin < begin and end <= body.end]
         name = re.sub(r"^([^:]+):\d+:\d+: ", r"\1: ", one["name"])
-        changes.append(Change(number, name, one["span"]["start"]["line"], begin, end, one["replacement"], within[0] if within and one["function"] else None))
+        body = within[0] if within and one["function"] else None
+        changes.append(Change(number, name, one["span"]["start"]["line"], begin, end, one["replacement"], body))
     return changes
 
 
@@ -240,10 +241,10 @@ def built(files: list[str], crate: str) -> tuple[list[Change], set[int], list[st
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("files", nargs="+", metavar="FILE")
+    parser.add_argument("--again", metavar="LOG", type=Path)
     words, filters = sys.argv[1:], []
     if "--" in words:
         words, filters = words[: words.index("--")], words[words.index("--") + 1:]
-    parser.add_argument("--again", metavar="LOG", type=Path)
     options = parser.parse_args(words)
     files = [str(Path(file)) for file in options.files]
     again = options.again and set(re.findall(r"(?m)^missed: (.*?)(?:, in line \d+)?$", options.again.read_text()))
@@ -261,6 +262,8 @@ def main() -> int:
             found[change] = asked(programs, folder, filters, change.number, LONGEST_S)
             if found[change] == "missed":
                 print(f"missed: {change.name}, in line {change.line}", flush=True)
+    if not found:
+        raise SystemExit("no change is to be asked" + (f": none that {options.again} calls missed is in these files" if options.again else ""))
     lines = (ROOT / "checks/mutation/equivalent.txt").read_text().splitlines()
     explained = {line.split("\t")[0] for line in lines if not line.startswith("#")}
     missed = [change.name for change, what in found.items() if what == "missed"]

@@ -308,7 +308,7 @@ fn a_phase_that_turns_late_between_two_frequencies_is_followed_there() -> Outcom
 
 #[test]
 fn across_a_pole_without_damping_the_phase_jumps_by_half_a_turn() -> Outcome {
-    // 1/(z² − 2 z cos θ + 1): real everywhere but for the two samples of delay.
+    // 1/(z² − 2 z cos θ + 1): real but for a sample of delay, which is half a radian between the two.
     let cosine = libm::cos(0.5);
     let a = Matrix::from_rows(&[[0.0, 1.0], [-1.0, 2.0 * cosine]])?;
     let open = SampledLoop::new(a, vec![0.0, 1.0], vec![1.0, 0.0], 1.0)?;
@@ -320,38 +320,23 @@ fn across_a_pole_without_damping_the_phase_jumps_by_half_a_turn() -> Outcome {
 
 #[test]
 fn the_change_of_another_loop_is_refused_with_its_entry() -> Outcome {
-    let lag = TransferFunction::new(&[1.0], &[1.0, 0.4, 0.0])?;
-    let open = sampled(&lag, 0.05, 1)?;
-    let order = open.order();
-    let fine = |values: Matrix| {
-        let none = Matrix::zeros(values.rows(), values.columns());
-        FineMatrix::new(values, none)
+    let open = || {
+        let a = Matrix::from_rows(&[[0.9, 0.1], [-0.2, 0.8]])?;
+        SampledLoop::new(a, vec![0.0, 1.0], vec![1.0, 0.0], 0.05)
     };
-    // The closed matrix of a loop without output is its own.
-    let (zeros, own) = (vec![0.0; order], open.closed_matrix());
-    let input: Vec<f64> = (0..order).map(|row| if row + 1 == order { 1.0 } else { 0.0 }).collect();
-    let change = |off: [f64; 2]| {
-        let entry = |row: usize, column: usize| {
-            let one = if row == column { 1.0 } else { 0.0 };
-            let off = if (row, column) == (1, 0) { off[0] } else { 0.0 };
-            own.get(row, column).expect("inside") - one + off
-        };
-        let entries = Matrix::from_rows(&[
-            [entry(0, 0), entry(0, 1), entry(0, 2)],
-            [entry(1, 0), entry(1, 1), entry(1, 2)],
-            [entry(2, 0), entry(2, 1), entry(2, 2)],
-        ])?;
-        let inputs = Matrix::from_rows(&[[input[0]], [input[1]], [input[2] + off[1]]])?;
-        SampledLoop::new(own.clone(), input.clone(), zeros.clone(), 0.05)?
-            .with_change(fine(entries)?, fine(inputs)?)
+    let fine = |high: Matrix| {
+        let low = Matrix::zeros(high.rows(), high.columns());
+        FineMatrix::new(high, low)
     };
-    assert!(change([0.0, 0.0]).is_ok() && change([1e-12, 1e-12]).is_ok());
-    for (off, entry) in [([1e-8, 0.0], 3), ([0.0, 1e-8], 2)] {
-        let found = change(off);
-        assert!(
-            matches!(found, Err(LtiError::OtherLoop { index, .. }) if index == entry),
-            "{found:?}"
-        );
+    let changed = |of_states: f64, of_input: f64| {
+        let states = Matrix::from_rows(&[[-0.1, 0.1], [-0.2 + of_states, -0.2]])?;
+        let input = Matrix::from_rows(&[[0.0], [1.0 + of_input]])?;
+        open()?.with_change(fine(states)?, fine(input)?)
+    };
+    assert!(changed(0.0, 0.0).is_ok() && changed(1e-12, 1e-12).is_ok());
+    for (found, entry) in [(changed(1e-8, 0.0), 2), (changed(0.0, 1e-8), 1)] {
+        let is_told = matches!(found, Err(LtiError::OtherLoop { index, .. }) if index == entry);
+        assert!(is_told, "{found:?}");
     }
     Ok(())
 }

@@ -5,8 +5,7 @@ use fspid_study::analysis::{Analysis, Margins, Question};
 use fspid_study::judgement::{Judgement, NotEvaluated};
 use fspid_study::metrics::Absent;
 
-use crate::requirements::judging::{of, one};
-use crate::requirements::{JUMBO, study, values, verified, written};
+use crate::requirements::{JUMBO, of, one, study, values, verified, written};
 
 #[test]
 fn the_frozen_margins_are_the_least_of_the_map() {

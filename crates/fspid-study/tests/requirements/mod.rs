@@ -5,6 +5,7 @@ mod answers;
 mod frozen;
 mod intervals;
 mod judging;
+mod loops;
 mod replays;
 mod sets;
 
@@ -57,6 +58,18 @@ fn study(text: &str, set: &[&str]) -> Study {
 fn judged(text: &str, requirements: &str, set: &[&str]) -> Vec<Judgement> {
     let study = study(&format!("{text}\n{requirements}"), set);
     Simulation::of(&study).expect("it flies").judgements
+}
+
+/// The only judgement.
+fn one(text: &str, requirement: &str, set: &[&str]) -> Judgement {
+    let mut judgements = judged(text, &format!("[[requirement]]\n{requirement}"), set);
+    assert_eq!(judgements.len(), 1, "{judgements:?}");
+    judgements.remove(0)
+}
+
+/// The same for one controller of the jumbo.
+fn of(controller: &str, requirement: &str, set: &[&str]) -> Judgement {
+    one(JUMBO, &format!("{requirement}\ncontroller = \"{controller}\"\n"), set)
 }
 
 /// The value of a measure for the controllers of a scenario, whatever the limit.
