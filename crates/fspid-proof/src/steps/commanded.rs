@@ -27,7 +27,7 @@ pub const MOST_LEG_PARTS: usize = 1024;
 const NARROWEST: f64 = 1.0 / 512.0;
 /// Where a search begins: with the whole in so many parts.
 const BEGINS: f64 = 8.0;
-/// A part that was flown is followed by one so many times as wide.
+/// A part that was flown at once is followed by one so many times as wide.
 const WIDER: f64 = 1.5;
 /// Parts of the loads where both change in a leg.
 const BOTH: u8 = 8;
@@ -318,17 +318,21 @@ fn swept(
 ) -> Result<Vec<f64>, Stop> {
     let whole = most - least;
     let (mut ends, mut at, mut width) = (vec![least], least, whole / BEGINS);
+    let mut halved = false;
     while at < most || ends.len() < 2 {
         let next = if at + width >= most { most } else { at + width };
         match fly([at, next]) {
             Ok(()) if ends.len() <= MOST_LEG_PARTS => {
-                width = WIDER * (next - at);
+                // Twice as wide was too wide just now.
+                width = if halved { next - at } else { WIDER * (next - at) };
+                halved = false;
                 at = next;
                 ends.push(next);
             }
             Ok(()) => return Err(Stop::Lost),
             Err(stop) => {
                 width = 0.5 * (next - at);
+                halved = true;
                 if !(width >= NARROWEST * whole && width > 0.0) {
                     return Err(stop);
                 }

@@ -14,6 +14,8 @@ use crate::scope::Range;
 pub const MOST_PIECES: usize = 4096;
 /// Most parts of the loads.
 pub const MOST_LOADS: usize = 64;
+/// A box that was flown at once is followed by one so many times as wide.
+const WIDER: f64 = 1.5;
 /// The narrowest box that is flown, as a share of the set-points that are asked for.
 const NARROWEST: f64 = 1.0 / 2048.0;
 
@@ -87,6 +89,7 @@ impl Boxes<'_> {
     fn side(&mut self, to: f64, allowed: usize) -> Vec<f64> {
         let mut ends = vec![0.0];
         let (mut at, mut width, mut of_check) = (0.0_f64, 0.25 * to, 0);
+        let mut halved = false;
         while at.abs() < to.abs() && ends.len() < MOST_PIECES / 2 {
             let next = if (at + width).abs() >= to.abs() { to } else { at + width };
             let piece = if to < 0.0 { [next, at] } else { [at, next] };
@@ -99,9 +102,12 @@ impl Boxes<'_> {
                 }
                 ends.push(next);
                 at = next;
-                width *= 1.5;
+                // Twice as wide was too wide just now.
+                width *= if halved { 1.0 } else { WIDER };
+                halved = false;
             } else {
                 width *= 0.5;
+                halved = true;
                 if width.abs() < NARROWEST * to.abs() || self.flights.flown > self.flights.most {
                     break;
                 }
