@@ -160,6 +160,11 @@ def written(file: str, text: str, changes: list[Change]) -> dict[int, int]:
     return of_line
 
 
+def expanded(span: dict) -> list[dict]:
+    """A span, and where the macros that it comes of are called."""
+    return [span, *(expanded(span["expansion"]["span"]) if span["expansion"] else [])]
+
+
 def compiled(package: str, places: dict[tuple[str, int], int]) -> tuple[set[int], list[str]]:
     """Builds the tests of the copy: numbers of changes that do not compile, and the programs where all do."""
     command = ["cargo", "test", "-p", package, "--lib", "--tests", "--all-features", "--no-run", "--locked", "--message-format=json"]
@@ -172,6 +177,7 @@ def compiled(package: str, places: dict[tuple[str, int], int]) -> tuple[set[int]
         if told["reason"] != "compiler-message" or told["message"]["level"] != "error":
             continue
         spans = sorted(told["message"]["spans"], key=lambda it: not it["is_primary"])
+        spans = [place for span in spans for place in expanded(span)]
         hit = [places[where] for it in spans if (where := (it["file_name"], it["line_start"])) in places]
         wrong.update(hit[:1])
         if not hit:
