@@ -3,8 +3,8 @@
 use fspid_core::{Fspid, Gains, Law, ReferenceModel, SecondInput, SelfTuner, TunerSettings};
 use fspid_lti::Matrix;
 use fspid_proof::{
-    Asked, BoundedRate, Certificate, Claim, DisturbanceBound, Extent, Quantity, Verdict, Way,
-    certify,
+    Asked, BoundedRate, Certificate, Claim, DisturbanceBound, Extent, Quantity, Steps, Terminal,
+    Verdict, Way, certify,
 };
 use fspid_sim::Controller;
 
@@ -142,4 +142,83 @@ fn forms_have_the_size_of_the_loop() {
         let told = refused(&Certificate { claim: Claim::BoundedRate(claim), ..moving.clone() });
         assert!(told.contains("forms"), "{place}: {told}");
     }
+}
+
+#[test]
+fn a_rate_is_above_0_and_at_most_1() {
+    let good = proved(&loop_of(fixed(NOMINAL)));
+    let form = form_of(&good);
+    let at = |rate: f64| {
+        let claim = Claim::CommonQuadratic { form: form.clone(), rate };
+        Certificate { claim, ..good.clone() }
+    };
+    at(1.0).check().expect("a form that falls at all");
+    for rate in [0.0, -0.5, 1.0 + 1e-12, f64::INFINITY, f64::NAN] {
+        let told = refused(&at(rate));
+        assert!(told.contains("the rate is not above 0 and at most 1"), "{rate}: {told}");
+    }
+    let told = refused(&Certificate {
+        claim: Claim::CommonQuadratic { form: form.scaled(-1.0), rate: 1.0 },
+        ..good
+    });
+    assert!(told.contains("the Lyapunov matrix is not positive definite"), "{told}");
+}
+
+#[test]
+fn nothing_is_proved_for_somebody_who_does_not_wait() {
+    let told = good().check_until(|| true).expect_err("stopped").to_string();
+    assert!(told.contains("nobody wants the answer any more"), "{told}");
+}
+
+/// The Navion with limits of its output, and of a servo's travel and rate, up to small steps.
+fn limited() -> Certificate {
+    crate::steps::proved(20.0, 0.3).0
+}
+
+/// One that the form is positive, one that it falls at each corner of the gains, one for each limit there.
+#[test]
+fn inequalities_are_counted() {
+    let count = |certificate: &Certificate| certificate.check().expect("it holds").inequalities;
+    assert_eq!(count(&proved(&loop_of(fixed(NOMINAL)))), 2);
+    assert_eq!(count(&limited()), 5, "output, command and rate of the servo have limits");
+    let unstable = loop_of(fixed(Gains { kp: 10.0, ki: 0.0, kd: 0.0 }));
+    let outcome = certify(&unstable, &Asked::rest(), &quick()).expect("provable");
+    let Verdict::Refuted(grows, _) = outcome.verdict else { panic!("{outcome:?}") };
+    assert_eq!(count(&grows), 2, "that the form falls, and that it is above zero along a motion");
+
+    let good = good();
+    let tied = tied_to_the_error(&good);
+    let [of_all, of_cones] = [count(&good), count(&tied)];
+    // A cell lies in one cone, or in those on whose border it is: each of its corners is then asked in each.
+    assert!(of_cones > of_all && of_cones < 8 * of_all, "{of_all} {of_cones}");
+}
+
+#[test]
+fn the_end_of_a_step_is_a_form_that_falls_within_its_limits_in_a_loop_that_is_stable() {
+    let good = limited();
+    let steps = good.steps.clone().expect("steps are proved");
+    assert!(good.check().expect("it holds").stepped.is_some());
+    let with = |change: &dyn Fn(&mut Terminal)| {
+        let mut terminal = steps.terminal.clone();
+        change(&mut terminal);
+        refused(&Certificate { steps: Some(Steps { terminal, ..steps.clone() }), ..good.clone() })
+    };
+    let still = with(&|it| it.rate = 1.0);
+    assert!(still.contains("near rest something remains"), "{still}");
+    for rate in [0.0, 1.0 + 1e-9, f64::NAN] {
+        let told = with(&|it| it.rate = rate);
+        assert!(told.contains("the rate is not above 0 and at most 1"), "{rate}: {told}");
+    }
+    let wide = with(&|it| it.level *= 1e4);
+    assert!(wide.contains("on the ellipsoid"), "{wide}");
+    let turned = with(&|it| it.form = it.form.scaled(-1.0));
+    assert!(turned.contains("not positive definite"), "{turned}");
+
+    let unstable = loop_of(fixed(Gains { kp: 10.0, ki: 0.0, kd: 0.0 }));
+    let outcome = certify(&unstable, &Asked::rest(), &quick()).expect("provable");
+    let Verdict::Refuted(grows, _) = outcome.verdict else { panic!("{outcome:?}") };
+    let size = unstable.states();
+    let terminal = Terminal { form: Matrix::identity(size), ..steps.terminal.clone() };
+    let told = refused(&Certificate { steps: Some(Steps { terminal, ..steps }), ..grows });
+    assert!(told.contains("not claimed to be stable"), "{told}");
 }

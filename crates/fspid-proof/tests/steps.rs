@@ -12,7 +12,10 @@ use fspid_sim::{Controller, ElevatorSign};
 const DEG: f64 = core::f64::consts::PI / 180.0;
 
 /// The Navion with a PID behind a servo of 20 deg and `rate_deg_s`, up to a step.
-fn proved(rate_deg_s: f64, step_deg: f64) -> (Certificate, Option<fspid_proof::Stepped>) {
+pub(crate) fn proved(
+    rate_deg_s: f64,
+    step_deg: f64,
+) -> (Certificate, Option<fspid_proof::Stepped>) {
     let limits = Limits::new(ControllerSetting::OutputLimits, -20.0 * DEG, 20.0 * DEG);
     let config = PidConfig {
         derivative: Derivative { filter_s: 0.05 },

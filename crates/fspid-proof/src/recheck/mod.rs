@@ -4,6 +4,8 @@ mod boxed;
 mod disturbed;
 mod moving;
 mod remains;
+#[cfg(test)]
+mod tests;
 
 use fspid_core::{Change, Fspid, Gains, Law, SecondInput};
 use fspid_lti::Matrix;
