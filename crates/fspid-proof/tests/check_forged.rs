@@ -1,10 +1,13 @@
 //! Certificates whose claim does not fit their loop, as nobody writes them who has found one: each is refused in words.
 
-use fspid_core::{Fspid, Gains, Law, ReferenceModel, SecondInput, SelfTuner, TunerSettings};
+use fspid_core::{
+    ControllerSetting, Fspid, Gains, Law, Limits, PidConfig, ReferenceModel, SecondInput,
+    SelfTuner, SetpointWeights, TunerSettings,
+};
 use fspid_lti::Matrix;
 use fspid_proof::{
-    Asked, BoundedRate, Certificate, Claim, DisturbanceBound, Extent, Quantity, Steps, Terminal,
-    Verdict, Way, certify,
+    Asked, BoundedRate, Certificate, Claim, DisturbanceBound, Extent, LoopDescription, Quantity,
+    Range, Steps, Terminal, Verdict, Way, certify,
 };
 use fspid_sim::Controller;
 
@@ -203,6 +206,7 @@ fn the_end_of_a_step_is_a_form_that_falls_within_its_limits_in_a_loop_that_is_st
         change(&mut terminal);
         refused(&Certificate { steps: Some(Steps { terminal, ..steps.clone() }), ..good.clone() })
     };
+    assert!(good.check().expect("it holds").ended.is_some());
     let still = with(&|it| it.rate = 1.0);
     assert!(still.contains("near rest something remains"), "{still}");
     for rate in [0.0, 1.0 + 1e-9, f64::NAN] {
@@ -221,4 +225,41 @@ fn the_end_of_a_step_is_a_form_that_falls_within_its_limits_in_a_loop_that_is_st
     let terminal = Terminal { form: Matrix::identity(size), ..steps.terminal.clone() };
     let told = refused(&Certificate { steps: Some(Steps { terminal, ..steps }), ..grows });
     assert!(told.contains("not claimed to be stable"), "{told}");
+}
+
+/// Without an integral an error stays at a set-point; with a weight below 1 moving gains make something of what holds it.
+#[test]
+fn where_an_error_or_a_command_stays_gains_are_tied_to_nothing_and_no_step_ends() {
+    let Controller::SelfTuning(fspid) = tuned(SCALE, Law::Memoryless) else { panic!("tuned") };
+    let with = |nominal: Gains<f64>, scale: Gains<f64>, config: PidConfig<f64>| {
+        let settings = TunerSettings { output_scale: scale, ..*fspid.tuner().settings() };
+        let tuner = SelfTuner::new(nominal, *fspid.tuner().supervisor(), settings);
+        loop_of(Controller::SelfTuning(
+            Fspid::new(tuner.expect("allowed"), config).expect("allowed"),
+        ))
+    };
+    let asked = Asked::within(Range { setpoint_rad: 0.02, load_rad: 0.0 });
+    let proved = |description: &LoopDescription| match certify(description, &asked, &quick())
+        .expect("provable")
+        .verdict
+    {
+        Verdict::Proved(certificate, _) => certificate,
+        other => panic!("{other:?}"),
+    };
+    let none = Gains { ki: 0.0, ..SCALE };
+    let leaves = proved(&with(Gains { ki: 0.0, ..NOMINAL }, none, config()));
+    assert!(leaves.check().expect("it holds").rest_error_rad > 0.0);
+    let told = refused(&tied_to_the_error(&leaves));
+    assert!(told.contains("where an error stays, gains are not tied"), "{told}");
+
+    let limits = Limits::new(ControllerSetting::OutputLimits, -0.35, 0.35).expect("allowed");
+    let setpoint_weights = SetpointWeights { proportional: 0.5, derivative: 1.0 };
+    let config = PidConfig { limits: Some(limits), setpoint_weights, ..config() };
+    let holds = proved(&with(NOMINAL, SCALE, config));
+    let form = form_of(&holds);
+    let terminal = Terminal { form, rate: 0.999_999, level: 1e-12, gains: None };
+    let steps =
+        Steps { setpoint_rad: 0.001, load_rad: 0.0, terminal, ends: vec![-0.001, 0.001], loads: 1 };
+    let told = refused(&Certificate { steps: Some(steps), ..holds });
+    assert!(told.contains("near rest something remains"), "{told}");
 }
