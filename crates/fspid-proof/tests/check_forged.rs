@@ -6,8 +6,8 @@ use fspid_core::{
 };
 use fspid_lti::Matrix;
 use fspid_proof::{
-    Asked, BoundedRate, Certificate, Claim, DisturbanceBound, Extent, LoopDescription, Quantity,
-    Range, Steps, Terminal, Verdict, Way, certify,
+    Asked, BoundedRate, Certificate, Claim, DisturbanceBound, Effort, Extent, LoopDescription,
+    Quantity, Range, Steps, Terminal, Verdict, Way, bound_disturbances, certify,
 };
 use fspid_sim::Controller;
 
@@ -239,7 +239,8 @@ fn where_an_error_or_a_command_stays_gains_are_tied_to_nothing_and_no_step_ends(
         ))
     };
     let asked = Asked::within(Range { setpoint_rad: 0.02, load_rad: 0.0 });
-    let proved = |description: &LoopDescription| match certify(description, &asked, &quick())
+    let coarse = Effort { divisions: 8, largest_factor: 1.0, ..quick() };
+    let proved = |description: &LoopDescription| match certify(description, &asked, &coarse)
         .expect("provable")
         .verdict
     {
@@ -255,11 +256,72 @@ fn where_an_error_or_a_command_stays_gains_are_tied_to_nothing_and_no_step_ends(
     let limits = Limits::new(ControllerSetting::OutputLimits, -0.35, 0.35).expect("allowed");
     let setpoint_weights = SetpointWeights { proportional: 0.5, derivative: 1.0 };
     let config = PidConfig { limits: Some(limits), setpoint_weights, ..config() };
-    let holds = proved(&with(NOMINAL, SCALE, config));
+    let holds = proved(&with(NOMINAL, Gains { kp: SCALE.kp, ..Gains::ZERO }, config));
     let form = form_of(&holds);
     let terminal = Terminal { form, rate: 0.999_999, level: 1e-12, gains: None };
     let steps =
         Steps { setpoint_rad: 0.001, load_rad: 0.0, terminal, ends: vec![-0.001, 0.001], loads: 1 };
     let told = refused(&Certificate { steps: Some(steps), ..holds });
     assert!(told.contains("near rest something remains"), "{told}");
+}
+
+#[test]
+fn bounds_of_disturbances_hold_for_their_measure_their_form_and_what_can_be_told() {
+    let bare = Certificate { steps: None, commanded: None, ..limited() };
+    let (good, rechecked) = bound_disturbances(&bare, &[Way::Elevator], &quick()).expect("bounded");
+    let of = |quantity: Quantity, extent: Extent| {
+        let mut bounds = good.disturbances.iter().enumerate();
+        let found = bounds.find(|(_, it)| (it.quantity, it.extent) == (quantity, extent));
+        found.map(|(place, _)| place).expect("every quantity in both measures")
+    };
+    // How far a share of the limits is reached is told with the others, and the best form tells it.
+    let told = &rechecked.disturbed;
+    assert_eq!(told.len(), 4, "{told:?}");
+    assert!(told.iter().all(|it| it.quantity != Quantity::Limits && it.at_servo));
+    for extent in Extent::ALL {
+        let up_to: Vec<Option<f64>> =
+            told.iter().filter(|it| it.extent == extent).map(|it| it.unlimited_up_to).collect();
+        assert!(up_to.len() == 2 && up_to[0].is_some() && up_to[0] == up_to[1], "{up_to:?}");
+    }
+    let energy =
+        told.iter().find(|it| it.extent == Extent::Energy && it.quantity == Quantity::Pitch);
+    let gain = good.disturbances[of(Quantity::Pitch, Extent::Energy)].gain;
+    let per_unit = energy.expect("told").per_unit;
+    assert!((per_unit - gain.sqrt()).abs() <= 1e-12 * per_unit, "{per_unit} {gain}");
+
+    let with = |place: usize, change: &dyn Fn(&mut DisturbanceBound)| {
+        let mut changed = good.clone();
+        change(&mut changed.disturbances[place]);
+        changed.check()
+    };
+    let refused = |place: usize, change: &dyn Fn(&mut DisturbanceBound)| {
+        with(place, change).expect_err("forged").to_string()
+    };
+    let [of_energy, of_peak] =
+        Extent::ALL.map(|extent| Quantity::ALL.map(|quantity| of(quantity, extent)));
+    for place in of_energy {
+        let told = refused(place, &|it| it.decay = 0.999);
+        assert!(told.contains("the decay is 1 of an energy"), "{told}");
+    }
+    for place in of_peak {
+        for decay in [1.0, 1.5, f64::NAN] {
+            let told = refused(place, &|it| it.decay = decay);
+            assert!(told.contains("below it of a peak"), "{decay}: {told}");
+        }
+    }
+    for place in of_energy.into_iter().chain(of_peak) {
+        let told = refused(place, &|it| it.gain *= 0.25);
+        assert!(told.contains("could not be shown") || told.contains("not positive"), "{told}");
+        let moves = refused(place, &|it| it.by_gain = Some([0; 3].map(|_| it.form.clone())));
+        assert!(moves.contains("where the claim is about their rate"), "{moves}");
+        with(place, &|it| it.gain *= 1.0 + 1e-6).expect("a larger gain is no better");
+    }
+
+    let unlimited = proved(&loop_of(fixed(NOMINAL)));
+    let of_limits = good.disturbances[of(Quantity::Limits, Extent::Peak)].clone();
+    let form = Matrix::identity(unlimited.description.states());
+    let disturbances = vec![DisturbanceBound { form, ..of_limits }];
+    let told =
+        Certificate { disturbances, ..unlimited }.check().expect_err("no limits").to_string();
+    assert!(told.contains("there are no limits"), "{told}");
 }

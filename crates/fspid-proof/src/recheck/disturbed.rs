@@ -346,3 +346,106 @@ impl Reached<'_> {
         Ok(Some(most))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::disturbances::Way;
+
+    fn row(entries: [f64; 2]) -> Vec<Interval> {
+        entries.map(Interval::point).to_vec()
+    }
+
+    fn driven(command: [f64; 2], limits: Option<Vec<(Vec<Interval>, f64)>>) -> DrivenLoop {
+        DrivenLoop {
+            gains: Gains { kp: 1.0, ki: 0.0, kd: 0.0 },
+            matrix: IntervalMatrix::from_rows(&[row([0.5, 0.0]), row([0.0, 0.5])]).expect("square"),
+            command: row(command),
+            limits,
+        }
+    }
+
+    fn ellipsoid(diagonal: [f64; 2]) -> Ellipsoid {
+        let form = Matrix::from_rows(&[[diagonal[0], 0.0], [0.0, diagonal[1]]]).expect("square");
+        Ellipsoid::of(&form).expect("positive")
+    }
+
+    /// At least the number, and hardly more.
+    fn is_just(found: f64, number: f64) {
+        assert!(found >= number && found <= number * (1.0 + 1e-9), "{found} {number}");
+    }
+
+    #[test]
+    fn an_energy_reaches_the_root_of_its_gain_and_a_peak_what_it_does_for_ever() {
+        let bound = |extent: Extent, decay: f64| DisturbanceBound {
+            way: Way::Elevator,
+            quantity: Quantity::Pitch,
+            extent,
+            decay,
+            gain: 4.0,
+            form: Matrix::identity(2),
+            by_gain: None,
+        };
+        let root_of_period = Interval::point(0.125);
+        is_just(reached_size(&bound(Extent::Energy, 1.0), root_of_period).upper(), 2.0);
+        // $\sqrt{4} \cdot 0.125 / \sqrt{1 - 0.75}$
+        is_just(reached_size(&bound(Extent::Peak, 0.75), root_of_period).upper(), 0.5);
+    }
+
+    #[test]
+    fn the_most_of_a_quantity_is_that_at_the_gains_where_it_reaches_furthest() {
+        // A limit of 4 on twice the pitch angle.
+        let limits = || Some(vec![(row([2.0, 0.0]), 4.0)]);
+        let (near, far) = (driven([1.0, 2.0], limits()), driven([1.0, 0.0], limits()));
+        let (narrow, wide) = (ellipsoid([4.0, 1.0]), ellipsoid([1.0, 1.0]));
+        let size = Interval::point(3.0);
+        let alone = Reached { places: vec![(&near, &narrow)], size };
+        let both = Reached { places: vec![(&near, &narrow), (&far, &wide)], size };
+        let most = |reached: &Reached<'_>, quantity| reached.largest(quantity).expect("bounded");
+        is_just(most(&alone, Quantity::Pitch), 1.5);
+        is_just(most(&both, Quantity::Pitch), 3.0);
+        is_just(most(&alone, Quantity::Command), 3.0 * 4.25_f64.sqrt());
+        is_just(most(&both, Quantity::Command), 3.0 * 4.25_f64.sqrt());
+        is_just(most(&alone, Quantity::Limits), 0.75);
+        is_just(most(&both, Quantity::Limits), 1.5);
+    }
+
+    #[test]
+    fn no_limit_acts_up_to_where_the_first_of_them_is_reached() {
+        let size = Interval::point(3.0);
+        let form = ellipsoid([4.0, 1.0]);
+        let up_to = |limits: Option<Vec<(Vec<Interval>, f64)>>, beside: f64| {
+            let place = driven([1.0, 2.0], limits);
+            let reached = Reached { places: vec![(&place, &form)], size };
+            reached.unlimited(Interval::point(beside)).expect("bounded")
+        };
+        // Twice the pitch angle reaches 3 of 4, or 5 with what is beside it.
+        let pitch = (row([2.0, 0.0]), 4.0);
+        let told = up_to(Some(vec![pitch.clone()]), 0.0).expect("told");
+        assert!(told <= 4.0 / 3.0 && told >= 4.0 / 3.0 - 1e-9, "{told}");
+        let told = up_to(Some(vec![pitch.clone()]), 2.0).expect("told");
+        assert!(told <= 0.8 && told >= 0.8 - 1e-9, "{told}");
+        let nearer = (row([0.0, 1.0]), 1.0);
+        let told = up_to(Some(vec![pitch.clone(), nearer]), 0.0).expect("told");
+        assert!(told <= 1.0 / 3.0 && told >= 1.0 / 3.0 - 1e-9, "{told}");
+        for limit in [0.0, -1.0, f64::NAN] {
+            assert_eq!(up_to(Some(vec![pitch.clone(), (row([0.0, 0.0]), limit)]), 0.0), None);
+        }
+        assert_eq!(up_to(None, 0.0), None, "it cannot be told where limits act");
+        assert_eq!(up_to(Some(vec![(row([0.0, 0.0]), 1.0)]), 0.0), Some(f64::INFINITY));
+    }
+
+    #[test]
+    fn limits_are_seen_as_shares_of_themselves_where_something_is_left_of_each() {
+        let place = |limits| driven([1.0, 2.0], limits);
+        let left = place(Some(vec![(row([2.0, 0.0]), 4.0), (row([0.0, 3.0]), 1.5)]));
+        let seen = left.rows(Quantity::Limits);
+        let middle =
+            |row: &Vec<Interval>| -> Vec<f64> { row.iter().map(|it| it.midpoint()).collect() };
+        assert_eq!(seen.iter().map(middle).collect::<Vec<_>>(), [[0.5, 0.0], [0.0, 2.0]]);
+        assert_eq!(left.rows(Quantity::Pitch), [row([1.0, 0.0])]);
+        assert_eq!(left.rows(Quantity::Command), [row([1.0, 2.0])]);
+        assert!(place(Some(vec![(row([2.0, 0.0]), 0.0)])).rows(Quantity::Limits).is_empty());
+        assert!(place(None).rows(Quantity::Limits).is_empty());
+    }
+}

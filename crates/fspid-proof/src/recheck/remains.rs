@@ -255,3 +255,123 @@ fn beside(enclosed: &[Interval], computed: &[f64]) -> Vec<Interval> {
 fn up(value: Interval) -> Interval {
     Interval::point(value.upper())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn form(rows: &[[f64; 2]; 2]) -> Norm {
+        Norm(IntervalMatrix::from(&Matrix::from_rows(rows).expect("square")))
+    }
+
+    fn around(values: [f64; 2], radius: f64) -> Vec<Interval> {
+        values.map(|value| Interval::between(value - radius, value + radius)).to_vec()
+    }
+
+    #[test]
+    fn the_norm_of_a_form_is_the_root_of_what_it_makes_of_a_column_and_never_less() {
+        let norm = form(&[[4.0, 1.0], [1.0, 3.0]]);
+        let found = norm.of(&around([1.0, -2.0], 0.0)).expect("bounded");
+        let root = 12.0_f64.sqrt();
+        assert!(found.upper() >= root && found.upper() <= root * (1.0 + 1e-12), "{found:?}");
+        let wide = norm.of(&around([1.0, -2.0], 0.125)).expect("bounded").upper();
+        // The largest of the corners, 1.125 and -2.125 without the product that is against it.
+        assert!(wide >= 3.55 && wide <= 4.2, "{wide}");
+    }
+
+    /// $M$, the form that falls along it by the rate, and what a sample adds.
+    struct Case {
+        closed: [[f64; 2]; 2],
+        diagonal: [f64; 2],
+        rate: f64,
+        entry: [f64; 2],
+    }
+
+    /// The sum itself, in ordinary arithmetic, until nothing is left.
+    fn summed(case: &Case) -> f64 {
+        let (mut state, mut sum) = (case.entry, 0.0);
+        for _ in 0..2_000_000 {
+            sum += state[0].abs();
+            state = case.closed.map(|row| row[0] * state[0] + row[1] * state[1]);
+            if state.iter().all(|value| value.abs() < 1e-18) {
+                break;
+            }
+        }
+        sum
+    }
+
+    fn rippled(case: &Case, radius: f64) -> f64 {
+        let [first, second] = case.diagonal;
+        let norm = form(&[[first, 0.0], [0.0, second]]);
+        let closed = case.closed.map(|row| around(row, radius * 1e-3)).to_vec();
+        let reach = Interval::point(1.0) / Interval::point(first).sqrt();
+        let ripple = Ripple { closed, norm, rate: Interval::point(case.rate), reach };
+        ripple.of(&around(case.entry, radius)).expect("bounded").upper()
+    }
+
+    /// Each form falls: $\rho^2 P - M^T P M$ has a positive diagonal and determinant.
+    #[test]
+    fn what_a_sample_leaves_at_all_later_ones_is_bounded_within_a_hundredth() {
+        let cases = [
+            Case {
+                closed: [[0.9, 0.1], [0.0, 0.5]],
+                diagonal: [1.0, 4.0],
+                rate: 0.95,
+                entry: [1.0, 1.0],
+            },
+            Case {
+                closed: [[-0.9, 0.1], [0.0, 0.5]],
+                diagonal: [4.0, 4.0],
+                rate: 0.95,
+                entry: [1.0, -3.0],
+            },
+            Case {
+                closed: [[0.6, 0.6], [-0.6, 0.6]],
+                diagonal: [1.0, 1.0],
+                rate: 0.86,
+                entry: [0.0, 2.0],
+            },
+            Case {
+                closed: [[0.999, 0.0], [0.0, 0.2]],
+                diagonal: [0.25, 9.0],
+                rate: 0.9992,
+                entry: [0.5, 7.0],
+            },
+        ];
+        for case in &cases {
+            let (sum, found) = (summed(case), rippled(case, 0.0));
+            assert!(found >= sum && found <= 1.011 * sum, "{sum} {found}");
+            let wide = rippled(case, 1e-3);
+            let more = Case { entry: case.entry.map(|it| it + 1e-3), ..*case };
+            let less = Case { entry: case.entry.map(|it| it - 1e-3), ..*case };
+            for sum in [summed(&more), summed(&less)] {
+                assert!(wide >= sum, "{wide} {sum}");
+            }
+            let size = case.diagonal.map(f64::sqrt).into_iter().sum::<f64>();
+            let most = 2e-3 * size / case.diagonal[0].sqrt() / (1.0 - case.rate);
+            assert!(wide <= 1.02 * sum + most, "{wide} {sum} {most}");
+        }
+    }
+
+    /// A mode that has not died out after the last sample that is looked at: the rest is what the form lets it be.
+    #[test]
+    fn of_a_mode_that_is_slower_than_all_samples_the_rest_is_bounded_by_its_rate() {
+        let slow = 1.0 - 1e-6;
+        let case = Case {
+            closed: [[slow, 0.0], [0.0, 0.5]],
+            diagonal: [1.0, 1.0],
+            rate: slow,
+            entry: [1.0, 0.0],
+        };
+        let found = rippled(&case, 0.0);
+        assert!(found >= 1e6 * (1.0 - 1e-9) && found <= 1.011e6, "{found}");
+    }
+
+    #[test]
+    fn what_may_remain_is_told_in_degrees_with_what_is_allowed() {
+        let told =
+            Remains { remains_rad: 0.5_f64.to_radians(), allowed_rad: 0.25_f64.to_radians() };
+        let told = told.to_string();
+        assert!(told.contains("up to 0.500 deg off rest") && told.contains("0.250 deg"), "{told}");
+    }
+}
