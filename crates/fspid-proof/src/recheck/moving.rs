@@ -330,3 +330,116 @@ fn doubt(gain_box: &GainBox, failed: NotProvedAt) -> RecheckError {
     let [kp, ki, kd] = gain_box.gains(&sides).map(|gain| gain.midpoint());
     RecheckError::Inequality { gains: Some(Gains { kp, ki, kd }), reason }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn diagonal(entries: [f64; 2]) -> Matrix {
+        Matrix::from_rows(&[[entries[0], 0.0], [0.0, entries[1]]]).expect("square")
+    }
+
+    /// kp from 1 to 3, ki a point, kd from 2 to 6; the form moves with all of them.
+    fn claim() -> BoundedRate {
+        let forms = [[4.0, 8.0], [0.5, 0.0], [1.0, 1.0], [0.0, 0.25]].map(diagonal);
+        let ends = [[1.0, 3.0], [0.5, 0.5], [2.0, 6.0]];
+        BoundedRate { ends, changes: [0.01, 2.0, 0.5], forms, rate: 1.0 }
+    }
+
+    fn set() -> GainSet {
+        GainSet::fixed(Gains { kp: 2.5, ki: 0.5, kd: 3.0 })
+    }
+
+    fn gain_box() -> GainBox {
+        GainBox::of(&claim(), &set()).expect("it holds the gains")
+    }
+
+    fn is_near(found: [f64; 2], sides: [f64; 2]) -> bool {
+        found.iter().zip(sides).all(|(one, other)| (one - other).abs() <= 1e-12)
+    }
+
+    #[test]
+    fn a_form_moves_with_gains_that_it_follows_and_that_move() {
+        assert_eq!(gain_box().moving, [0, 2], "ki stands still");
+        let mut still = claim();
+        still.forms[3] = diagonal([0.0, 0.0]);
+        assert_eq!(GainBox::of(&still, &set()).expect("it holds").moving, [0]);
+        still.forms[1] = diagonal([0.0, 0.0]);
+        assert_eq!(GainBox::of(&still, &set()).expect("it holds").moving, [0_usize; 0]);
+    }
+
+    #[test]
+    fn gains_are_counted_in_half_widths_from_the_centre_and_back() {
+        let gain_box = gain_box();
+        let cells = gain_box.counted(&set());
+        assert_eq!(cells.len(), 1);
+        assert!(
+            is_near(cells[0][0], [0.5, 0.5]) && is_near(cells[0][1], [-0.5, -0.5]),
+            "{cells:?}"
+        );
+        // Outward, so that the gains themselves are within.
+        assert!(cells[0].iter().all(|[lower, upper]| lower <= upper));
+        let [kp, ki, kd] = gain_box.gains(&[[-1.0, 0.5], [0.0, 1.0]]);
+        assert!(is_near([kp.lower(), kp.upper()], [1.0, 2.5]), "{kp:?}");
+        assert!(is_near([ki.lower(), ki.upper()], [0.5, 0.5]), "{ki:?}");
+        assert!(is_near([kd.lower(), kd.upper()], [4.0, 6.0]), "{kd:?}");
+        let cell = vec![[-0.5, 0.25], [0.0, 1.0]];
+        assert_eq!(gain_box.part(&set(), cell.clone()), Some(cell), "nothing is known to be left");
+    }
+
+    #[test]
+    fn a_cell_is_narrowed_to_what_it_has_in_common_with_others() {
+        let cells = vec![vec![[-1.0, 0.0]], vec![[0.5, 1.0]]];
+        assert_eq!(part_in(&cells, &vec![[-0.25, 0.75]]), Some(vec![[-0.25, 0.75]]));
+        assert_eq!(part_in(&cells, &vec![[-0.25, 0.25]]), Some(vec![[-0.25, 0.0]]));
+        assert_eq!(part_in(&cells, &vec![[0.125, 0.375]]), None);
+        assert_eq!(part_in(&cells, &vec![[0.0, 0.25]]), Some(vec![[0.0, 0.0]]), "a border");
+        let square = vec![vec![[-1.0, 0.0], [-1.0, 1.0]]];
+        assert_eq!(
+            part_in(&square, &vec![[-0.5, 0.5], [0.5, 2.0]]),
+            Some(vec![[-0.5, 0.0], [0.5, 1.0]])
+        );
+        assert_eq!(part_in(&square, &vec![[-0.5, 0.5], [1.5, 2.0]]), None, "apart along one side");
+    }
+
+    #[test]
+    fn corners_of_cells_are_each_asked_once_with_the_form_there() {
+        let cells = vec![vec![[-1.0, 0.0], [0.0, 1.0]], vec![[0.0, 1.0], [0.0, 1.0]]];
+        let proof = MovingProof { inequalities: 0, cells };
+        let decrease = Decrease { gain_box: gain_box(), proof };
+        let corners = decrease.corners(&claim()).expect("corners");
+        let found: Vec<[f64; 4]> = corners
+            .iter()
+            .map(|corner| {
+                let Gains { kp, kd, .. } = corner.gains_middle();
+                let form = corner.form.midpoint();
+                [kp, kd, form.data()[0], form.data()[3]]
+            })
+            .collect();
+        // The form is 4 and half of kp, 8 and a quarter of kd, in half widths.
+        let expected = [
+            [1.0, 4.0, 3.5, 8.0],
+            [1.0, 6.0, 3.5, 8.25],
+            [2.0, 4.0, 4.0, 8.0],
+            [2.0, 6.0, 4.0, 8.25],
+            [3.0, 4.0, 4.5, 8.0],
+            [3.0, 6.0, 4.5, 8.25],
+        ];
+        assert_eq!(found, expected);
+    }
+
+    #[test]
+    fn a_gain_may_change_by_its_share_of_a_half_width_less_rounding() {
+        let proof = MovingProof { inequalities: 0, cells: Vec::new() };
+        let decrease = Decrease { gain_box: gain_box(), proof };
+        let allowed = decrease.allowed(&claim());
+        assert_eq!(allowed.iter().map(|(gain, _)| *gain).collect::<Vec<_>>(), [0, 2]);
+        for ((_, most), expected) in allowed.iter().zip([0.01, 1.0]) {
+            let found = most.lower();
+            assert!(found < expected && found > expected - 1e-12, "{found} {expected}");
+        }
+        let anyhow = BoundedRate { changes: [1.0, 2.0, 0.5], ..claim() };
+        let allowed = decrease.allowed(&anyhow);
+        assert_eq!(allowed.iter().map(|(gain, _)| *gain).collect::<Vec<_>>(), [2], "1 is any rate");
+    }
+}
