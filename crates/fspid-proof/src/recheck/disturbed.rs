@@ -422,12 +422,12 @@ mod tests {
         // Twice the pitch angle reaches 3 of 4, or 5 with what is beside it.
         let pitch = (row([2.0, 0.0]), 4.0);
         let told = up_to(Some(vec![pitch.clone()]), 0.0).expect("told");
-        assert!(told <= 4.0 / 3.0 && told >= 4.0 / 3.0 - 1e-9, "{told}");
+        assert!((4.0 / 3.0 - 1e-9..=4.0 / 3.0).contains(&told), "{told}");
         let told = up_to(Some(vec![pitch.clone()]), 2.0).expect("told");
-        assert!(told <= 0.8 && told >= 0.8 - 1e-9, "{told}");
+        assert!((0.8 - 1e-9..=0.8).contains(&told), "{told}");
         let nearer = (row([0.0, 1.0]), 1.0);
         let told = up_to(Some(vec![pitch.clone(), nearer]), 0.0).expect("told");
-        assert!(told <= 1.0 / 3.0 && told >= 1.0 / 3.0 - 1e-9, "{told}");
+        assert!((1.0 / 3.0 - 1e-9..=1.0 / 3.0).contains(&told), "{told}");
         for limit in [0.0, -1.0, f64::NAN] {
             assert_eq!(up_to(Some(vec![pitch.clone(), (row([0.0, 0.0]), limit)]), 0.0), None);
         }

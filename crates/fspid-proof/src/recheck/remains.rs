@@ -276,7 +276,7 @@ mod tests {
         assert!(found.upper() >= root && found.upper() <= root * (1.0 + 1e-12), "{found:?}");
         let wide = norm.of(&around([1.0, -2.0], 0.125)).expect("bounded").upper();
         // The largest of the corners, 1.125 and -2.125 without the product that is against it.
-        assert!(wide >= 3.55 && wide <= 4.2, "{wide}");
+        assert!((3.55..=4.2).contains(&wide), "{wide}");
     }
 
     /// $M$, the form that falls along it by the rate, and what a sample adds.
@@ -364,7 +364,7 @@ mod tests {
             entry: [1.0, 0.0],
         };
         let found = rippled(&case, 0.0);
-        assert!(found >= 1e6 * (1.0 - 1e-9) && found <= 1.011e6, "{found}");
+        assert!((1e6 * (1.0 - 1e-9)..=1.011e6).contains(&found), "{found}");
     }
 
     #[test]

@@ -1,11 +1,13 @@
 use fspid_core::{Fspid, Gains, InputScale, Law, Pid, PidConfig, SelfTuner, TunerSettings};
 use fspid_fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};
 use fspid_sim::actuator::{Actuator, Lag};
-use fspid_sim::loop_model::Sensing;
+use fspid_sim::loop_model::{BreakPoint, Sensing};
 use fspid_sim::{Controller, ElevatorSign};
 
 use super::*;
 use crate::description::LoopDescription;
+use crate::scope::{Asked, Range};
+use crate::{Effort, Verdict, certify};
 
 const NOMINAL: Gains<f64> = Gains { kp: 2.0, ki: 0.5, kd: 1.0 };
 const RULES: &str = "NB NB NB NB NB NB NB
@@ -122,4 +124,44 @@ fn gains_are_those_that_the_supervisor_makes_of_an_input_and_fixed_ones_stay() {
     let scale = InputScale { error_per_rad: 57.0, change_per_rad: 12.0 };
     let moved = produced(&Controller::SelfTuning(tuned(scale, Change::Rate)), [5.0, 0.0]);
     assert!(moved.kp > NOMINAL.kp && moved.ki > NOMINAL.ki && moved.kd > NOMINAL.kd, "{moved:?}");
+}
+
+/// The sum of what half a step of each sensor leaves at all later samples, in ordinary arithmetic, is what is bounded; with
+/// gains that may move the form's own bound is, which is wider.
+#[test]
+fn what_two_sensors_leave_of_a_motion_is_the_sum_of_what_each_of_their_samples_does() {
+    let config = PidConfig { rate_gain_s: 0.25, ..PidConfig::sampled_every(0.01) };
+    let pid = Pid::new(NOMINAL, config).expect("allowed");
+    let mut description = loop_of(Controller::Fixed(pid));
+    description.pitch.resolution = 2e-4;
+    description.rate.resolution = 5e-4;
+    let asked = Asked::within(Range { setpoint_rad: 0.5, load_rad: 0.0 });
+    let outcome = certify(&description, &asked, &Effort::default()).expect("provable");
+    let Verdict::Proved(certificate, rechecked) = outcome.verdict else { panic!("not proved") };
+    let model = description.enclosed().expect("enclosed").midpoint();
+    let matrix = model.closed_matrix(NOMINAL).expect("a loop");
+    let left = |point: BreakPoint, half_a_step: f64| {
+        let (mut state, mut sum) = (model.by_seen(point, NOMINAL), 0.0);
+        for _ in 0..200_000 {
+            sum += state[0].abs() * half_a_step;
+            let mut next = vec![0.0; state.len()];
+            matrix.apply(&state, &mut next).expect("as large");
+            state = next;
+        }
+        sum
+    };
+    let [of_pitch, of_rate] = [left(BreakPoint::Pitch, 1e-4), left(BreakPoint::Rate, 2.5e-4)];
+    assert!(of_pitch > 0.0 && of_rate > 0.1 * of_pitch, "{of_pitch} {of_rate}");
+    let sum = of_pitch + of_rate;
+    let remains = rechecked.remains_rad;
+    assert!(remains >= sum * (1.0 - 1e-9) && remains <= 1.02 * sum, "{remains} {sum}");
+    // A tenth of the set-points, and ten steps of the pitch sensor.
+    let within = |setpoint_rad: f64| {
+        let range = Range { setpoint_rad, load_rad: 0.0 };
+        Certificate { range, ..certificate.clone() }.check()
+    };
+    assert!(within(10.1 * remains).is_ok());
+    let told = within(0.0).err().map(|error| error.to_string());
+    let is_little = remains <= 10.0 * 2e-4;
+    assert_eq!(told.is_none(), is_little, "{told:?} {remains}");
 }
