@@ -1,5 +1,7 @@
 //! All integration tests in one binary: linking one takes less than linking many.
 
+use fspid_proof::LoopDescription;
+
 mod certify;
 mod check_definite;
 mod check_disturbed;
@@ -16,6 +18,7 @@ mod flown_proofs;
 mod gain_set;
 mod gain_set_common;
 mod moving_numbers;
+mod paper_loop;
 mod range;
 mod solve_growth;
 mod solve_loops;

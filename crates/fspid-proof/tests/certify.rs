@@ -4,42 +4,19 @@ use fspid_core::{
     ControllerSetting, Derivative, Fspid, GainCoupling, GainLimits, Gains, InputScale, InputSets,
     Law, Limits, Pid, PidConfig, ReferenceModel, SecondInput, SelfTuner, SetCentres, TunerSettings,
 };
-use fspid_fuzzy::{Defuzzifier, NumberTable, OutOfRange, RuleTable, Supervisor};
+use fspid_fuzzy::{NumberTable, OutOfRange, Supervisor};
 use fspid_lti::Matrix;
 use fspid_proof::gain_set::{IncrementCell, IncrementMap, IncrementSlopes};
 use fspid_proof::{
     Asked, Bearing, BoundedRate, Certificate, Claim, Effort, LeftOut, LoopDescription, NotProvable,
     Range, Verdict, certify,
 };
-use fspid_sim::actuator::{Actuator, Lag};
-use fspid_sim::loop_model::Sensing;
-use fspid_sim::{Controller, ElevatorSign};
+use fspid_sim::Controller;
 
-const NOMINAL: Gains<f64> = Gains { kp: 2.0, ki: 0.5, kd: 1.0 };
-/// Each gain rises with the error, and not with its change.
-const RISING: &str = "NB NB NB NB NB NB NB
-NM NM NM NM NM NM NM
-NS NS NS NS NS NS NS
-ZO ZO ZO ZO ZO ZO ZO
-PS PS PS PS PS PS PS
-PM PM PM PM PM PM PM
-PB PB PB PB PB PB PB";
+use crate::paper_loop::{NOMINAL, loop_of, rising};
 
 pub(crate) fn config() -> PidConfig<f64> {
     PidConfig { derivative: Derivative { filter_s: 0.05 }, ..PidConfig::sampled_every(0.01) }
-}
-
-/// The paper's 747 behind its servo.
-pub(crate) fn loop_of(controller: Controller) -> LoopDescription {
-    LoopDescription {
-        numerator: vec![-1.69144, -0.84341, -0.0099096],
-        denominator: vec![1.0, 1.17103, 1.55405, 0.012538, 0.0072771],
-        elevator_sign: ElevatorSign::NoseDownPositive,
-        actuator: Actuator::new(Lag::first_order(0.1).expect("allowed")),
-        pitch: Sensing::DIRECT,
-        rate: Sensing::DIRECT,
-        controller,
-    }
 }
 
 pub(crate) fn fixed(gains: Gains<f64>) -> Controller {
@@ -52,11 +29,9 @@ pub(crate) fn tuned(scale: Gains<f64>, law: Law<f64>) -> Controller {
 }
 
 fn with_inputs(input_scale: InputScale<f64>, scale: Gains<f64>, law: Law<f64>) -> Controller {
-    let table = RuleTable::parse([RISING; 3]).expect("a table");
-    let supervisor = Supervisor::new(&table, 5.0, Defuzzifier::Exact, OutOfRange::Clamp);
     let settings =
         TunerSettings { input_scale, output_scale: scale, law, ..TunerSettings::literal() };
-    let tuner = SelfTuner::new(NOMINAL, supervisor.expect("allowed"), settings).expect("allowed");
+    let tuner = SelfTuner::new(NOMINAL, rising(), settings).expect("allowed");
     Controller::SelfTuning(Fspid::new(tuner, config()).expect("allowed"))
 }
 
@@ -305,9 +280,7 @@ fn a_tuner_of_another_structure_is_proved_as_what_it_is() {
     let uneven = InputSets { error: SetCentres::new(0.2, 0.5).ok(), change: None };
     let output_scale = Gains { kp: 0.09, ki: 0.02, kd: 0.045 };
     let proved = |settings: TunerSettings<f64>| {
-        let table = RuleTable::parse([RISING; 3]).expect("a table");
-        let supervisor = Supervisor::new(&table, 5.0, Defuzzifier::Exact, OutOfRange::Clamp);
-        let tuner = SelfTuner::new(NOMINAL, supervisor.expect("allowed"), settings);
+        let tuner = SelfTuner::new(NOMINAL, rising(), settings);
         let fspid = Fspid::new(tuner.expect("allowed"), config()).expect("allowed");
         let certificate = proved(&loop_of(Controller::SelfTuning(fspid)));
         certificate.check().expect("it holds")
@@ -328,9 +301,7 @@ fn a_tuner_of_another_structure_is_proved_as_what_it_is() {
     assert!(proved(TunerSettings { gain_coupling, law, ..plain }).cells == 1);
     let wild = GainCoupling { setpoint_weight: 0.0, rate_gain: -40.0 };
     let settings = TunerSettings { gain_coupling: wild, law, ..plain };
-    let table = RuleTable::parse([RISING; 3]).expect("a table");
-    let supervisor = Supervisor::new(&table, 5.0, Defuzzifier::Exact, OutOfRange::Clamp);
-    let tuner = SelfTuner::new(NOMINAL, supervisor.expect("allowed"), settings).expect("allowed");
+    let tuner = SelfTuner::new(NOMINAL, rising(), settings).expect("allowed");
     let wild = Controller::SelfTuning(Fspid::new(tuner, config()).expect("allowed"));
     let outcome = certify(&loop_of(wild), &Asked::rest(), &quick()).expect("provable");
     assert!(!matches!(outcome.verdict, Verdict::Proved(..)), "{outcome:?}");

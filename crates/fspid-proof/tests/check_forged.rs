@@ -11,13 +11,21 @@ use fspid_proof::{
 };
 use fspid_sim::Controller;
 
-use crate::certify::{config, fixed, loop_of, proved, quick, tuned};
+use crate::certify::{config, fixed, proved, quick, tuned};
+use crate::paper_loop::{NOMINAL, loop_of};
 
 const SCALE: Gains<f64> = Gains { kp: 0.09, ki: 0.02, kd: 0.045 };
-const NOMINAL: Gains<f64> = Gains { kp: 2.0, ki: 0.5, kd: 1.0 };
 
 fn good() -> Certificate {
     proved(&loop_of(tuned(SCALE, Law::Memoryless)))
+}
+
+/// The loop at a gain at which it grows.
+fn growing() -> Certificate {
+    let unstable = loop_of(fixed(Gains { kp: 10.0, ki: 0.0, kd: 0.0 }));
+    let outcome = certify(&unstable, &Asked::rest(), &quick()).expect("provable");
+    let Verdict::Refuted(grows, _) = outcome.verdict else { panic!("{outcome:?}") };
+    grows
 }
 
 fn form_of(certificate: &Certificate) -> Matrix {
@@ -101,9 +109,7 @@ fn a_box_of_gains_that_move_holds_every_gain_of_the_law() {
 
 #[test]
 fn growth_is_at_least_one_and_bounds_no_disturbance_and_no_step() {
-    let unstable = loop_of(fixed(Gains { kp: 10.0, ki: 0.0, kd: 0.0 }));
-    let outcome = certify(&unstable, &Asked::rest(), &quick()).expect("provable");
-    let Verdict::Refuted(grows, _) = outcome.verdict else { panic!("{outcome:?}") };
+    let grows = growing();
     let Claim::FrozenGrowth { input, factor, form, direction } = grows.claim.clone() else {
         panic!("{:?}", grows.claim)
     };
@@ -184,9 +190,7 @@ fn inequalities_are_counted() {
     let count = |certificate: &Certificate| certificate.check().expect("it holds").inequalities;
     assert_eq!(count(&proved(&loop_of(fixed(NOMINAL)))), 2);
     assert_eq!(count(&limited()), 5, "output, command and rate of the servo have limits");
-    let unstable = loop_of(fixed(Gains { kp: 10.0, ki: 0.0, kd: 0.0 }));
-    let outcome = certify(&unstable, &Asked::rest(), &quick()).expect("provable");
-    let Verdict::Refuted(grows, _) = outcome.verdict else { panic!("{outcome:?}") };
+    let grows = growing();
     assert_eq!(count(&grows), 2, "that the form falls, and that it is above zero along a motion");
 
     let good = good();
@@ -200,13 +204,13 @@ fn inequalities_are_counted() {
 fn the_end_of_a_step_is_a_form_that_falls_within_its_limits_in_a_loop_that_is_stable() {
     let good = limited();
     let steps = good.steps.clone().expect("steps are proved");
-    assert!(good.check().expect("it holds").stepped.is_some());
+    let rechecked = good.check().expect("it holds");
+    assert!(rechecked.stepped.is_some() && rechecked.ended.is_some());
     let with = |change: &dyn Fn(&mut Terminal)| {
         let mut terminal = steps.terminal.clone();
         change(&mut terminal);
         refused(&Certificate { steps: Some(Steps { terminal, ..steps.clone() }), ..good.clone() })
     };
-    assert!(good.check().expect("it holds").ended.is_some());
     let still = with(&|it| it.rate = 1.0);
     assert!(still.contains("near rest something remains"), "{still}");
     for rate in [0.0, 1.0 + 1e-9, f64::NAN] {
@@ -218,10 +222,8 @@ fn the_end_of_a_step_is_a_form_that_falls_within_its_limits_in_a_loop_that_is_st
     let turned = with(&|it| it.form = it.form.scaled(-1.0));
     assert!(turned.contains("not positive definite"), "{turned}");
 
-    let unstable = loop_of(fixed(Gains { kp: 10.0, ki: 0.0, kd: 0.0 }));
-    let outcome = certify(&unstable, &Asked::rest(), &quick()).expect("provable");
-    let Verdict::Refuted(grows, _) = outcome.verdict else { panic!("{outcome:?}") };
-    let size = unstable.states();
+    let grows = growing();
+    let size = grows.description.states();
     let terminal = Terminal { form: Matrix::identity(size), ..steps.terminal.clone() };
     let told = refused(&Certificate { steps: Some(Steps { terminal, ..steps }), ..grows });
     assert!(told.contains("not claimed to be stable"), "{told}");

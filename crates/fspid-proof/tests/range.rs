@@ -4,24 +4,15 @@ use fspid_core::{
     Derivative, Fspid, Gains, Guard, InputScale, IntegralForm, Law, Pid, PidConfig, SelfTuner,
     SetpointWeights, TunerSettings,
 };
-use fspid_fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};
 use fspid_proof::{
     Asked, Certificate, Effort, LoopDescription, Outcome, Range, Rechecked, Verdict, certify,
 };
+use fspid_sim::Controller;
 use fspid_sim::actuator::{Actuator, Lag};
-use fspid_sim::loop_model::Sensing;
-use fspid_sim::{Controller, ElevatorSign};
+
+use crate::paper_loop::{NOMINAL, loop_of, rising};
 
 const DEG: f64 = core::f64::consts::PI / 180.0;
-const NOMINAL: Gains<f64> = Gains { kp: 2.0, ki: 0.5, kd: 1.0 };
-/// Each gain rises with the error, and not with its change.
-const RISING: &str = "NB NB NB NB NB NB NB
-NM NM NM NM NM NM NM
-NS NS NS NS NS NS NS
-ZO ZO ZO ZO ZO ZO ZO
-PS PS PS PS PS PS PS
-PM PM PM PM PM PM PM
-PB PB PB PB PB PB PB";
 
 fn config() -> PidConfig<f64> {
     PidConfig { derivative: Derivative { filter_s: 0.05 }, ..PidConfig::sampled_every(0.01) }
@@ -30,19 +21,6 @@ fn config() -> PidConfig<f64> {
 fn weighted(weight: f64) -> PidConfig<f64> {
     let setpoint_weights = SetpointWeights { proportional: weight, derivative: 1.0 };
     PidConfig { setpoint_weights, ..config() }
-}
-
-/// The paper's 747 behind its servo.
-fn loop_of(controller: Controller) -> LoopDescription {
-    LoopDescription {
-        numerator: vec![-1.69144, -0.84341, -0.0099096],
-        denominator: vec![1.0, 1.17103, 1.55405, 0.012538, 0.0072771],
-        elevator_sign: ElevatorSign::NoseDownPositive,
-        actuator: Actuator::new(Lag::first_order(0.1).expect("allowed")),
-        pitch: Sensing::DIRECT,
-        rate: Sensing::DIRECT,
-        controller,
-    }
 }
 
 fn pitch_per_command() -> f64 {
@@ -54,15 +32,13 @@ fn fixed(config: PidConfig<f64>) -> LoopDescription {
 }
 
 fn tuned(config: PidConfig<f64>, law: Law<f64>, nominal: Gains<f64>) -> LoopDescription {
-    let table = RuleTable::parse([RISING; 3]).expect("a table");
-    let supervisor = Supervisor::new(&table, 5.0, Defuzzifier::Exact, OutOfRange::Clamp);
     let settings = TunerSettings {
         input_scale: InputScale { error_per_rad: 57.0, change_per_rad: 12.0 },
         output_scale: Gains { kp: 0.09, ki: 0.02 * nominal.ki, kd: 0.045 },
         law,
         ..TunerSettings::literal()
     };
-    let tuner = SelfTuner::new(nominal, supervisor.expect("allowed"), settings).expect("allowed");
+    let tuner = SelfTuner::new(nominal, rising(), settings).expect("allowed");
     loop_of(Controller::SelfTuning(Fspid::new(tuner, config).expect("allowed")))
 }
 

@@ -1,26 +1,18 @@
 use fspid_core::{Fspid, Gains, InputScale, Law, Pid, PidConfig, SelfTuner, TunerSettings};
-use fspid_fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};
-use fspid_sim::actuator::{Actuator, Lag};
-use fspid_sim::loop_model::{BreakPoint, Sensing};
-use fspid_sim::{Controller, ElevatorSign};
+use fspid_sim::Controller;
+use fspid_sim::loop_model::BreakPoint;
 
 use super::*;
 use crate::description::LoopDescription;
 use crate::scope::{Asked, Range};
 use crate::{Effort, Verdict, certify};
+use paper_loop::{NOMINAL, loop_of, rising};
 
-const NOMINAL: Gains<f64> = Gains { kp: 2.0, ki: 0.5, kd: 1.0 };
-const RULES: &str = "NB NB NB NB NB NB NB
-NM NM NM NM NM NM NM
-NS NS NS NS NS NS NS
-ZO ZO ZO ZO ZO ZO ZO
-PS PS PS PS PS PS PS
-PM PM PM PM PM PM PM
-PB PB PB PB PB PB PB";
+#[path = "../../tests/paper_loop.rs"]
+#[allow(clippy::expect_used, reason = "shared with a test")]
+mod paper_loop;
 
 fn tuned(input_scale: InputScale<f64>, change: Change) -> Fspid<f64> {
-    let table = RuleTable::parse([RULES; 3]).expect("a table");
-    let supervisor = Supervisor::new(&table, 5.0, Defuzzifier::Exact, OutOfRange::Clamp);
     let settings = TunerSettings {
         input_scale,
         output_scale: Gains { kp: 0.09, ki: 0.02, kd: 0.045 },
@@ -28,20 +20,8 @@ fn tuned(input_scale: InputScale<f64>, change: Change) -> Fspid<f64> {
         change,
         ..TunerSettings::literal()
     };
-    let tuner = SelfTuner::new(NOMINAL, supervisor.expect("allowed"), settings).expect("allowed");
+    let tuner = SelfTuner::new(NOMINAL, rising(), settings).expect("allowed");
     Fspid::new(tuner, PidConfig::sampled_every(0.01)).expect("allowed")
-}
-
-fn loop_of(controller: Controller) -> LoopDescription {
-    LoopDescription {
-        numerator: vec![-1.69144, -0.84341, -0.0099096],
-        denominator: vec![1.0, 1.17103, 1.55405, 0.012538, 0.0072771],
-        elevator_sign: ElevatorSign::NoseDownPositive,
-        actuator: Actuator::new(Lag::first_order(0.1).expect("allowed")),
-        pitch: Sensing::DIRECT,
-        rate: Sensing::DIRECT,
-        controller,
-    }
 }
 
 /// States of which none is zero, each another than the others.
@@ -126,14 +106,13 @@ fn gains_are_those_that_the_supervisor_makes_of_an_input_and_fixed_ones_stay() {
     assert!(moved.kp > NOMINAL.kp && moved.ki > NOMINAL.ki && moved.kd > NOMINAL.kd, "{moved:?}");
 }
 
-/// The sum of what half a step of each sensor leaves at all later samples, in ordinary arithmetic, is what is bounded; with
-/// gains that may move the form's own bound is, which is wider.
+/// The sum of what half a step of each sensor leaves at all later samples, in ordinary arithmetic, is what is bounded.
 #[test]
 fn what_two_sensors_leave_of_a_motion_is_the_sum_of_what_each_of_their_samples_does() {
     let config = PidConfig { rate_gain_s: 0.25, ..PidConfig::sampled_every(0.01) };
     let pid = Pid::new(NOMINAL, config).expect("allowed");
     let mut description = loop_of(Controller::Fixed(pid));
-    description.pitch.resolution = 2e-4;
+    description.pitch.resolution = 1e-6;
     description.rate.resolution = 5e-4;
     let asked = Asked::within(Range { setpoint_rad: 0.5, load_rad: 0.0 });
     let outcome = certify(&description, &asked, &Effort::default()).expect("provable");
@@ -150,18 +129,25 @@ fn what_two_sensors_leave_of_a_motion_is_the_sum_of_what_each_of_their_samples_d
         }
         sum
     };
-    let [of_pitch, of_rate] = [left(BreakPoint::Pitch, 1e-4), left(BreakPoint::Rate, 2.5e-4)];
-    assert!(of_pitch > 0.0 && of_rate > 0.1 * of_pitch, "{of_pitch} {of_rate}");
+    let [of_pitch, of_rate] = [left(BreakPoint::Pitch, 5e-7), left(BreakPoint::Rate, 2.5e-4)];
+    assert!(of_pitch > 0.0 && of_rate > of_pitch, "{of_pitch} {of_rate}");
     let sum = of_pitch + of_rate;
     let remains = rechecked.remains_rad;
     assert!(remains >= sum * (1.0 - 1e-9) && remains <= 1.02 * sum, "{remains} {sum}");
-    // A tenth of the set-points, and ten steps of the pitch sensor.
+    // Of the set-points a tenth may remain; ten steps of the pitch sensor are less.
+    assert!(remains > 2.0 * 10.0 * description.pitch.resolution, "{remains}");
     let within = |setpoint_rad: f64| {
         let range = Range { setpoint_rad, load_rad: 0.0 };
         Certificate { range, ..certificate.clone() }.check()
     };
-    assert!(within(10.1 * remains).is_ok());
-    let told = within(0.0).err().map(|error| error.to_string());
-    let is_little = remains <= 10.0 * 2e-4;
-    assert_eq!(told.is_none(), is_little, "{told:?} {remains}");
+    within(10.0 * remains * (1.0 + 1e-9)).expect("a tenth");
+    let told = within(10.0 * remains * (1.0 - 1e-6)).expect_err("more").to_string();
+    assert!(told.contains("which says nothing of a flight"), "{told}");
+    // And where those are more, they.
+    description.pitch.resolution = 2e-3;
+    description.rate.resolution = 0.0;
+    let outcome = certify(&description, &asked, &Effort::default()).expect("provable");
+    let Verdict::Proved(certificate, rechecked) = outcome.verdict else { panic!("not proved") };
+    assert!(rechecked.remains_rad < 10.0 * 2e-3, "{}", rechecked.remains_rad);
+    Certificate { range: Range::REST, ..certificate }.check().expect("within ten steps");
 }

@@ -11,6 +11,7 @@ use super::crew::side_by_side;
 use super::flights::{Beginning, Landed, Patch, Set, Way};
 use super::joined::Joined;
 use super::sample::{Flight, Stop};
+use super::sweep::Sweep;
 use super::terminal::Terminal;
 use super::work::{Flights, most_checked};
 use super::{Checked, Search, given_up, is_odd, sees_loads_at_once};
@@ -25,10 +26,8 @@ pub const MOST_LEG_SETS: usize = 1024;
 pub const MOST_LEG_PARTS: usize = 1024;
 /// The narrowest part, as a share of the whole.
 const NARROWEST: f64 = 1.0 / 512.0;
-/// Where a search begins: with the whole in so many parts.
-const BEGINS: f64 = 8.0;
-/// A part that was flown at once is followed by one so many times as wide.
-const WIDER: f64 = 1.5;
+/// Where a search begins: with a part of such a share of the whole.
+const BEGINS: f64 = 0.125;
 /// Parts of the loads where both change in a leg.
 const BOTH: u8 = 8;
 /// Shares of what is commanded that are tried.
@@ -317,22 +316,13 @@ fn swept(
     fly: &mut dyn FnMut([f64; 2]) -> Result<(), Stop>,
 ) -> Result<Vec<f64>, Stop> {
     let whole = most - least;
-    let (mut ends, mut at, mut width) = (vec![least], least, whole / BEGINS);
-    let mut halved = false;
-    while at < most || ends.len() < 2 {
-        let next = if at + width >= most { most } else { at + width };
-        match fly([at, next]) {
-            Ok(()) if ends.len() <= MOST_LEG_PARTS => {
-                // Twice as wide was too wide just now.
-                width = if halved { next - at } else { WIDER * (next - at) };
-                halved = false;
-                at = next;
-                ends.push(next);
-            }
+    let (mut ends, mut sweep) = (vec![least], Sweep::over([least, most], BEGINS));
+    while !sweep.is_over() || ends.len() < 2 {
+        match fly(sweep.piece()) {
+            Ok(()) if ends.len() <= MOST_LEG_PARTS => ends.push(sweep.flown()),
             Ok(()) => return Err(Stop::Lost),
             Err(stop) => {
-                width = 0.5 * (next - at);
-                halved = true;
+                let width = sweep.given_up();
                 if !(width >= NARROWEST * whole && width > 0.0) {
                     return Err(stop);
                 }

@@ -4,6 +4,7 @@ use super::commands::Commands;
 use super::crew::side_by_side;
 use super::flights::{Beginning, Landed, Patch, Way};
 use super::sample::Stop;
+use super::sweep::Sweep;
 use super::terminal::Terminal;
 use super::work::{Flights, most_checked};
 use super::{Checked, Search, given_up, is_odd, remembers, sees_loads_at_once};
@@ -14,8 +15,8 @@ use crate::scope::Range;
 pub const MOST_PIECES: usize = 4096;
 /// Most parts of the loads.
 pub const MOST_LOADS: usize = 64;
-/// A box that was flown at once is followed by one so many times as wide.
-const WIDER: f64 = 1.5;
+/// Where a search begins: with a box of such a share of the set-points.
+const BEGINS: f64 = 0.25;
 /// The narrowest box that is flown, as a share of the set-points that are asked for.
 const NARROWEST: f64 = 1.0 / 2048.0;
 
@@ -88,29 +89,20 @@ impl Boxes<'_> {
     /// Boxes from zero outwards to one side, as far as they are flown within the work of a re-check.
     fn side(&mut self, to: f64, allowed: usize) -> Vec<f64> {
         let mut ends = vec![0.0];
-        let (mut at, mut width, mut of_check) = (0.0_f64, 0.25 * to, 0);
-        let mut halved = false;
-        while at.abs() < to.abs() && ends.len() < MOST_PIECES / 2 {
-            let next = if (at + width).abs() >= to.abs() { to } else { at + width };
-            let piece = if to < 0.0 { [next, at] } else { [at, next] };
+        let (mut sweep, mut of_check) = (Sweep::over([0.0, to], BEGINS), 0);
+        while !sweep.is_over() && ends.len() < MOST_PIECES / 2 {
+            let [from, next] = sweep.piece();
             let before = self.flights.flown;
-            let landed = self.pieces([piece]);
-            if landed.is_ok() {
+            if self.pieces([[from.min(next), from.max(next)]]).is_ok() {
                 of_check += self.flights.flown - before;
                 if of_check > allowed {
                     break;
                 }
-                ends.push(next);
-                at = next;
-                // Twice as wide was too wide just now.
-                width *= if halved { 1.0 } else { WIDER };
-                halved = false;
-            } else {
-                width *= 0.5;
-                halved = true;
-                if width.abs() < NARROWEST * to.abs() || self.flights.flown > self.flights.most {
-                    break;
-                }
+                ends.push(sweep.flown());
+            } else if sweep.given_up() < NARROWEST * to.abs()
+                || self.flights.flown > self.flights.most
+            {
+                break;
             }
         }
         ends

@@ -22,6 +22,7 @@ mod joined;
 mod near;
 mod sample;
 mod servo;
+mod sweep;
 mod terminal;
 #[cfg(test)]
 mod tests;
