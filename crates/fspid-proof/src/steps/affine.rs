@@ -36,6 +36,11 @@ pub(super) struct Parts {
 /// Magnitudes that are summed side by side: one sum would wait for each of its terms.
 const LANES: usize = 8;
 
+/// What is less belongs to the number alone, as rounding does. Bounds are raised by the smallest normal number, so that what
+/// is nothing at all is still more than zero; as an unknown it would be denormal a sample later, and a processor takes a
+/// hundred times as long to multiply that.
+const SMALLEST: f64 = 1e-150;
+
 /// Unknowns that a sample adds, about.
 const NEWER: usize = 16;
 
@@ -109,17 +114,19 @@ impl Affine {
         Self { centre: whole.midpoint(), parts: parts.into(), off: 0.0, of_ball: 0.0 }
     }
 
-    /// The number with an unknown of its own.
-    pub(super) fn and_noise(mut self, radius: f64, symbol: usize) -> Self {
-        if radius > 0.0 {
-            let Parts { by, spread } = &mut self.parts;
-            if by.len() <= symbol {
-                by.resize(symbol + 1, 0.0);
-            }
-            by[symbol] += radius;
-            self.off += 2.0 * ROUNDING * by[symbol].abs();
-            *spread = raised(*spread + radius, 2);
+    /// The number with an unknown of its own, which `symbol` gives where one is worth it.
+    pub(super) fn and_noise(mut self, radius: f64, symbol: &mut dyn FnMut() -> usize) -> Self {
+        if radius < SMALLEST {
+            return self.and_off(radius);
         }
+        let symbol = symbol();
+        let Parts { by, spread } = &mut self.parts;
+        if by.len() <= symbol {
+            by.resize(symbol + 1, 0.0);
+        }
+        by[symbol] += radius;
+        self.off += 2.0 * ROUNDING * by[symbol].abs();
+        *spread = raised(*spread + radius, 2);
         self
     }
 
@@ -243,7 +250,7 @@ mod tests {
                 spread >= whole && spread <= whole * (1.0 + 1e-12) + 1e-300,
                 "{count}: {spread}"
             );
-            let wider = number.clone().and_noise(0.75, count + 2);
+            let wider = number.clone().and_noise(0.75, &mut || count + 2);
             let spread = wider.spread();
             assert!(spread >= whole + 0.75 && spread <= (whole + 0.75) * (1.0 + 1e-12), "{count}");
             assert_eq!(wider.parts.of(count + 2).to_bits(), 0.75_f64.to_bits());

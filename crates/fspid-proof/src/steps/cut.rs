@@ -51,7 +51,7 @@ impl Line {
     }
 
     /// The number on its line, with an unknown of its own where there is a width.
-    pub(super) fn of(&self, value: &Affine, symbol: usize) -> Affine {
+    pub(super) fn of(&self, value: &Affine, symbol: &mut dyn FnMut() -> usize) -> Affine {
         let constant = Affine::constant(self.offset);
         let line = Affine::sum([(Interval::point(self.slope), value), (Interval::ONE, &constant)]);
         line.and_noise(self.half, symbol)

@@ -323,6 +323,10 @@ impl<'a> Ready<'a> {
             (0..OWN).chain(sizes.iter().map(|(_, symbol)| *symbol)).collect();
         kept.sort_unstable();
         let mut symbols = kept.len();
+        let mut symbol = || {
+            symbols += 1;
+            symbols - 1
+        };
         // Of the ball what it adds to each state: unknowns are followed, where a ball only grows with what moves by it.
         for (value, reach) in flight.values.iter_mut().zip(&self.flown.reach) {
             value.of_ball = raised(reach * flight.ball, 2);
@@ -334,8 +338,7 @@ impl<'a> Ready<'a> {
             let sum = raised(sum + value.off + value.of_ball, gone.len() + 2);
             let parts = kept.iter().map(|symbol| value.parts.of(*symbol)).collect();
             let whole = Affine { centre: value.centre, parts, off: 0.0, of_ball: 0.0 };
-            *value = whole.and_noise(sum, symbols);
-            symbols += 1;
+            *value = whole.and_noise(sum, &mut symbol);
         }
         flight.symbols = symbols;
     }

@@ -88,11 +88,10 @@ impl Joined {
             let whole =
                 Affine::sum([(by_setpoint, &setpoint), (by_load, &load), (Interval::ONE, &middle)]);
             let radius = (*left - Interval::point(left.midpoint())).magnitude();
-            if radius > 0.0 {
+            whole.and_noise(radius, &mut || {
                 symbols += 1;
-                return whole.and_noise(radius, symbols - 1);
-            }
-            whole
+                symbols - 1
+            })
         };
         let mut numbers = self.numbers.iter().map(&mut number);
         let values: Vec<Affine> = numbers.by_ref().take(like.values.len()).collect();

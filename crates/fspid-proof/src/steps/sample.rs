@@ -233,9 +233,12 @@ impl Pass<'_, '_> {
         value
     }
 
-    fn symbol(&mut self) -> usize {
-        self.symbols += 1;
-        self.symbols - 1
+    /// Gives new unknowns.
+    fn symbols(&mut self) -> impl FnMut() -> usize {
+        || {
+            self.symbols += 1;
+            self.symbols - 1
+        }
     }
 
     /// A number behind a limit.
@@ -251,8 +254,7 @@ impl Pass<'_, '_> {
         }
         // A slope may be rounded to 1 where something is cut.
         self.shares[place] *= line.slope.min(1.0_f64.next_down());
-        let symbol = if line.half > 0.0 { self.symbol() } else { 0 };
-        line.of(value, symbol)
+        line.of(value, &mut self.symbols())
     }
 
     fn seen(&mut self, moment: Moment) -> Result<Seen, Stop> {
@@ -281,12 +283,7 @@ impl Pass<'_, '_> {
             Shown { error: &error, change: &of_error, pitch: &pitch, setpoint: &self.now.setpoint };
         let tuned = match (self.judge, &self.flown.tuner, &self.now.tuned) {
             (Judge::Measured, Some(tuner), Some(now)) => {
-                let symbols = &mut self.symbols;
-                let mut symbol = || {
-                    *symbols += 1;
-                    *symbols - 1
-                };
-                Some(tuner.after(now, &shown, &mut symbol))
+                Some(tuner.after(now, &shown, &mut self.symbols()))
             }
             _ => None,
         };
@@ -340,9 +337,8 @@ impl Pass<'_, '_> {
         let before = self.flown.layout.integral.map(|place| self.state(place));
         let (added, most) = self.multiplied(seen, 1, &seen.error);
         let (mut added, most) = (added.times(dt_s), raised(most * config.dt_s, 2));
-        if most > 0.0 && before.is_some() {
-            let symbol = self.symbol();
-            added = added.and_noise(most, symbol);
+        if before.is_some() {
+            added = added.and_noise(most, &mut self.symbols());
         }
         let wound = before.as_ref().map(|before| before.plus(&added));
         let mut term = wound.clone();
@@ -357,7 +353,7 @@ impl Pass<'_, '_> {
         let (damping, by_rate) = self.damped(seen);
         let derivative = seen.derivative.as_ref().unwrap_or(&nothing);
         let (derivative, by_kd) = self.multiplied(seen, 2, derivative);
-        let mut free = Affine::sum([
+        let free = Affine::sum([
             (Interval::ONE, &proportional),
             (-Interval::ONE, &damping),
             (point(config.feedforward), &self.now.setpoint),
@@ -365,10 +361,7 @@ impl Pass<'_, '_> {
             (Interval::ONE, &derivative),
         ]);
         let most = raised(by_kp + by_kd + by_rate, 4);
-        if by_kp > 0.0 || by_kd > 0.0 || by_rate > 0.0 {
-            let symbol = self.symbol();
-            free = free.and_noise(most, symbol);
-        }
+        let free = free.and_noise(most, &mut self.symbols());
         let command = self.limited(&free);
         let excess = (self.shares[COMMAND] < 1.0).then(|| free.less(&command));
         let integral = match (&config.anti_windup, wound, before) {
@@ -440,8 +433,7 @@ impl Pass<'_, '_> {
         self.shares[INTEGRAL] *= share;
         let kept = Affine::sum([(Interval::ONE, before), (point(share), added)]);
         if share > 0.0 && share < 1.0 && matches!(self.judge, Judge::Measured) {
-            let symbol = self.symbol();
-            return kept.and_noise(raised(0.5 * added.magnitude(), 2), symbol);
+            return kept.and_noise(raised(0.5 * added.magnitude(), 2), &mut self.symbols());
         }
         kept
     }
@@ -483,9 +475,7 @@ impl Pass<'_, '_> {
             return Ok(free(self));
         }
         self.shares[RATE] = share;
-        let from = self.symbols;
-        self.symbols += lines.iter().filter(|line| line.half > 0.0).count();
-        let mut symbol = from;
+        let mut symbols = self.symbols();
         let rows = flown.plant.iter().zip(lines).zip(curve.linear());
         // Where the deflection stands, and beside it what the gap adds.
         let still = &values[states - 1];
@@ -493,8 +483,7 @@ impl Pass<'_, '_> {
             .map(|((row, line), linear)| {
                 let own = all(row, None);
                 let held = Affine::sum([(Interval::ONE, &own), (row[states], still)]);
-                let added = line.of(&gap, symbol);
-                symbol += usize::from(line.half > 0.0);
+                let added = line.of(&gap, &mut symbols);
                 let apart = (point(line.slope) - point(share) * *linear).magnitude();
                 held.plus(&added).and_off(raised(apart * gap.of_ball, 4))
             })

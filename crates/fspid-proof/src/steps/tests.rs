@@ -67,6 +67,10 @@ fn held(
         let moment = if begins { Moment::First } else { Moment::Later };
         let Ok(passage) = loop_.pass(&set, moment, Judge::Measured) else { return (sample, set) };
         set = passage.flight;
+        let remembered = set.tuned.iter().flat_map(tuned::Tuned::each);
+        let parts = set.values.iter().chain(remembered).flat_map(|value| value.parts.each());
+        let denormal = parts.filter(|part| part.is_subnormal()).count();
+        assert_eq!(denormal, 0, "{}: sample {sample}", scenario.name);
         // Sets so wide say nothing any more.
         if set.symbols > 800 || range.width() > 1.0 {
             return (sample, set);
@@ -165,6 +169,9 @@ fn a_set_of_flights_holds_every_flight_of_the_simulator() {
             let (samples, ended) = held(&loop_, &scenario, patch, moment);
             compared += samples;
             limited += usize::from(ended.limited);
+            // Where nothing is cut and gains stand still, set-point and load are all that is not known.
+            let free = !ended.limited && matches!(controller, Controller::Fixed(_));
+            assert!(!free || ended.symbols == sample::OWN, "{seed}: {} unknowns", ended.symbols);
         }
     }
     assert!(compared > 1000 && limited > 15, "{compared} samples, {limited} sets at limits");

@@ -132,14 +132,12 @@ impl<'a> Tuner<'a> {
                 (Interval::ONE, &constant),
             ]);
             let radius = (beside - middle).magnitude();
-            let free = if radius > 0.0 { free.and_noise(radius, symbol()) } else { free };
-            let free = free.owned();
+            let free = free.and_noise(radius, symbol).owned();
             let within = Line::clamped(free.range(), own.lower, own.upper);
             if within == Line::SAME {
                 return free;
             }
-            let place = if within.half > 0.0 { symbol() } else { 0 };
-            within.of(&free, place).owned()
+            within.of(&free, symbol).owned()
         });
         Tuned { gains, model: self.model_after(now, shown.setpoint) }
     }
