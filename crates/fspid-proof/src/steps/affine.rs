@@ -130,6 +130,18 @@ impl Affine {
         self
     }
 
+    /// The number with another one in place of an unknown.
+    pub(super) fn with(&self, symbol: usize, unknown: &Self) -> Self {
+        let by = self.parts.of(symbol);
+        if by == 0.0 {
+            return self.clone();
+        }
+        let mut parts = self.parts.by.clone();
+        parts[symbol] = 0.0;
+        let others = Self { parts: parts.into(), ..self.clone() };
+        Self::sum([(Interval::ONE, &others), (Interval::point(by), unknown)])
+    }
+
     /// The number with more that is its own.
     pub(super) fn and_off(mut self, off: f64) -> Self {
         self.off = raised(self.off + off, 2);

@@ -2,14 +2,15 @@
 //!
 //! They are flown in legs: a new one where, after a pause, something else changes than before. A leg begins with what the flights
 //! before have come to, sets with like gains joined to one ([`super::joined`]), each divided along what changes: a step under a
-//! load takes as many sets as load and step each for itself, times the groups of gains that loads leave, not their product.
+//! load takes as many sets as load and step each for itself, times the groups of gains that loads leave, not their product. A
+//! group that cannot be flown is halved, until its sets are flown on one by one, which then forget nothing.
 
 use fspid_numeric::scalar::Interval;
 
 use super::commands::{Along, Commands};
 use super::crew::side_by_side;
 use super::flights::{Beginning, Landed, Patch, Set, Way};
-use super::joined::Joined;
+use super::joined::{Joined, narrowed};
 use super::sample::{Flight, Stop};
 use super::sweep::Sweep;
 use super::terminal::Terminal;
@@ -33,11 +34,10 @@ const BOTH: u8 = 8;
 /// Shares of what is commanded that are tried.
 const TRIED: [f64; 3] = [1.0, 0.5, 0.25];
 /// How finely, one after the other: wide parts and groups are few, and narrow ones leave the next leg more.
-const FINENESS: [Fineness; 3] = [
-    Fineness { apart: 0.01, gains: 0.1 },
-    Fineness { apart: 0.003, gains: 0.04 },
-    Fineness { apart: 0.0005, gains: 0.012 },
-];
+const FINENESS: [Fineness; 2] =
+    [Fineness { apart: 0.01, gains: 0.1 }, Fineness { apart: 0.003, gains: 0.04 }];
+/// Each of these searches may take such a part of all that searches may.
+const EACH: f64 = 0.1;
 /// The gains of a part of a group may be apart so much of what those of the group may.
 const OF_GROUP: f64 = 0.5;
 
@@ -119,10 +119,19 @@ impl Group {
     }
 }
 
-/// What a group begins with: everything that its sets have come to, `like` one of their flights.
+/// Where flights of a group come from.
+enum Origin {
+    /// Rest at the trim, all of them.
+    Rest(Flight),
+    /// One set.
+    Alone(Set),
+    /// Everything that several sets have come to, beside one of their flights.
+    Joined(Joined, Flight),
+}
+
+/// What a group begins with.
 struct Start {
-    joined: Option<Joined>,
-    like: Flight,
+    origin: Origin,
     from: usize,
     /// The sets, and all set-points and loads of theirs.
     of: Vec<usize>,
@@ -137,15 +146,17 @@ struct Course<'a> {
 
 impl Course<'_> {
     fn start(self, flights: &mut Flights<'_>, whole: Patch) -> Start {
-        let like = flights.begun(Beginning::Controller);
-        Start { joined: None, like, from: 0, of: Vec::new(), whole }
+        let origin = Origin::Rest(flights.begun(Beginning::Controller));
+        Start { origin, from: 0, of: Vec::new(), whole }
     }
 
     fn begun(self, flights: &mut Flights<'_>, start: &Start, patch: Patch) -> Flight {
         flights.forget();
-        let Start { joined, like, from, .. } = start;
-        let of = |joined: &Joined| joined.flight(like, self.commands, patch, *from);
-        joined.as_ref().map_or_else(|| like.clone(), of)
+        match &start.origin {
+            Origin::Rest(flight) => flight.clone(),
+            Origin::Alone(set) => narrowed(set, patch),
+            Origin::Joined(joined, like) => joined.flight(like, self.commands, patch, start.from),
+        }
     }
 
     /// A part of a leg, up to the next.
@@ -174,10 +185,13 @@ impl Course<'_> {
     /// What a group of the next leg begins with.
     fn next(flights: &Flights<'_>, sets: &[Set], of: Vec<usize>, from: usize) -> Option<Start> {
         let joined = of.iter().map(|place| sets.get(*place)).collect::<Option<Vec<&Set>>>()?;
-        let (first, like) = joined.first()?;
+        let (first, like) = *joined.first()?;
         let whole = joined.iter().fold(*first, |whole, (patch, _)| whole.hull(patch));
-        let like = like.clone();
-        Some(Start { joined: Some(flights.joined(&joined)?), like, from, of, whole })
+        let origin = match joined[..] {
+            [set] => Origin::Alone(set.clone()),
+            _ => Origin::Joined(flights.joined(&joined)?, like.clone()),
+        };
+        Some(Start { origin, from, of, whole })
     }
 
     /// Groups of sets whose gains are all within a share of what they can reach.
@@ -228,29 +242,54 @@ impl Legs<'_> {
     fn found(self, flights: &mut Flights<'_>, whole: Patch, dt_s: f64) -> Option<Vec<Leg>> {
         let planned = self.course.commands.legs(dt_s);
         let mut starts = vec![self.course.start(flights, whole)];
-        let mut legs = Vec::new();
+        let (mut legs, mut before) = (Vec::new(), Vec::new());
         for (place, &(_, along)) in planned.iter().enumerate() {
             let to = planned.get(place + 1).map(|(from, _)| *from);
-            let (mut groups, mut sets) = (Vec::new(), Vec::new());
-            let divided = side_by_side(flights, &starts, |flights, start| {
-                self.divided(flights, start, along, to)
-            });
-            for (group, own) in divided.ok()? {
-                groups.push(group);
-                sets.extend(own);
-            }
-            let leg = Leg { from_sample: starts.first()?.from, groups };
+            let (leg, sets) = self.leg(flights, (starts, &before), along, to)?;
             if leg.sets() > MOST_LEG_SETS {
                 return None;
             }
             legs.push(leg);
-            if let Some(to) = to {
-                let groups = Course::groups(flights, &sets, self.fineness.gains).into_iter();
-                let next = groups.map(|of| Course::next(flights, &sets, of, to));
-                starts = next.collect::<Option<_>>()?;
-            }
+            let Some(to) = to else { break };
+            let groups = Course::groups(flights, &sets, self.fineness.gains).into_iter();
+            let next = groups.map(|of| Course::next(flights, &sets, of, to));
+            starts = next.collect::<Option<_>>()?;
+            before = sets;
         }
         Some(legs)
+    }
+
+    /// A leg of groups of the sets before it; one that cannot be flown is halved.
+    fn leg(
+        self,
+        flights: &mut Flights<'_>,
+        (mut starts, before): (Vec<Start>, &[Set]),
+        along: Along,
+        to: Option<usize>,
+    ) -> Option<(Leg, Vec<Set>)> {
+        let from_sample = starts.first()?.from;
+        let (mut groups, mut sets) = (Vec::new(), Vec::new());
+        while !starts.is_empty() {
+            let divided = side_by_side(flights, &starts, |flights, start| {
+                match self.divided(flights, start, along, to) {
+                    Err(_) if start.of.len() > 1 && flights.flown < flights.most => Ok(None),
+                    divided => divided.map(Some),
+                }
+            });
+            let mut halved = Vec::new();
+            for (start, divided) in starts.iter().zip(divided.ok()?) {
+                if let Some((group, own)) = divided {
+                    groups.push(group);
+                    sets.extend(own);
+                    continue;
+                }
+                for half in start.of.chunks(start.of.len().div_ceil(2)) {
+                    halved.push(Course::next(flights, before, half.to_vec(), from_sample)?);
+                }
+            }
+            starts = halved;
+        }
+        Some((Leg { from_sample, groups }, sets))
     }
 
     /// Parts of a group, each of which is flown, with the sets that they come to before the next leg.
@@ -348,12 +387,11 @@ impl Search<'_> {
         let dt_s = certificate.description.controller.config().dt_s;
         let odd = is_odd(&certificate.description);
         let most_checked = most_checked(&certificate.description);
-        let searches = TRIED.into_iter().flat_map(|size| FINENESS.map(|it| (size, it)));
-        let part = 1.0 / (TRIED.len() * FINENESS.len()) as f64;
-        searches.into_iter().find_map(|(size, fineness)| {
+        let mut searches = TRIED.into_iter().flat_map(|size| FINENESS.map(|it| (size, it)));
+        searches.find_map(|(size, fineness)| {
             let commands = commands.scaled(size);
             let flights = Flights::of(certificate, model, set, terminal, system.as_ref())?;
-            let mut flights = flights.searching(part, *stops);
+            let mut flights = flights.searching(EACH, *stops);
             let legs = Legs { course: Course { commands: &commands }, fineness };
             let legs = legs.found(&mut flights, whole(&commands, odd), dt_s)?;
             // What is found is flown again by whoever checks it.

@@ -3,7 +3,7 @@
 //! What they have in common is told apart: of every number what it moves by with the set-point and with the load, the same for
 //! all, and beside it whatever it may still be. A load that is all but made up for leaves little of that, so that what comes
 //! next need not be flown for each set anew. Every flight of the sets is in the joined one; what it forgets is what else its
-//! numbers share.
+//! numbers share. A set that is flown on alone forgets nothing.
 
 use fspid_numeric::scalar::Interval;
 
@@ -116,6 +116,30 @@ impl Joined {
             limited: self.limited,
         }
     }
+}
+
+/// The flights of a box among those of a set, which forget nothing: where the unknown of the set-point, or of the load, was
+/// $\xi = (x - c) / r$ of the whole, x is now the number of the part.
+pub(super) fn narrowed((whole, flight): &Set, part: Patch) -> Flight {
+    let mut flight = flight.clone();
+    for (symbol, of, to) in
+        [(SETPOINT, whole.setpoint, part.setpoint), (LOAD, whole.load, part.load)]
+    {
+        let [of, part] = [of, to].map(|ends| Affine::unknown(ends, symbol));
+        let radius = of.parts.of(symbol);
+        if of == part || radius == 0.0 {
+            continue;
+        }
+        let middle = Affine::constant(Interval::point(of.centre));
+        let per = Interval::ONE / Interval::point(radius);
+        let unknown = Affine::sum([(per, &part), (-per, &middle)]);
+        let Flight { values, last, setpoint, load, at_servo, tuned, .. } = &mut flight;
+        let own = values.iter_mut().chain([last, setpoint, load, at_servo]);
+        for value in own.chain(tuned.iter_mut().flat_map(Tuned::each_mut)) {
+            *value = value.with(symbol, &unknown);
+        }
+    }
+    flight
 }
 
 /// Of each number what it moves by with set-point and load: the mean of the sets, by the widths of their boxes.

@@ -9,7 +9,7 @@ use super::*;
 use crate::gain_set::IncrementMap;
 use crate::rest::drawn;
 use crate::steps::flights::{Beginning, Patch, Way};
-use crate::steps::joined::Joined;
+use crate::steps::joined::{Joined, narrowed};
 use crate::steps::sample::{Judge, Moment};
 
 /// Samples of a flight, and what rounding of the simulator's own may be off, rad.
@@ -217,14 +217,44 @@ fn later(
     (set.symbols <= 3000 && set.values[0].range().width() < 1.0).then_some(set)
 }
 
-/// Two sets under loads of either sign, joined where the set-point goes up, and held against four flights from there on: how
-/// many samples, and what the set has come to. Nothing where the two say nothing any more.
+/// Flights of a set from where the set-point goes up, each of so much of set-point and load, and all of what is commanded.
+struct Doublets<'a, 'f> {
+    loop_: &'a sample::Flown<'f>,
+    name: &'a str,
+    commands: &'a Commands,
+    patch: Patch,
+    flights: [Vec<f64>; 4],
+}
+
+impl Doublets<'_, '_> {
+    /// A set that holds them, sample by sample: how many samples, and what it has come to.
+    fn are_held(&self, mut set: sample::Flight) -> (usize, sample::Flight) {
+        let Self { loop_, name, commands, patch, flights } = self;
+        let way = Way { commands, patch: *patch, from: Beginning::Controller };
+        for sample in UP..SAMPLES {
+            let range = set.values[0].range();
+            for theta in flights.each_ref().map(|flight| flight[sample]) {
+                let inside = theta >= range.lower() - ROUNDING && theta <= range.upper() + ROUNDING;
+                assert!(inside, "{name}, {patch:?}, sample {sample}: {theta:e} {range:?}");
+            }
+            let Some(next) = later(loop_, &way, set.clone(), sample) else {
+                return (sample + 1 - UP, set);
+            };
+            set = next;
+        }
+        (SAMPLES - UP, set)
+    }
+}
+
+/// Two sets under loads of either sign, joined where the set-point goes up, and held against four flights from there on, and a
+/// part of one of them against four of its own: how many samples each, and what the joined set has come to. Nothing where the
+/// two say nothing any more.
 fn joined_and_held(
     loop_: &sample::Flown<'_>,
     scenario: &Scenario,
     entry: Entry,
     [most, load_rad]: [f64; 2],
-) -> Option<(usize, sample::Flight)> {
+) -> Option<([usize; 2], sample::Flight)> {
     let commanding = |sizes: [f64; 2]| {
         let mut scenario = scenario.clone();
         with_commands(&mut scenario, entry, sizes);
@@ -241,30 +271,37 @@ fn joined_and_held(
     let [one, other] = [part([-load_rad, 0.0])?, part([0.0, load_rad])?];
     let patch = Patch { setpoint, load: [-load_rad, load_rad] };
     let joined = Joined::of(loop_, &[&one, &other]).expect("two");
-    let mut joint = joined.flight(&one.1, &commands, patch, UP);
-    let flown = [(1.0, 1.0), (0.9997, -1.0), (0.9995, 0.3), (1.0, -0.01)]
-        .map(|(step, load)| pitch_angles(&commanding([step * most, load * load_rad])));
-    let way = Way { commands: &commands, patch, from };
-    for sample in UP..SAMPLES {
-        let range = joint.values[0].range();
-        for theta in flown.each_ref().map(|flight| flight[sample]) {
-            let inside = theta >= range.lower() - ROUNDING && theta <= range.upper() + ROUNDING;
-            let name = &scenario.name;
-            assert!(inside, "{name}, {entry:?}, sample {sample}: {theta:e} {range:?}");
-        }
-        let Some(next) = later(loop_, &way, joint.clone(), sample) else {
-            return Some((sample + 1 - UP, joint));
-        };
-        joint = next;
+    let of = |points: [(f64, f64); 4]| {
+        points.map(|(step, load)| pitch_angles(&commanding([step * most, load * load_rad])))
+    };
+    let doublets = |patch: Patch, points: [(f64, f64); 4]| Doublets {
+        loop_,
+        name: &scenario.name,
+        commands: &commands,
+        patch,
+        flights: of(points),
+    };
+    let all = [(1.0, 1.0), (0.9997, -1.0), (0.9995, 0.3), (1.0, -0.01)];
+    let begun = joined.flight(&one.1, &commands, patch, UP);
+    let (samples, joint) = doublets(patch, all).are_held(begun);
+    let setpoint = [0.9996 * most, 0.9998 * most];
+    let inner = Patch { setpoint, load: [0.25 * load_rad, 0.5 * load_rad] };
+    let part = narrowed(&other, inner);
+    for (value, whole) in part.values.iter().zip(&other.1.values) {
+        let [width, most] = [value, whole].map(|value| value.range().width());
+        assert!(width <= most * (1.0 + 1e-9) + 1e-12, "{}: {width} of {most}", scenario.name);
     }
-    Some((SAMPLES - UP, joint))
+    let some = [(0.9998, 0.5), (0.9996, 0.25), (0.9997, 0.4), (0.9996, 0.5)];
+    let (alone, _) = doublets(inner, some).are_held(part);
+    Some(([samples, alone], joint))
 }
 
 /// Drawn loops with every limit there is, under a load of either sign that enters before or behind the servo, two sets joined
-/// to one, and then with a doublet of the set-point: at every sample the joined set holds the flights of the simulator.
+/// to one, and then with a doublet of the set-point: at every sample the joined set holds the flights of the simulator, and a
+/// part of one of the two, flown on alone, holds those of its own.
 #[test]
 fn joined_sets_hold_every_flight_of_what_is_commanded() {
-    let (mut compared, mut limited, mut tuned) = (0, 0, 0);
+    let (mut compared, mut alone, mut limited, mut tuned) = (0, 0, 0, 0);
     for seed in 0..90 {
         let dice = &mut drawn::Dice::new(seed);
         let mut scenario = match (seed % 3, seed % 2) {
@@ -291,13 +328,16 @@ fn joined_sets_hold_every_flight_of_what_is_commanded() {
         let rules = system(&description);
         let loop_ = flown::flown(&description, &model, &set, rules.as_ref()).expect("enclosed");
         let most = 0.02 + 0.05 * (seed % 7) as f64;
-        let Some((samples, joint)) = joined_and_held(&loop_, &scenario, entry, [most, load_rad])
+        let Some(([samples, of_part], joint)) =
+            joined_and_held(&loop_, &scenario, entry, [most, load_rad])
         else {
             continue;
         };
         compared += samples;
+        alone += of_part;
         limited += usize::from(joint.limited);
         tuned += usize::from(joint.tuned.is_some());
     }
     assert!(compared > 1500 && limited > 10 && tuned > 8, "{compared} {limited} {tuned}");
+    assert!(alone > 5000, "{alone}");
 }
