@@ -15,6 +15,9 @@ use super::work::Flights;
 /// How often it is asked whether anybody still waits.
 const ASKS: Duration = Duration::from_millis(2);
 
+/// So many times its share of the work that is left a job of a search may take.
+const UNEVEN: usize = 3;
+
 /// What has come of the jobs so far.
 struct Board<Answer> {
     /// With the work that each has taken.
@@ -60,12 +63,17 @@ pub(super) fn side_by_side<'a, Job: Sync, Answer: Send>(
     jobs: &[Job],
     work: impl Fn(&mut Flights<'a>, &Job) -> Result<Answer, Stop> + Sync,
 ) -> Result<Vec<Answer>, Stop> {
-    let begun = own.flown;
+    let (begun, most) = (own.flown, own.most);
+    if own.paced {
+        // Where one of them takes so much, all together would take more than there is, and a search has others to try.
+        let left = most.saturating_sub(begun);
+        own.most = begun + left.min(left.saturating_mul(UNEVEN) / jobs.len().max(1));
+    }
     let board = Board {
         answers: jobs.iter().map(|_| None).collect(),
         counted: 0,
         flown: begun,
-        most: own.most,
+        most,
         ended: None,
     };
     let (board, next) = (Mutex::new(board), AtomicUsize::new(0));
@@ -102,6 +110,7 @@ pub(super) fn side_by_side<'a, Job: Sync, Answer: Send>(
         }
     });
     own.halted.store(false, Ordering::Relaxed);
+    own.most = most;
     let Board { answers, counted, flown, ended, .. } =
         board.into_inner().unwrap_or_else(PoisonError::into_inner);
     own.flown = flown;

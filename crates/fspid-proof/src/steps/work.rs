@@ -39,6 +39,8 @@ pub(super) struct Flights<'a> {
     /// Work so far, and the most.
     pub(super) flown: usize,
     pub(super) most: usize,
+    /// None of several jobs side by side may take much more than its share.
+    pub(super) paced: bool,
     pub(super) stops: fn() -> bool,
     /// Nobody waits for them any more.
     pub(super) halted: Arc<AtomicBool>,
@@ -69,7 +71,8 @@ impl<'a> Flights<'a> {
         let stops = crate::solve::never;
         let halted = Arc::new(AtomicBool::new(false));
         let threads = std::thread::available_parallelism().map_or(1, NonZero::get);
-        Some(Self { ready, longest, each, flown, most, stops, halted, threads })
+        let paced = false;
+        Some(Self { ready, longest, each, flown, most, paced, stops, halted, threads })
     }
 
     /// The same on another thread, which is told when to stop by `halted` alone.
@@ -85,7 +88,7 @@ impl<'a> Flights<'a> {
             reason = "below the most"
         )]
         let most = (part * (SEARCHED * self.most) as f64) as usize;
-        Self { most, stops, ..self }
+        Self { most, stops, paced: true, ..self }
     }
 
     /// Of gains that remember, how long a rest has to last, s.
