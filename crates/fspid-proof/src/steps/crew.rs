@@ -216,5 +216,15 @@ mod tests {
             }
             assert_eq!(alone.0.is_ok(), flies, "{most}: {alone:?}");
         }
+        // A re-check may spend all on one set, a search three times its share.
+        let mut flights =
+            Flights::of(&certificate, &model, &set, terminal, None).expect("enclosed");
+        (flights.flown, flights.most) = (1000, 7000);
+        for (paced, jobs, allowed) in [(false, 30, 7000), (true, 30, 1600), (true, 2, 7000)] {
+            flights.paced = paced;
+            let most = side_by_side(&mut flights, &vec![(); jobs], |flights, ()| Ok(flights.most));
+            assert_eq!(most, Ok(vec![allowed; jobs]), "{paced}");
+            assert_eq!((flights.flown, flights.most), (1000, 7000));
+        }
     }
 }
