@@ -34,10 +34,11 @@ const BOTH: u8 = 8;
 /// Shares of what is commanded that are tried.
 const TRIED: [f64; 3] = [1.0, 0.5, 0.25];
 /// How finely, one after the other: wide parts and groups are few, and narrow ones leave the next leg more.
-const FINENESS: [Fineness; 2] =
-    [Fineness { apart: 0.01, gains: 0.1 }, Fineness { apart: 0.003, gains: 0.04 }];
-/// Each of these searches may take such a part of all that searches may.
-const EACH: f64 = 0.1;
+const FINENESS: [Fineness; 3] = [
+    Fineness { apart: 0.01, gains: 0.1 },
+    Fineness { apart: 0.003, gains: 0.04 },
+    Fineness { apart: 0.0005, gains: 0.012 },
+];
 /// The gains of a part of a group may be apart so much of what those of the group may.
 const OF_GROUP: f64 = 0.5;
 
@@ -105,13 +106,16 @@ fn whole(commands: &Commands, odd: bool) -> Patch {
 impl Leg {
     /// Sets that it is flown in.
     pub(crate) fn sets(&self) -> usize {
-        let parts = |ends: &[f64]| ends.len().saturating_sub(1);
-        let of_group = |it: &Group| parts(&it.setpoints_rad).saturating_mul(parts(&it.loads_rad));
-        self.groups.iter().map(of_group).fold(0, usize::saturating_add)
+        self.groups.iter().map(Group::sets).fold(0, usize::saturating_add)
     }
 }
 
 impl Group {
+    fn sets(&self) -> usize {
+        let parts = |ends: &[f64]| ends.len().saturating_sub(1);
+        parts(&self.setpoints_rad).saturating_mul(parts(&self.loads_rad))
+    }
+
     fn patches(&self) -> Vec<Patch> {
         let loads = || self.loads_rad.windows(2).map(|pair| [pair[0], pair[1]]);
         let setpoints = self.setpoints_rad.windows(2).map(|pair| [pair[0], pair[1]]);
@@ -128,6 +132,9 @@ enum Origin {
     /// Everything that several sets have come to, beside one of their flights.
     Joined(Joined, Flight),
 }
+
+/// A group with its parts, and the sets that they come to before the next leg.
+type Divided = (Group, Vec<Set>);
 
 /// What a group begins with.
 struct Start {
@@ -239,24 +246,22 @@ struct Legs<'a> {
 }
 
 impl Legs<'_> {
-    fn found(self, flights: &mut Flights<'_>, whole: Patch, dt_s: f64) -> Option<Vec<Leg>> {
+    /// All legs; [`Stop::Work`] where their groups take too much before any is halved: finer ones would be more.
+    fn found(self, flights: &mut Flights<'_>, whole: Patch, dt_s: f64) -> Result<Vec<Leg>, Stop> {
         let planned = self.course.commands.legs(dt_s);
         let mut starts = vec![self.course.start(flights, whole)];
         let (mut legs, mut before) = (Vec::new(), Vec::new());
         for (place, &(_, along)) in planned.iter().enumerate() {
             let to = planned.get(place + 1).map(|(from, _)| *from);
             let (leg, sets) = self.leg(flights, (starts, &before), along, to)?;
-            if leg.sets() > MOST_LEG_SETS {
-                return None;
-            }
             legs.push(leg);
             let Some(to) = to else { break };
             let groups = Course::groups(flights, &sets, self.fineness.gains).into_iter();
             let next = groups.map(|of| Course::next(flights, &sets, of, to));
-            starts = next.collect::<Option<_>>()?;
+            starts = next.collect::<Option<_>>().ok_or(Stop::Lost)?;
             before = sets;
         }
-        Some(legs)
+        Ok(legs)
     }
 
     /// A leg of groups of the sets before it; one that cannot be flown is halved.
@@ -266,30 +271,51 @@ impl Legs<'_> {
         (mut starts, before): (Vec<Start>, &[Set]),
         along: Along,
         to: Option<usize>,
-    ) -> Option<(Leg, Vec<Set>)> {
-        let from_sample = starts.first()?.from;
-        let (mut groups, mut sets) = (Vec::new(), Vec::new());
-        while !starts.is_empty() {
-            let divided = side_by_side(flights, &starts, |flights, start| {
-                match self.divided(flights, start, along, to) {
-                    Err(_) if start.of.len() > 1 && flights.flown < flights.most => Ok(None),
-                    divided => divided.map(Some),
-                }
-            });
+    ) -> Result<(Leg, Vec<Set>), Stop> {
+        let from_sample = starts.first().ok_or(Stop::Lost)?.from;
+        let (mut leg, mut sets) = (Leg { from_sample, groups: Vec::new() }, Vec::new());
+        let mut tried = self.tried(flights, &starts, along, to)?;
+        loop {
             let mut halved = Vec::new();
-            for (start, divided) in starts.iter().zip(divided.ok()?) {
+            for (start, divided) in starts.iter().zip(tried) {
                 if let Some((group, own)) = divided {
-                    groups.push(group);
+                    leg.groups.push(group);
                     sets.extend(own);
                     continue;
                 }
                 for half in start.of.chunks(start.of.len().div_ceil(2)) {
-                    halved.push(Course::next(flights, before, half.to_vec(), from_sample)?);
+                    let next = Course::next(flights, before, half.to_vec(), from_sample);
+                    halved.push(next.ok_or(Stop::Lost)?);
                 }
             }
+            if leg.sets() > MOST_LEG_SETS {
+                return Err(Stop::Lost);
+            }
+            if halved.is_empty() {
+                return Ok((leg, sets));
+            }
             starts = halved;
+            // Finer groups may take less than halves do.
+            tried = self.tried(flights, &starts, along, to).map_err(|_| Stop::Lost)?;
         }
-        Some((Leg { from_sample, groups }, sets))
+    }
+
+    /// What becomes of each start: nothing where one of several sets cannot be flown, and may be halved.
+    fn tried(
+        self,
+        flights: &mut Flights<'_>,
+        starts: &[Start],
+        along: Along,
+        to: Option<usize>,
+    ) -> Result<Vec<Option<Divided>>, Stop> {
+        side_by_side(flights, starts, |flights, start| {
+            match self.divided(flights, start, along, to) {
+                Err(stop) if stop != Stop::Work && start.of.len() > 1 && !flights.is_stopped() => {
+                    Ok(None)
+                }
+                divided => divided.map(Some),
+            }
+        })
     }
 
     /// Parts of a group, each of which is flown, with the sets that they come to before the next leg.
@@ -299,7 +325,7 @@ impl Legs<'_> {
         start: &Start,
         along: Along,
         to: Option<usize>,
-    ) -> Result<(Group, Vec<Set>), Stop> {
+    ) -> Result<Divided, Stop> {
         let Patch { setpoint, load } = start.whole;
         let mut sets = Vec::new();
         let of_load = along == Along::Load;
@@ -360,6 +386,7 @@ fn swept(
         match fly(sweep.piece()) {
             Ok(()) if ends.len() <= MOST_LEG_PARTS => ends.push(sweep.flown()),
             Ok(()) => return Err(Stop::Lost),
+            Err(Stop::Work) => return Err(Stop::Work),
             Err(stop) => {
                 let width = sweep.given_up();
                 if !(width >= NARROWEST * whole && width > 0.0) {
@@ -387,19 +414,24 @@ impl Search<'_> {
         let dt_s = certificate.description.controller.config().dt_s;
         let odd = is_odd(&certificate.description);
         let most_checked = most_checked(&certificate.description);
-        let mut searches = TRIED.into_iter().flat_map(|size| FINENESS.map(|it| (size, it)));
-        searches.find_map(|(size, fineness)| {
+        let part = 1.0 / (TRIED.len() * FINENESS.len()) as f64;
+        for size in TRIED {
             let commands = commands.scaled(size);
-            let flights = Flights::of(certificate, model, set, terminal, system.as_ref())?;
-            let mut flights = flights.searching(EACH, *stops);
-            let legs = Legs { course: Course { commands: &commands }, fineness };
-            let legs = legs.found(&mut flights, whole(&commands, odd), dt_s)?;
-            // What is found is flown again by whoever checks it.
-            if flights.flown > most_checked {
-                return None;
+            for fineness in FINENESS {
+                let flights = Flights::of(certificate, model, set, terminal, system.as_ref())?;
+                let mut flights = flights.searching(part, *stops);
+                let legs = Legs { course: Course { commands: &commands }, fineness };
+                match legs.found(&mut flights, whole(&commands, odd), dt_s) {
+                    // What is found is flown again by whoever checks it.
+                    Ok(legs) if flights.flown <= most_checked => {
+                        return Some(Commanded { commands, terminal: terminal.clone(), legs });
+                    }
+                    Ok(_) | Err(Stop::Work) => break,
+                    Err(_) => {}
+                }
             }
-            Some(Commanded { commands, terminal: terminal.clone(), legs })
-        })
+        }
+        None
     }
 }
 

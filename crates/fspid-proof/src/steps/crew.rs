@@ -37,7 +37,7 @@ impl<Answer> Board<Answer> {
         while self.ended.is_none() {
             let Some(Some((answer, flown))) = self.answers.get(self.counted) else { break };
             if self.flown > self.most {
-                self.ended = Some(Stop::Lost);
+                self.ended = Some(Stop::Work);
                 break;
             }
             // What was given up has taken its work too.
@@ -54,6 +54,14 @@ fn locked<T>(board: &Mutex<T>) -> MutexGuard<'_, T> {
     board.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// Most work after one of so many jobs. Where one of a search takes much more than its share, all together would take more than
+/// there is, and a search has others to try.
+fn most_of_each(own: &Flights<'_>, jobs: usize) -> usize {
+    let left = own.most.saturating_sub(own.flown);
+    let each = own.flown + left.saturating_mul(UNEVEN) / jobs.max(1);
+    if own.paced { own.most.min(each) } else { own.most }
+}
+
 /// Does all jobs; their answers in their order. `own` has then flown what those have that count.
 ///
 /// # Errors
@@ -64,11 +72,7 @@ pub(super) fn side_by_side<'a, Job: Sync, Answer: Send>(
     work: impl Fn(&mut Flights<'a>, &Job) -> Result<Answer, Stop> + Sync,
 ) -> Result<Vec<Answer>, Stop> {
     let (begun, most) = (own.flown, own.most);
-    if own.paced {
-        // Where one of them takes so much, all together would take more than there is, and a search has others to try.
-        let left = most.saturating_sub(begun);
-        own.most = begun + left.min(left.saturating_mul(UNEVEN) / jobs.len().max(1));
-    }
+    own.most = most_of_each(own, jobs.len());
     let board = Board {
         answers: jobs.iter().map(|_| None).collect(),
         counted: 0,
@@ -157,7 +161,7 @@ mod tests {
         board.tell(0, Ok('a'), 10);
         assert_eq!((board.ended, board.flown), (None, 10), "the last may go beyond the most");
         board.tell(1, Ok('b'), 1);
-        assert_eq!((board.ended, board.flown, board.counted), (Some(Stop::Lost), 11, 2));
+        assert_eq!((board.ended, board.flown, board.counted), (Some(Stop::Work), 11, 2));
     }
 
     /// The Navion with a PID behind a servo of 20 deg/s.
@@ -219,12 +223,18 @@ mod tests {
         // A re-check may spend all on one set, a search three times its share.
         let mut flights =
             Flights::of(&certificate, &model, &set, terminal, None).expect("enclosed");
-        (flights.flown, flights.most) = (1000, 7000);
-        for (paced, jobs, allowed) in [(false, 30, 7000), (true, 30, 1600), (true, 2, 7000)] {
-            flights.paced = paced;
-            let most = side_by_side(&mut flights, &vec![(); jobs], |flights, ()| Ok(flights.most));
-            assert_eq!(most, Ok(vec![allowed; jobs]), "{paced}");
-            assert_eq!((flights.flown, flights.most), (1000, 7000));
+        flights.flown = 1000;
+        for (paced, most, jobs, allowed) in [
+            (false, 7000, 30, 7000),
+            (true, 7000, 30, 1600),
+            (true, 7000, 2, 7000),
+            // Nothing is left.
+            (true, 900, 1, 900),
+        ] {
+            (flights.paced, flights.most) = (paced, most);
+            assert_eq!(most_of_each(&flights, jobs), allowed, "{paced} {most}");
+            let _ = side_by_side(&mut flights, &vec![(); jobs], |_, ()| Ok(()));
+            assert_eq!((flights.flown, flights.most), (1000, most));
         }
     }
 }

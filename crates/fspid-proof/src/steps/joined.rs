@@ -119,18 +119,20 @@ impl Joined {
 }
 
 /// The flights of a box among those of a set, which forget nothing: where the unknown of the set-point, or of the load, was
-/// $\xi = (x - c) / r$ of the whole, x is now the number of the part.
+/// $\xi = (x - c) / r$ of the whole, x is now the number of the part. What has just risen is told anew at each sample.
+///
+/// A box may reach beyond the set: what it holds there is of no flight, and of those in both it leaves none out.
 pub(super) fn narrowed((whole, flight): &Set, part: Patch) -> Flight {
     let mut flight = flight.clone();
-    for (symbol, of, to) in
+    for (symbol, whole, part) in
         [(SETPOINT, whole.setpoint, part.setpoint), (LOAD, whole.load, part.load)]
     {
-        let [of, part] = [of, to].map(|ends| Affine::unknown(ends, symbol));
-        let radius = of.parts.of(symbol);
-        if of == part || radius == 0.0 {
+        let [whole, part] = [whole, part].map(|ends| Affine::unknown(ends, symbol));
+        let radius = whole.parts.of(symbol);
+        if whole == part || radius == 0.0 {
             continue;
         }
-        let middle = Affine::constant(Interval::point(of.centre));
+        let middle = Affine::constant(Interval::point(whole.centre));
         let per = Interval::ONE / Interval::point(radius);
         let unknown = Affine::sum([(per, &part), (-per, &middle)]);
         let Flight { values, last, setpoint, load, at_servo, tuned, .. } = &mut flight;

@@ -126,6 +126,7 @@ fn given_up(stop: Stop) -> &'static str {
         Stop::Guard => "flights in sets: a flight may meet the sample guard",
         Stop::Travel => "flights in sets: a flight may meet an end of the actuator's travel",
         Stop::Lost => "flights in sets: a set of flights is not shown to end near its rest",
+        Stop::Work => "flights in sets: more samples than a check may fly",
     }
 }
 

@@ -112,6 +112,8 @@ pub(super) enum Stop {
     Travel,
     /// It is not known any more where the flights are.
     Lost,
+    /// All of the work that may be taken is.
+    Work,
 }
 
 /// How limits are judged.

@@ -115,7 +115,7 @@ impl<'a> Flights<'a> {
     ) -> Result<Flight, Stop> {
         let left = self.left()?;
         if to.saturating_sub(from) > left {
-            return Err(Stop::Lost);
+            return Err(Stop::Work);
         }
         let flown = self.ready.until(way, flight, from..to);
         self.flown +=
@@ -133,7 +133,7 @@ impl<'a> Flights<'a> {
         let left = self.left()?;
         // Before the last change nothing has landed.
         if way.commands.last_change().saturating_sub(from) > left {
-            return Err(Stop::Lost);
+            return Err(Stop::Work);
         }
         let most = from.max(way.commands.last_change()).saturating_add(self.longest);
         let most = most.min(from.saturating_add(left));
@@ -165,8 +165,11 @@ impl<'a> Flights<'a> {
 
     /// Samples that may still be flown: one flight may go beyond the most work by its own length, and no further.
     fn left(&self) -> Result<usize, Stop> {
-        if self.is_stopped() || self.flown > self.most {
+        if self.is_stopped() {
             return Err(Stop::Lost);
+        }
+        if self.flown > self.most {
+            return Err(Stop::Work);
         }
         Ok(((self.most - self.flown) / self.each).max(self.longest))
     }
