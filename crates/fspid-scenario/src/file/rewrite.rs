@@ -9,7 +9,7 @@ use crate::file::extra::Extra;
 use crate::file::files::Files;
 use crate::file::overrides::{self, Change};
 use crate::file::spec::SCENARIO;
-use crate::file::spec::scenario::CONTROLLER;
+use crate::file::spec::scenario::{CONTEST, CONTROLLER, TUNING};
 use crate::keyed::document::{Item, Member, Value};
 use crate::keyed::{Kind, Table};
 use crate::requirement::Requirement;
@@ -57,8 +57,10 @@ pub fn replay(
         Some(item(text_value(&change.text(&path, written))))
     };
     let changes: Vec<Item> = files.changes().filter_map(listed).collect();
-    // The others stand in the document by now.
-    members.retain(|member| member.name != overrides::KEY);
+    // The others stand in the document by now. Tunings and contests name controllers that are not here any more.
+    let is_left_out =
+        |name: &str| [overrides::KEY, TUNING.name.as_str(), CONTEST.name.as_str()].contains(&name);
+    members.retain(|member| !is_left_out(&member.name));
     if !changes.is_empty() {
         put(&mut members, overrides::KEY, Value::Array(changes));
     }

@@ -8,12 +8,12 @@ use fspid_scenario::units::degrees;
 
 use super::answer::{Margins, NO_CROSSOVER, NO_LOWER_LIMIT, NO_UPPER_LIMIT};
 use super::flights::Flights;
-use super::frozen::count;
 use super::{
     AnalysedLoop, AnalysedMode, Analysis, Equilibrium, FlownExternal, FrozenMap, FrozenPoint,
-    PlantLoop, RestLoop, Stability,
+    FrozenReach, PlantLoop, RestLoop, Stability,
 };
 use crate::json::{by_name, merged, present, unless_empty};
+use crate::metrics::Absent;
 
 /// Version of the answer's shape.
 const SCHEMA: u32 = 1;
@@ -81,7 +81,10 @@ fn plant(plant: &PlantLoop) -> Value {
             .margins
             .as_ref()
             .map_or_else(|reason| json!({ "absent": reason.to_string() }), margins),
-        present(json!({ "frozen_gains": plant.map.as_ref().map(frozen) })),
+        present(json!({
+            "frozen_gains": plant.map.as_ref().map(frozen),
+            "frozen_gains_within_reach": plant.reach.as_ref().map(within_reach),
+        })),
     ])
 }
 
@@ -142,7 +145,8 @@ fn triple(gains: Gains<f64>) -> Value {
 /// Points of the map and, where rules conclude numbers, the cells beside them.
 fn frozen(map: &FrozenMap) -> Value {
     let has_cells = !map.nodes.is_empty();
-    let undecided = |points| Some(count(points, Stability::Undecided)).filter(|count| *count > 0);
+    let undecided =
+        |points| Some(FrozenMap::count(points, Stability::Undecided)).filter(|count| *count > 0);
     merged([
         of_stability(map.stability()),
         present(json!({
@@ -159,16 +163,30 @@ fn frozen(map: &FrozenMap) -> Value {
     ])
 }
 
+/// Gains that an accumulating law may come to: how many were looked at, and the worst.
+fn within_reach(reach: &FrozenReach) -> Value {
+    let undecided = Some(reach.count(Stability::Undecided)).filter(|count| *count > 0);
+    merged([
+        of_stability(reach.stability()),
+        present(json!({
+            "points": reach.points.len(),
+            "unstable": reach.count(Stability::Unstable),
+            "undecided": undecided,
+            "worst": frozen_gains(reach.worst.gains, &reach.worst.margins),
+        })),
+    ])
+}
+
 fn frozen_point(point: &FrozenPoint) -> Value {
     let [error, change] = point.input;
+    merged([json!({ "error": error, "change": change }), frozen_gains(point.gains, &point.margins)])
+}
+
+fn frozen_gains(gains: Gains<f64>, found: &Result<Margins, Absent>) -> Value {
     merged([
-        json!({
-            "error": error,
-            "change": change,
-            "gains": triple(point.gains),
-        }),
-        of_stability(point.stability()),
-        match &point.margins {
+        json!({ "gains": triple(gains) }),
+        of_stability(Stability::of(found)),
+        match found {
             Ok(found) => margins(found),
             Err(reason) => json!({ "absent": reason.to_string() }),
         },

@@ -13,7 +13,7 @@ use super::Question;
 use super::answer::Margins;
 use super::equilibrium::{Equilibrium, equilibrium};
 use super::flights::Flights;
-use super::frozen::{FrozenMap, FrozenPoint};
+use super::frozen::{FrozenGains, FrozenMap, FrozenPoint, FrozenReach};
 use super::modes::AnalysedMode;
 use super::stability::{Stability, of_stand};
 use crate::metrics::Absent;
@@ -46,8 +46,10 @@ pub struct PlantLoop {
     pub others: Vec<RestLoop>,
     /// Of each margin the worst of all rests.
     pub margins: Result<Margins, Absent>,
-    /// Every gain of a self-tuning controller, standing still.
+    /// Every gain of a self-tuning controller whose law has no memory, standing still.
     pub map: Option<FrozenMap>,
+    /// The gains that an accumulating law may come to, standing still.
+    pub reach: Option<FrozenReach>,
 }
 
 /// A controller's loop, at the gains that it has at rest.
@@ -94,13 +96,14 @@ impl AnalysedLoop {
         let mut plants = Vec::new();
         for (from_s, plant) in &lasting_plants(scenario)? {
             let found = PlantLoop::of(scenario, plant, controller, gains, question.point)?;
-            let map = match controller {
-                Controller::SelfTuning(fspid) if question.map_points > 0 => {
-                    FrozenMap::of(scenario, plant, fspid, question)?
-                }
-                _ => None,
+            let (map, reach) = match controller {
+                Controller::SelfTuning(fspid) if question.map_points > 0 => (
+                    FrozenMap::of(scenario, plant, fspid, question)?,
+                    FrozenReach::of(scenario, plant, fspid, gains, question)?,
+                ),
+                _ => (None, None),
             };
-            plants.push(PlantLoop { from_s: *from_s, map, ..found });
+            plants.push(PlantLoop { from_s: *from_s, map, reach, ..found });
         }
         let modes = AnalysedMode::all(scenario, controller, gains)?;
         Ok(Self { name, equilibrium, plants, absent: None, flights, modes })
@@ -121,6 +124,13 @@ impl AnalysedLoop {
             Some((plant.from_s, &map.worst))
         });
         worst.min_by(|one, other| rank(&one.1.margins).total_cmp(&rank(&other.1.margins)))
+    }
+
+    /// The worst gains that an accumulating law may come to, over all plants.
+    #[must_use]
+    pub fn worst_within_reach(&self) -> Option<&FrozenGains> {
+        let worst = self.plants.iter().filter_map(|plant| Some(&plant.reach.as_ref()?.worst));
+        worst.min_by(|one, other| rank(&one.margins).total_cmp(&rank(&other.margins)))
     }
 
     /// Whether every plant is held at rest, with everything around it too; undecided where there is none to hold.
@@ -229,7 +239,7 @@ impl PlantLoop {
                 (Ok(worst), Ok(other)) => Ok(worst.or_worse(&other)),
                 (reason @ Err(_), _) | (Ok(_), reason) => reason,
             });
-        Ok(Self { from_s: 0.0, worst, others, margins, map: None })
+        Ok(Self { from_s: 0.0, worst, others, margins, map: None, reach: None })
     }
 
     /// Every rest, the worst first.

@@ -67,7 +67,7 @@ fn of_controllers(scenario: &Scenario) -> [LeftOut; 3] {
         ),
         (
             tuners.any(|tuner| tuner.settings().law != Law::Memoryless),
-            "An accumulating law is analysed at its equilibrium alone: where else its gains can stand, a certificate says.",
+            "Gains that an accumulating law may come to are bounded from outside: a flight need not come to each of them.",
         ),
     ]
 }

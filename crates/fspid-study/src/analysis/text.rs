@@ -5,10 +5,11 @@ use fspid_lti::{Complex, Mode, modulus};
 
 use super::answer::{Margins, NO_CROSSOVER, NO_LOWER_LIMIT, NO_UPPER_LIMIT, POOR_MARGINS};
 
-use super::frozen::count;
 use super::{
-    AnalysedLoop, Analysis, Equilibrium, Flights, FrozenMap, PlantLoop, Stability, held_in_words,
+    AnalysedLoop, Analysis, Equilibrium, Flights, FrozenMap, FrozenReach, PlantLoop, Stability,
+    held_in_words,
 };
+use crate::metrics::Absent;
 
 impl Analysis {
     /// The answer of `analyse --format text`: verdict first, then the margins with their frequencies.
@@ -83,6 +84,9 @@ fn push_loop(out: &mut String, found: &AnalysedLoop) {
         push_plant(out, plant);
         if let Some(map) = &plant.map {
             push_map(out, map);
+        }
+        if let Some(reach) = &plant.reach {
+            push_reach(out, reach);
         }
     }
     for mode in &found.modes {
@@ -196,19 +200,45 @@ fn push_map(out: &mut String, map: &FrozenMap) {
         worst.input[1],
         triple(worst.gains)
     );
-    match &worst.margins {
-        Ok(margins) => out.push_str(&format!(
-            "  frozen gains       all {} hold; the worst: disk margin {:.4}, gain {:.2} dB, phase {:.2} deg\n                     at {at}\n",
-            all_of(map),
+    let all = match &worst.margins {
+        Ok(_) => format!("all {} hold", all_of(map)),
+        Err(_) => not_holding(map),
+    };
+    push_frozen(out, &all, &worst.margins, &at);
+}
+
+/// What is found of frozen gains, and where it is worst.
+fn push_frozen(out: &mut String, all: &str, worst: &Result<Margins, Absent>, at: &str) {
+    let worst = match worst {
+        Ok(margins) => format!(
+            "disk margin {:.4}, gain {:.2} dB, phase {:.2} deg",
             margins.disk_margin,
             margins.smaller_gain_margin_db(),
             margins.phase_margin_deg
-        )),
-        Err(reason) => out.push_str(&format!(
-            "  frozen gains       {}; the worst: {reason}\n                     at {at}\n",
-            not_holding(map)
-        )),
-    }
+        ),
+        Err(reason) => reason.to_string(),
+    };
+    out.push_str(&format!(
+        "  frozen gains       {all}; the worst: {worst}\n                     at {at}\n"
+    ));
+}
+
+fn push_reach(out: &mut String, reach: &FrozenReach) {
+    let stability = reach.stability();
+    let (points, bad) = (reach.points.len(), reach.count(stability));
+    let all = match (stability, bad) {
+        (Stability::Stable, _) => format!("all {points} that the law may come to hold"),
+        (_, 0) => format!(
+            "all {points} that the law may come to hold, and of some between them this is not so"
+        ),
+        (Stability::Unstable, _) => {
+            format!("{bad} of {points} that the law may come to would NOT HOLD")
+        }
+        (Stability::Undecided, _) => {
+            format!("of {points} that the law may come to {bad} UNDECIDED")
+        }
+    };
+    push_frozen(out, &all, &reach.worst.margins, &triple(reach.worst.gains));
 }
 
 /// "81 on the map and 49 cells".
@@ -228,7 +258,7 @@ fn not_holding(map: &FrozenMap) -> String {
         Stability::Undecided => ["IS UNDECIDED", "ARE UNDECIDED"],
     };
     let (points, cells) = (map.points.len(), map.nodes.len());
-    match (count(&map.points, stability), count(&map.nodes, stability)) {
+    match (FrozenMap::count(&map.points, stability), FrozenMap::count(&map.nodes, stability)) {
         (0, 0) => format!("all {} hold, and one between them {one}", all_of(map)),
         (0, 1) => format!("1 of {cells} cells {one}"),
         (0, bad) => format!("{bad} of {cells} cells {several}"),

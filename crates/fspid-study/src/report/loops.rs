@@ -6,7 +6,7 @@ use crate::analysis::figures::{
     LoopFigures, MapQuantity, gain_map, gain_surface, pole_zero, radius_figure, root_locus,
 };
 use crate::analysis::{
-    AnalysedLoop, Analysis, Equilibrium, FrozenMap, Margins, PlantLoop, Stability,
+    AnalysedLoop, Analysis, Equilibrium, FrozenMap, FrozenReach, Margins, PlantLoop, Stability,
 };
 use fspid_page::analysis::{
     AnalysisPage, Chapter, DataTable, Datum, Item, Picture, Provenance, Standing, Verdict,
@@ -55,6 +55,8 @@ pub(super) fn report(study: &Study, analysis: &Analysis) -> Result<String, SimEr
 fn verdict(found: &AnalysedLoop) -> Verdict {
     let frozen = found.plants.iter().filter_map(|plant| plant.map.as_ref());
     let frozen = Stability::of_all(frozen.map(FrozenMap::stability));
+    let within_reach = found.plants.iter().filter_map(|plant| plant.reach.as_ref());
+    let within_reach = Stability::of_all(within_reach.map(FrozenReach::stability));
     let (standing, word) = match (found.stability(), found.margins()) {
         _ if found.absent.is_some() => (Standing::Fair, "No margins"),
         (Stability::Unstable, _) => (Standing::Bad, "UNSTABLE"),
@@ -63,6 +65,9 @@ fn verdict(found: &AnalysedLoop) -> Verdict {
             (Standing::Bad, "Stable at rest, not at every gain")
         }
         (Stability::Stable, Err(_)) => (Standing::Fair, "Stable, no margins proved"),
+        (Stability::Stable, Ok(_)) if within_reach != Stability::Stable => {
+            (Standing::Fair, "Stable at rest, perhaps not at every gain")
+        }
         (Stability::Stable, Ok(_)) if found.has_poor_margins() => {
             (Standing::Fair, "Stable, poor margins")
         }
@@ -84,15 +89,24 @@ fn verdict(found: &AnalysedLoop) -> Verdict {
 }
 
 fn of_frozen(found: &AnalysedLoop) -> String {
-    match found.worst_frozen() {
-        None => String::new(),
-        Some((_, worst)) => match &worst.margins {
-            Ok(margins) => format!(
-                " Of all its frozen gains the worst has a disk margin of {}.",
-                fixed(margins.disk_margin, 3)
-            ),
-            Err(reason) => format!(" A frozen gain of its supervisor does not hold: {reason}."),
-        },
+    let map = found.worst_frozen().map(|(_, worst)| &worst.margins);
+    let reach = found.worst_within_reach().map(|worst| &worst.margins);
+    let disk = |margins: &Margins| fixed(margins.disk_margin, 3);
+    match (map, reach) {
+        (Some(Ok(margins)), _) => {
+            format!(" Of all its frozen gains the worst has a disk margin of {}.", disk(margins))
+        }
+        (Some(Err(reason)), _) => {
+            format!(" A frozen gain of its supervisor does not hold: {reason}.")
+        }
+        (None, Some(Ok(margins))) => format!(
+            " Of the frozen gains that its law may come to the worst has a disk margin of {}.",
+            disk(margins)
+        ),
+        (None, Some(Err(reason))) => {
+            format!(" Of the frozen gains that its law may come to one does not hold: {reason}.")
+        }
+        (None, None) => String::new(),
     }
 }
 

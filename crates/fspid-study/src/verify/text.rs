@@ -1,5 +1,6 @@
 //! The answer for people: a table of lines with what explains each, then the verdict.
 
+use fspid_core::{Law, SelfTuner};
 use fspid_sim::{Controller, Scenario};
 
 use super::Verification;
@@ -127,6 +128,25 @@ impl Verification {
         sizes_deg.into_iter().map(own).collect()
     }
 
+    /// Which gains are frozen.
+    fn on_frozen_gains(&self) -> String {
+        let scenario = &self.study.scenario;
+        let numbers = |tuner: &SelfTuner<f64>| tuner.supervisor().numbers().is_some();
+        let cells = match any_tuner(scenario, numbers) {
+            true => ", the 49 cells where rules conclude numbers,",
+            false => ",",
+        };
+        let reach = match any_tuner(scenario, |tuner| tuner.settings().law != Law::Memoryless) {
+            true => {
+                "; of an accumulating law those that it may come to, bounded from outside: the corners of that body, a grid in it, and such a search"
+            }
+            false => "",
+        };
+        format!(
+            "Frozen gains are those of a map of 9 x 9 inputs of the supervisor{cells} and a search about the worst of them{reach}."
+        )
+    }
+
     /// What should be known about the numbers above.
     fn notes(&self) -> Vec<String> {
         let mut notes = self.own_flights();
@@ -139,13 +159,7 @@ impl Verification {
             notes.extend(not_in_the_linear_loop(&self.study.scenario));
         }
         if asks(Family::Frozen) {
-            let cells = match concludes_numbers(&self.study.scenario) {
-                true => ", the 49 cells where rules conclude numbers,",
-                false => ",",
-            };
-            notes.push(format!(
-                "Frozen gains are those of a map of 9 x 9 inputs of the supervisor{cells} and a search about the worst of them."
-            ));
+            notes.push(self.on_frozen_gains());
         }
         if self.judgements.iter().any(|j| j.requirement.measure == Measure::EquivalentDelay) {
             notes.push(
@@ -166,10 +180,10 @@ impl Verification {
     }
 }
 
-/// Whether a supervisor of the scenario has numbers.
-fn concludes_numbers(scenario: &Scenario) -> bool {
+/// Whether something is so of a self-tuner of the scenario.
+fn any_tuner(scenario: &Scenario, is_so: impl Fn(&SelfTuner<f64>) -> bool) -> bool {
     scenario.controllers.iter().any(|named| match &named.controller {
-        Controller::SelfTuning(fspid) => fspid.tuner().supervisor().numbers().is_some(),
+        Controller::SelfTuning(fspid) => is_so(fspid.tuner()),
         Controller::Fixed(_) => false,
     })
 }

@@ -2,8 +2,9 @@
 
 use fspid_study::analysis::{Equilibrium, Stability};
 use fspid_study::metrics::Absent;
+use fspid_study::simulation::Simulation;
 
-use super::analysed;
+use super::{analysed, study};
 
 /// The paper's 747 with the paper's rules.
 const TUNED: &str = r#"
@@ -96,6 +97,73 @@ fn a_gain_that_does_not_hold_makes_the_map_say_so() {
     assert!(analysis.loops[0].plants[0].margins.is_ok(), "the equilibrium holds");
     assert!(map.stability() == Stability::Unstable && map.unstable() > 0 && !analysis.all_held());
     assert!(analysis.text().contains("DO NOT HOLD"), "{}", analysis.text());
+}
+
+/// A law that accumulates, and forgets.
+const LEAKING: [&str; 2] = ["controller.C.law=\"accumulating\"", "controller.C.leakage_per_s=0.5"];
+
+#[test]
+fn gains_flown_by_an_accumulating_law_have_no_less_margin_than_the_worst_that_it_may_come_to() {
+    let analysis = analysed(TUNED, &LEAKING);
+    let plant = &analysis.loops[0].plants[0];
+    let reach = plant.reach.as_ref().expect("leakage bounds the gains");
+    assert!(plant.map.is_none());
+    assert_eq!(reach.stability(), Stability::Stable);
+    let worst = reach.worst.margins.expect("stable").disk_margin;
+    let all = reach.points.iter().map(|point| point.margins.expect("stable").disk_margin);
+    assert!(all.fold(f64::INFINITY, f64::min) >= worst);
+    assert!(
+        analysis.text().contains("that the law may come to hold; the worst"),
+        "{}",
+        analysis.text()
+    );
+    // Steps of every size, so that the supervisor answers from its middle to beyond its range.
+    let mut least = f64::INFINITY;
+    for step_deg in ["0.1", "1.0", "4.0", "-4.0", "30.0"] {
+        let step = format!("setpoint.amplitude_deg={step_deg}");
+        let flown = study(TUNED, &[LEAKING[0], LEAKING[1], &step]);
+        let simulation = Simulation::of(&flown).expect("it flies");
+        let gains = &simulation.result("C").expect("it was flown").trace.gains;
+        for [kp, ki, kd] in gains.iter().step_by(25).map(|it| [it.kp, it.ki, it.kd]) {
+            let fixed = format!(
+                "[[controller]]\nname = \"C\"\nkind = \"pid\"\nkp = {kp:?}\nki = {ki:?}\nkd = {kd:?}\n"
+            );
+            let (before, _) = TUNED.split_once("[[controller]]").expect("a controller");
+            let margins = analysed(&format!("{before}{fixed}"), &[]).loops[0].margins();
+            least = least.min(margins.expect("stable").disk_margin);
+        }
+    }
+    assert!(worst <= least, "{worst} {least}");
+}
+
+#[test]
+fn gains_that_nothing_bounds_have_no_worst() {
+    let analysis = analysed(TUNED, &[LEAKING[0]]);
+    assert!(analysis.loops[0].plants.is_empty());
+    let rests = ["controller.C.dead_zone={ error_deg = 0.1, change_deg_s = 0.1 }"];
+    let analysis = analysed(TUNED, &[LEAKING[0], rests[0]]);
+    assert!(analysis.loops[0].plants[0].reach.is_none());
+}
+
+#[test]
+fn gains_within_reach_that_would_not_hold_are_told_and_do_not_make_a_loop_unstable() {
+    let wild = ["controller.C.supervisor.output_scale.kp=1.5"];
+    let analysis = analysed(TUNED, &[&LEAKING[..], &wild[..]].concat());
+    let plant = &analysis.loops[0].plants[0];
+    let reach = plant.reach.as_ref().expect("leakage bounds the gains");
+    assert!(plant.margins.is_ok(), "at rest it holds");
+    assert_eq!(reach.stability(), Stability::Unstable);
+    assert!(reach.count(Stability::Unstable) > 0 && reach.worst.stability() == Stability::Unstable);
+    let text = analysis.text();
+    assert!(
+        text.contains("that the law may come to would NOT HOLD; the worst: the loop is unstable"),
+        "{text}"
+    );
+    assert!(text.contains("bounded from outside"), "{text}");
+    let json = &analysis.json()["controllers"][0]["frozen_gains_within_reach"];
+    assert_eq!(json["stability"], "unstable");
+    assert_eq!(json["unstable"], reach.count(Stability::Unstable));
+    assert_eq!(json["worst"]["gains"]["kp"], reach.worst.gains.kp);
 }
 
 /// The scenario with numbers for kp and kd at some cells, and 0 at the others.

@@ -59,29 +59,49 @@ fn frozen_gains_that_do_not_hold_the_plant_are_told_with_the_inputs_that_give_th
     assert_eq!(place.frozen, stable.place().frozen);
 }
 
-/// Under the accumulating law the gains add up beyond every point of the map, and an input that is evaluated beyond
-/// the range lies beyond it: no margin of the map is then one of all gains.
+/// An input that is evaluated beyond the range lies beyond the map: no margin of the map is then one of all gains.
 #[test]
 fn gains_beyond_the_map_have_no_frozen_margins() {
-    for [from, to] in [
-        ["law = \"memoryless\"", "law = \"accumulating\"\nleakage_per_s = 0.5"],
-        ["range = 5.0", "range = 5.0\nout_of_range = \"evaluate\""],
-    ] {
-        let text = JUMBO.replace(from, to);
-        for measure in ["frozen_stable", "frozen_disk_margin"] {
-            let limit = if measure == "frozen_stable" { "" } else { "least = 0.0" };
-            let requirement = format!("measure = \"{measure}\"\n{limit}\ncontroller = \"FSPID\"");
-            let judgement = one(&text, &requirement, &[]);
-            assert!(!judgement.met);
-            assert!(
-                matches!(judgement.found, Err(NotEvaluated::BeyondMap { .. })),
-                "{judgement:?}"
-            );
-        }
-        let at_rest =
-            one(&text, "measure = \"disk_margin\"\nleast = 0.0\ncontroller = \"FSPID\"", &[]);
-        assert!(at_rest.met, "{at_rest:?}");
+    let text = JUMBO.replace("range = 5.0", "range = 5.0\nout_of_range = \"evaluate\"");
+    for measure in ["frozen_stable", "frozen_disk_margin"] {
+        let limit = if measure == "frozen_stable" { "" } else { "least = 0.0" };
+        let requirement = format!("measure = \"{measure}\"\n{limit}\ncontroller = \"FSPID\"");
+        let judgement = one(&text, &requirement, &[]);
+        assert!(!judgement.met);
+        assert!(matches!(judgement.found, Err(NotEvaluated::BeyondMap { .. })), "{judgement:?}");
     }
+    let at_rest = one(&text, "measure = \"disk_margin\"\nleast = 0.0\ncontroller = \"FSPID\"", &[]);
+    assert!(at_rest.met, "{at_rest:?}");
+}
+
+/// Under the accumulating law the worst is that of all gains that the law may come to.
+#[test]
+fn frozen_margins_of_an_accumulating_law_are_the_least_of_what_it_may_come_to() {
+    let leaking = "law = \"accumulating\"\nleakage_per_s = 0.5";
+    let text = JUMBO.replace("law = \"memoryless\"", leaking);
+    let question = Question { every_point_in_full: true, ..Question::default() };
+    let analysis = Analysis::of(&study(&text, &[]), question).expect("it is analysed");
+    let reach = analysis.loops[1].plants[0].reach.as_ref().expect("leakage bounds the gains");
+    for (measure, of) in [
+        ("disk_margin", (|m| m.disk_margin) as fn(&Margins) -> f64),
+        ("phase_margin_deg", |m| m.phase_margin_deg),
+        ("gain_margin_db", Margins::smaller_gain_margin_db),
+    ] {
+        let requirement =
+            format!("measure = \"frozen_{measure}\"\nleast = 0.1\ncontroller = \"FSPID\"");
+        let judgement = one(&text, &requirement, &[]);
+        let least = reach.all().map(|it| of(&it.margins.expect("stable")));
+        let least = least.fold(f64::INFINITY, f64::min);
+        assert_eq!(judgement.found.as_ref().expect("stable").value, least, "{measure}");
+        let at = judgement.place().frozen.expect("it is told");
+        let [kp, ki, kd] = [at.gains.kp, at.gains.ki, at.gains.kd];
+        assert_eq!(fixed(&text, measure, [kp, ki, kd]), least, "{measure}: {at:?}");
+    }
+    let stable = one(&text, "measure = \"frozen_stable\"\ncontroller = \"FSPID\"", &[]);
+    assert!(stable.met, "{stable:?}");
+    let wild = ["controller.FSPID.supervisor.output_scale.kp=1.0"];
+    let unstable = one(&text, "measure = \"frozen_stable\"\ncontroller = \"FSPID\"", &wild);
+    assert!(!unstable.met && unstable.value_in_words() == "unstable", "{unstable:?}");
 }
 
 /// Grids with numbers for the three gains at some cells, and 0 at the others.
@@ -169,4 +189,8 @@ fn the_answer_says_that_the_cells_of_numbers_are_among_the_frozen_gains() {
     let cells = "the 49 cells where rules conclude numbers";
     assert!(told(&with_cells(JUMBO, &[])).contains(cells));
     assert!(!told(JUMBO).contains("49 cells"));
+    let reach = "of an accumulating law those that it may come to";
+    let leaking = "law = \"accumulating\"\nleakage_per_s = 0.5";
+    assert!(told(&JUMBO.replace("law = \"memoryless\"", leaking)).contains(reach));
+    assert!(!told(JUMBO).contains(reach));
 }

@@ -244,6 +244,18 @@ fn what_was_set_from_outside_is_in_the_replays() {
     assert!(replay.text.contains("confidence = \"recalled\""), "{}", replay.text);
 }
 
+/// A contest names the controller that the others are compared with, and a tuning the one that is tuned: replays of the
+/// others had an error in place of a number.
+#[test]
+fn a_replay_has_no_contest_and_no_tuning_which_name_other_controllers() {
+    let contest = "[contest]\nagainst = \"P\"\n[[contest.case]]\nname = \"as written\"\n[tuning]\ncontroller = \"P\"\n[[tuning.objective]]\nmeasure = \"iae_deg_s\"";
+    let (folder, path) = written(&format!("{JUMBO}\n{contest}\n{}", every_measure()));
+    let verification = verified(&path, &[], &[]);
+    replay_all(&verification, &folder.path().join("replay"));
+    let replay = &verification.replays(folder.path())[0];
+    assert!(!replay.text.contains("contest") && !replay.text.contains("tuning"), "{}", replay.text);
+}
+
 #[test]
 fn names_that_a_file_system_would_mind_make_sound_files() {
     let hostile = JUMBO

@@ -1,25 +1,29 @@
-//! The loops with the gains frozen at what the supervisor can produce.
+//! The loops with the gains frozen at what the supervisor can produce, or an accumulating law may come to.
 
 use fspid_core::Law;
 use fspid_fuzzy::OutOfRange;
+use fspid_proof::gain_set::IncrementMap;
 use fspid_sim::Controller;
 
 use super::linear::{PlantEvidence, of_margins, with_place};
-use crate::analysis::{FrozenMap, FrozenPoint, Margins};
+use crate::analysis::{FrozenGains, FrozenPoint, Margins};
 use crate::judgement::{Case, CasePlace, FrozenAt, NotEvaluated};
 use crate::metrics::Absent;
 use fspid_scenario::measure::Measure;
 use fspid_scenario::requirement::Requirement;
 
-/// Refuses controllers whose gains go beyond what a map of frozen gains shows.
+/// Refuses controllers whose gains go beyond what is looked at of frozen gains.
 pub(super) fn require_whole_map(controller: &Controller) -> Result<(), NotEvaluated> {
     let Controller::SelfTuning(fspid) = controller else {
         return Ok(());
     };
     let tuner = fspid.tuner();
-    if matches!(tuner.settings().law, Law::Accumulating { .. }) {
-        let why = "the accumulating law adds increments up, so that the gains go beyond the map";
-        return Err(NotEvaluated::BeyondMap { why });
+    if tuner.settings().law != Law::Memoryless {
+        let why = "nothing bounds the gains of the accumulating law: give it a leakage above 0, or each gain both gain limits";
+        return match IncrementMap::of(tuner, 1) {
+            Ok(_) => Ok(()),
+            Err(_) => Err(NotEvaluated::BeyondMap { why }),
+        };
     }
     // Where rules conclude numbers, and of a network, answers beyond the range are those of its ends.
     let is_level = !tuner.supervisor().has_labels();
@@ -35,36 +39,41 @@ pub(super) fn cases(
     loops: &[PlantEvidence],
     requirement: &Requirement,
 ) -> Result<Vec<Case>, NotEvaluated> {
-    let of_plant = |plant: &PlantEvidence| match &plant.at_rest.map {
-        Some(map) => mapped(plant, map, requirement),
-        None => case(plant.at_rest.margins, requirement, plant.place()),
+    let of_plant = |plant: &PlantEvidence| match (&plant.at_rest.map, &plant.at_rest.reach) {
+        (Some(map), _) => {
+            let at =
+                |point: &FrozenPoint| FrozenAt { gains: point.gains, inputs: Some(point.input) };
+            worst(plant, map.all().map(|point| (at(point), point.margins)), requirement)
+        }
+        (None, Some(reach)) => {
+            let at = |found: &FrozenGains| FrozenAt { gains: found.gains, inputs: None };
+            worst(plant, reach.all().map(|found| (at(found), found.margins)), requirement)
+        }
+        (None, None) => case(plant.at_rest.margins, requirement, plant.place()),
     };
     loops.iter().map(of_plant).collect()
 }
 
-/// The least of the frozen-gain map, the cells of numbers, and the worst gains between them.
-fn mapped(
+/// The least over all frozen gains with a plant.
+fn worst(
     plant: &PlantEvidence,
-    map: &FrozenMap,
+    all: impl Iterator<Item = (FrozenAt, Result<Margins, Absent>)> + Clone,
     requirement: &Requirement,
 ) -> Result<Case, NotEvaluated> {
-    let of = |point: &FrozenPoint| case(point.margins, requirement, place(plant, point));
-    let unstable = map.all().filter_map(|point| match point.margins {
-        Err(Absent::Unstable { spectral_radius }) => Some((spectral_radius, point)),
+    let of = |(at, margins): (FrozenAt, Result<Margins, Absent>)| {
+        case(margins, requirement, CasePlace { frozen: Some(at), ..plant.place() })
+    };
+    let unstable = all.clone().filter_map(|one| match one.1 {
+        Err(Absent::Unstable { spectral_radius }) => Some((spectral_radius, one)),
         _ => None,
     });
     // Where some gains do not hold the plant, the least stable of them are the ones to be told.
-    if let Some((_, point)) = unstable.max_by(|(one, _), (other, _)| one.total_cmp(other)) {
-        return of(point);
+    if let Some((_, one)) = unstable.max_by(|(one, _), (other, _)| one.total_cmp(other)) {
+        return of(one);
     }
-    let cases = map.all().map(of).collect::<Result<Vec<_>, _>>()?;
+    let cases = all.map(of).collect::<Result<Vec<_>, _>>()?;
     let least = cases.into_iter().min_by(|one, other| one.value.total_cmp(&other.value));
     least.ok_or(NotEvaluated::Absent(Absent::NotFinite))
-}
-
-fn place(plant: &PlantEvidence, point: &FrozenPoint) -> CasePlace {
-    let frozen = FrozenAt { gains: point.gains, inputs: Some(point.input) };
-    CasePlace { frozen: Some(frozen), ..plant.place() }
 }
 
 fn case(

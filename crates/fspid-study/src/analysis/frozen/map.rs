@@ -1,15 +1,14 @@
-//! Margins at every gain that a supervisor can produce, the gains standing still.
+//! Margins at every gain that a supervisor can produce under a law without memory.
 
 use fspid_core::{Fspid, Gains, Law};
-use fspid_lti::LoopFamily;
 use fspid_proof::gain_set::producible;
-use fspid_sim::loop_model::{LoopModel, Memory};
 use fspid_sim::{LinearPlant, Scenario, SimError};
 
-use super::Question;
-use super::answer::Margins;
-use super::rank::{judged, rank};
-use super::stability::Stability;
+use super::{FrozenLoops, REFINEMENTS, count, worst_of};
+use crate::analysis::Question;
+use crate::analysis::answer::Margins;
+use crate::analysis::rank::rank;
+use crate::analysis::stability::Stability;
 use crate::metrics::Absent;
 
 /// A gain triple and its margins.
@@ -38,12 +37,9 @@ pub struct FrozenMap {
     pub worst: FrozenPoint,
 }
 
-/// Halvings of the distance of points around the worst one.
-const REFINEMENTS: u32 = 4;
-
 impl FrozenMap {
     /// The map of a self-tuning controller with a plant; none for gains that remember.
-    pub(super) fn of(
+    pub(in crate::analysis) fn of(
         scenario: &Scenario,
         plant: &LinearPlant,
         fspid: &Fspid<f64>,
@@ -52,11 +48,12 @@ impl FrozenMap {
         if fspid.tuner().settings().law != Law::Memoryless {
             return Ok(None);
         }
-        Mapper::new(scenario, plant, fspid, question)?.map()
+        let rest = producible(fspid.tuner(), 0.0, 0.0);
+        Mapper(FrozenLoops::new(scenario, plant, fspid, rest, question)?).map()
     }
 
     /// Every gain that was looked at: on the map, at the cells, and the worst of the search.
-    pub fn all(&self) -> impl Iterator<Item = &FrozenPoint> {
+    pub fn all(&self) -> impl Iterator<Item = &FrozenPoint> + Clone {
         self.points.iter().chain(&self.nodes).chain([&self.worst])
     }
 
@@ -69,13 +66,18 @@ impl FrozenMap {
     /// Gains of the points of the map that do not hold the plant.
     #[must_use]
     pub fn unstable(&self) -> usize {
-        count(&self.points, Stability::Unstable)
+        Self::count(&self.points, Stability::Unstable)
     }
 
     /// Gains of the cells that do not hold the plant.
     #[must_use]
     pub fn unstable_nodes(&self) -> usize {
-        count(&self.nodes, Stability::Unstable)
+        Self::count(&self.nodes, Stability::Unstable)
+    }
+
+    /// How many of some of its points have this verdict.
+    pub(in crate::analysis) fn count(points: &[FrozenPoint], verdict: Stability) -> usize {
+        count(points.iter().map(FrozenPoint::stability), verdict)
     }
 
     /// True if every gain that was looked at holds the plant with margins that are proved.
@@ -93,41 +95,13 @@ impl FrozenPoint {
     }
 }
 
-/// How many of some gains have this verdict.
-pub(super) fn count(points: &[FrozenPoint], verdict: Stability) -> usize {
-    points.iter().filter(|point| point.stability() == verdict).count()
-}
+/// The loops of a map's gains.
+struct Mapper<'a>(FrozenLoops<'a>);
 
-/// The loops of all frozen gains, and how their margins are found.
-struct Mapper<'a> {
-    scenario: &'a Scenario,
-    plant: &'a LinearPlant,
-    fspid: &'a Fspid<f64>,
-    question: Question,
-    /// The loop with all of the memory that the gains at rest let out.
-    model: LoopModel<f64>,
-    /// The same for all gains at once, if they differ in its output alone.
-    family: Option<LoopFamily>,
-}
-
-impl<'a> Mapper<'a> {
-    fn new(
-        scenario: &'a Scenario,
-        plant: &'a LinearPlant,
-        fspid: &'a Fspid<f64>,
-        question: Question,
-    ) -> Result<Self, SimError> {
-        let rest = producible(fspid.tuner(), 0.0, 0.0);
-        let config = fspid.config_at(rest);
-        let model = LoopModel::of(scenario, plant, &config, Memory::of_gains(rest, &config))?
-            .sharpened(scenario, plant)?;
-        let family = model.family(question.point)?;
-        Ok(Self { scenario, plant, fspid, question, model, family })
-    }
-
+impl Mapper<'_> {
     fn map(&self) -> Result<Option<FrozenMap>, SimError> {
-        let side = self.question.map_points;
-        let range = self.fspid.tuner().supervisor().range();
+        let side = self.0.question.map_points;
+        let range = self.0.fspid.tuner().supervisor().range();
         let place = |index: usize| match side {
             1 => 0.0,
             _ => range * (2.0 * index as f64 / (side - 1) as f64 - 1.0),
@@ -138,17 +112,19 @@ impl<'a> Mapper<'a> {
             .collect::<Result<Vec<_>, _>>()?;
         let nodes = self.nodes().into_iter().map(|input| self.point(input));
         let nodes = nodes.collect::<Result<Vec<_>, _>>()?;
-        let Some(worst) = worst_of(points.iter().chain(&nodes)) else { return Ok(None) };
+        let Some(worst) = worst_of(points.iter().chain(&nodes), |it| &it.margins) else {
+            return Ok(None);
+        };
         let mut worst = self.refined(worst.clone(), range, 2.0 * range / side.max(2) as f64)?;
-        worst.margins = self.margins(worst.gains)?;
-        let beside = self.fspid.tuner().settings().second_input.beside();
+        worst.margins = self.0.margins_in_full(worst.gains)?;
+        let beside = self.0.fspid.tuner().settings().second_input.beside();
         Ok(Some(FrozenMap { beside, side, points, nodes, worst }))
     }
 
     /// Inputs at the numbers themselves, where rules conclude some: between them the gains are mixtures, so
     /// that the largest and the smallest of each are there.
     fn nodes(&self) -> Vec<[f64; 2]> {
-        let tuner = self.fspid.tuner();
+        let tuner = self.0.fspid.tuner();
         if tuner.supervisor().numbers().is_none() {
             return Vec::new();
         }
@@ -183,50 +159,7 @@ impl<'a> Mapper<'a> {
     }
 
     fn point(&self, input: [f64; 2]) -> Result<FrozenPoint, SimError> {
-        let gains = producible(self.fspid.tuner(), input[0], input[1]);
-        let margins = match self.quick_margins(gains) {
-            Some(margins) => Ok(margins),
-            None => self.margins(gains)?,
-        };
-        Ok(FrozenPoint { input, gains, margins })
+        let gains = producible(self.0.fspid.tuner(), input[0], input[1]);
+        Ok(FrozenPoint { input, gains, margins: self.0.margins(gains)? })
     }
-
-    /// Margins by the family, where it is sure of them and the gains let out the memory that it has.
-    fn quick_margins(&self, gains: Gains<f64>) -> Option<Margins> {
-        if self.question.every_point_in_full {
-            return None;
-        }
-        if !self.has_the_config_at(gains)
-            || Memory::of_gains(gains, self.fspid.config()) != self.model.settings().memory
-        {
-            return None;
-        }
-        let found = self.family.as_ref()?.margins(&[gains.kp, gains.ki, gains.kd])?;
-        Some(Margins::of(&found))
-    }
-
-    /// Whether the loop at these gains is the model's but for the gains: nothing follows them, or they are
-    /// where the model was made.
-    fn has_the_config_at(&self, gains: Gains<f64>) -> bool {
-        self.fspid.config_at(gains) == self.model.settings().config
-    }
-
-    /// Margins of one loop by eigenvalues.
-    fn margins(&self, gains: Gains<f64>) -> Result<Result<Margins, Absent>, SimError> {
-        let config = self.fspid.config_at(gains);
-        let memory = Memory::of_gains(gains, &config);
-        let open = if self.has_the_config_at(gains) && memory == self.model.settings().memory {
-            self.model.open(gains, self.question.point)?
-        } else {
-            let own = LoopModel::of(self.scenario, self.plant, &config, memory)?
-                .sharpened(self.scenario, self.plant)?;
-            own.open(gains, self.question.point)?
-        };
-        let margins = judged(&open)?.as_deref().map(Margins::of).map_err(|reason| *reason);
-        Ok(margins)
-    }
-}
-
-fn worst_of<'a>(points: impl Iterator<Item = &'a FrozenPoint>) -> Option<&'a FrozenPoint> {
-    points.min_by(|one, other| rank(&one.margins).total_cmp(&rank(&other.margins)))
 }

@@ -1,0 +1,108 @@
+//! Margins at every gain that a self-tuner can fly with, the gains standing still.
+//!
+//! Under the memoryless law gains belong to the supervisor's inputs: a [`FrozenMap`] over these. Under the accumulating law
+//! they belong to all that came before: a [`FrozenReach`] over the body of gains that a proof bounds them by.
+
+mod map;
+mod reach;
+
+use fspid_core::{Fspid, Gains};
+use fspid_lti::LoopFamily;
+use fspid_sim::loop_model::{LoopModel, Memory};
+use fspid_sim::{LinearPlant, Scenario, SimError};
+
+use super::Question;
+use super::answer::Margins;
+use super::rank::{judged, rank};
+use super::stability::Stability;
+use crate::metrics::Absent;
+pub use map::{FrozenMap, FrozenPoint};
+pub use reach::{FrozenGains, FrozenReach};
+
+/// Halvings of the distance of points around the worst one.
+const REFINEMENTS: u32 = 4;
+
+/// How many of some gains have this verdict.
+pub(super) fn count(all: impl Iterator<Item = Stability>, verdict: Stability) -> usize {
+    all.filter(|found| *found == verdict).count()
+}
+
+/// The loops of all frozen gains, and how their margins are found.
+struct FrozenLoops<'a> {
+    scenario: &'a Scenario,
+    plant: &'a LinearPlant,
+    fspid: &'a Fspid<f64>,
+    question: Question,
+    /// The loop with all of the memory that the gains it is made with let out.
+    model: LoopModel<f64>,
+    /// The same for all gains at once, if they differ in its output alone.
+    family: Option<LoopFamily>,
+}
+
+impl<'a> FrozenLoops<'a> {
+    /// The loops, made with some of the gains.
+    fn new(
+        scenario: &'a Scenario,
+        plant: &'a LinearPlant,
+        fspid: &'a Fspid<f64>,
+        gains: Gains<f64>,
+        question: Question,
+    ) -> Result<Self, SimError> {
+        let config = fspid.config_at(gains);
+        let model = LoopModel::of(scenario, plant, &config, Memory::of_gains(gains, &config))?
+            .sharpened(scenario, plant)?;
+        let family = model.family(question.point)?;
+        Ok(Self { scenario, plant, fspid, question, model, family })
+    }
+
+    /// Margins of gains, the quick way where that is allowed and sure.
+    fn margins(&self, gains: Gains<f64>) -> Result<Result<Margins, Absent>, SimError> {
+        match self.quick_margins(gains) {
+            Some(margins) => Ok(Ok(margins)),
+            None => self.margins_in_full(gains),
+        }
+    }
+
+    /// Margins by the family, where it is sure of them and the gains let out the memory that it has.
+    fn quick_margins(&self, gains: Gains<f64>) -> Option<Margins> {
+        if self.question.every_point_in_full {
+            return None;
+        }
+        if !self.has_the_config_at(gains)
+            || Memory::of_gains(gains, self.fspid.config()) != self.model.settings().memory
+        {
+            return None;
+        }
+        let found = self.family.as_ref()?.margins(&[gains.kp, gains.ki, gains.kd])?;
+        Some(Margins::of(&found))
+    }
+
+    /// Whether the loop at these gains is the model's but for the gains: nothing follows them, or they are
+    /// where the model was made.
+    fn has_the_config_at(&self, gains: Gains<f64>) -> bool {
+        self.fspid.config_at(gains) == self.model.settings().config
+    }
+
+    /// Margins of one loop by eigenvalues.
+    fn margins_in_full(&self, gains: Gains<f64>) -> Result<Result<Margins, Absent>, SimError> {
+        let config = self.fspid.config_at(gains);
+        let memory = Memory::of_gains(gains, &config);
+        let open = if self.has_the_config_at(gains) && memory == self.model.settings().memory {
+            self.model.open(gains, self.question.point)?
+        } else {
+            let own = LoopModel::of(self.scenario, self.plant, &config, memory)?
+                .sharpened(self.scenario, self.plant)?;
+            own.open(gains, self.question.point)?
+        };
+        let margins = judged(&open)?.as_deref().map(Margins::of).map_err(|reason| *reason);
+        Ok(margins)
+    }
+}
+
+/// The first of the worst.
+fn worst_of<'a, T: 'a>(
+    all: impl Iterator<Item = &'a T>,
+    margins: fn(&T) -> &Result<Margins, Absent>,
+) -> Option<&'a T> {
+    all.min_by(|one, other| rank(margins(one)).total_cmp(&rank(margins(other))))
+}
