@@ -248,7 +248,7 @@ fn what_was_set_from_outside_is_in_the_replays() {
 /// others had an error in place of a number.
 #[test]
 fn a_replay_has_no_contest_and_no_tuning_which_name_other_controllers() {
-    let contest = "[contest]\nagainst = \"P\"\n[[contest.case]]\nname = \"as written\"\n[tuning]\ncontroller = \"P\"\n[[tuning.objective]]\nmeasure = \"iae_deg_s\"";
+    let contest = "[contest]\nagainst = \"P\"\n[[contest.case]]\nname = \"as written\"\nset = []\n[tuning]\ncontroller = \"P\"\n[[tuning.objective]]\nmeasure = \"iae_deg_s\"";
     let (folder, path) = written(&format!("{JUMBO}\n{contest}\n{}", every_measure()));
     let verification = verified(&path, &[], &[]);
     replay_all(&verification, &folder.path().join("replay"));
