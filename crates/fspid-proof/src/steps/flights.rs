@@ -585,3 +585,6 @@ fn corners(bounds: [Interval; 3]) -> Vec<Between> {
     }
     found
 }
+
+#[cfg(test)]
+mod tests;
