@@ -42,7 +42,7 @@ const FAR: f64 = 30.0;
 /// The loop made ready for sets of flights.
 #[derive(Clone)]
 pub(super) struct Ready<'a> {
-    flown: Flown<'a>,
+    pub(super) flown: Flown<'a>,
     /// In which the ball is counted.
     norm: Norm,
     /// Of the form near rest.
@@ -587,4 +587,4 @@ fn corners(bounds: [Interval; 3]) -> Vec<Between> {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

@@ -507,3 +507,6 @@ impl Flown<'_> {
         inside.then_some(()).ok_or(Stop::Travel)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -16,7 +16,7 @@ const SETPOINT_RAD: f64 = 0.05;
 const HAIR: f64 = 1e-6;
 
 /// A loop with a limit everywhere, and its form near rest.
-struct Loop {
+pub(in crate::steps) struct Loop {
     certificate: Certificate,
     model: LoopModel<Interval>,
     set: GainSet,
@@ -50,7 +50,7 @@ fn description() -> LoopDescription {
 }
 
 impl Loop {
-    fn new() -> Self {
+    pub(in crate::steps) fn new() -> Self {
         let description = description();
         let asked = Asked::within(Range { setpoint_rad: SETPOINT_RAD, load_rad: 0.01 });
         let outcome = certify(&description, &asked, &Effort::default()).expect("an answer");
@@ -60,7 +60,7 @@ impl Loop {
         Self { certificate, model, set }
     }
 
-    fn ready(&self) -> Ready<'_> {
+    pub(in crate::steps) fn ready(&self) -> Ready<'_> {
         let terminal = &self.certificate.steps.as_ref().expect("steps are proved").terminal;
         let forms = [terminal, terminal];
         let Self { certificate, model, set } = self;
@@ -102,7 +102,7 @@ fn with_unknowns(ready: &Ready<'_>, dice: &mut Dice, symbols: usize, largest: f6
 }
 
 /// Flights at their rests.
-fn at_rest(ready: &Ready<'_>) -> Flight {
+pub(in crate::steps) fn at_rest(ready: &Ready<'_>) -> Flight {
     let mut flight = ready.unit(None);
     flight.setpoint = Affine::unknown([0.9 * SETPOINT_RAD, SETPOINT_RAD], SETPOINT);
     flight.load = Affine::unknown([0.0, 0.005], LOAD);
