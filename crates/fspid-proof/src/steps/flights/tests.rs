@@ -1,6 +1,10 @@
 //! What a ball of old unknowns holds, and what is near rest.
 
-use fspid_core::{ControllerSetting, Derivative, Limits, Pid, PidConfig};
+use fspid_core::{
+    ControllerSetting, Derivative, Fspid, Gains, Guard, Limits, Pid, PidConfig, SelfTuner,
+    TunerSettings,
+};
+use fspid_fuzzy::{Defuzzifier, OutOfRange, Supervisor};
 use fspid_sim::ElevatorSign;
 use fspid_sim::actuator::Actuator;
 use fspid_sim::loop_model::Sensing;
@@ -333,6 +337,80 @@ fn flights_of_another_loop_than_the_model_are_noticed_in_every_entry() {
         }
     }
     assert!(is_noticed(&|flown| flown.config.derivative.filter_s *= 1.0 + 1e-6));
+}
+
+/// The form is the claim's own, and falls at the gains near rest alone: how the ball grows at others is asked.
+#[test]
+fn only_of_fixed_gains_or_of_a_form_of_the_claim_it_is_known_before_that_a_free_sample_shrinks_the_ball()
+ {
+    let loop_ = Loop::new();
+    let mut tuned = loop_.certificate.description.clone();
+    let nominal = tuned.controller.nominal();
+    tuned.controller = self_tuner(nominal, *tuned.controller.config());
+    let terminal = &loop_.certificate.steps.as_ref().expect("proved").terminal;
+    let slower = Terminal { rate: 1.0 - 0.5 * (1.0 - terminal.rate), ..terminal.clone() };
+    let model = tuned.enclosed().expect("enclosed");
+    let set = |controller: &Controller| match controller {
+        Controller::Fixed(pid) => GainSet::fixed(pid.gains()),
+        Controller::SelfTuning(fspid) => {
+            crate::gain_set::IncrementMap::of(fspid.tuner(), 12).expect("bounded").gains(1.0)
+        }
+    };
+    let fixed = &loop_.certificate.description;
+    for (description, model, common, is_known) in [
+        (fixed, &loop_.model, terminal, true),
+        (fixed, &loop_.model, &slower, true),
+        (&tuned, &model, terminal, false),
+        (&tuned, &model, &slower, true),
+    ] {
+        let gains = set(&description.controller);
+        let ready = Ready::of(description, model, &gains, [terminal, common], None);
+        let ready = ready.expect("proved").expect("enclosed");
+        for mut growth in ready.growth.iter().cloned() {
+            let mut asked = false;
+            growth.of(&ready.norm, FREE, |_| {
+                asked = true;
+                Vec::new()
+            });
+            assert_eq!(asked, !is_known);
+        }
+    }
+}
+
+/// One that hardly moves its gains.
+fn self_tuner(nominal: Gains<f64>, config: PidConfig<f64>) -> Controller {
+    let rules = fspid_core::paper::rules();
+    let supervisor = Supervisor::new(&rules, 5.0, Defuzzifier::Exact, OutOfRange::Clamp);
+    let small = 1e-4;
+    let output_scale = Gains { kp: small, ki: small, kd: small };
+    let settings = TunerSettings { output_scale, ..TunerSettings::literal() };
+    let tuner = SelfTuner::new(nominal, supervisor.expect("allowed"), settings).expect("allowed");
+    Controller::SelfTuning(Fspid::new(tuner, config).expect("allowed"))
+}
+
+#[test]
+fn flights_land_as_soon_as_a_look_finds_them_near_rest_from_wherever_they_are_flown_on() {
+    let loop_ = Loop::new();
+    let mut ready = loop_.ready();
+    same(ready.slew_rad.expect("limited"), 0.5 * 90.0 * DEG * 0.02);
+    assert_eq!(ready.rests_s(), None);
+    let commands = Commands::step();
+    let patch = Patch { setpoint: [0.01, 0.0101], load: [0.0, 0.0] };
+    let way = Way { commands: &commands, patch, from: Beginning::Controller };
+    let begun = ready.begun(Beginning::Controller);
+    let whole = ready.landed(&way, begun.clone(), 0..2000).expect("it lands");
+    assert!(whole.flown == whole.samples && whole.samples % LOOKS == 0, "{whole:?}");
+    let flight = ready.until(&way, begun.clone(), 0..5).expect("known");
+    let part = ready.landed(&way, flight, 5..2000).expect("it lands");
+    assert_eq!(part, Landed { flown: whole.flown - 5, ..whole });
+    // Not a look before: the flights of then are not near rest.
+    let before = ready.until(&way, begun.clone(), 0..whole.samples - LOOKS).expect("known");
+    assert!(!ready.is_near(&before));
+    let too_short = ready.landed(&way, begun.clone(), 0..whole.samples - 1);
+    assert_eq!(too_short, Err((Stop::Lost, whole.samples - 1)));
+    // How many samples were flown before it was given up.
+    ready.flown.config.guard = Guard::new(0.005).expect("allowed");
+    assert_eq!(ready.landed(&way, begun, 0..2000), Err((Stop::Guard, 0)));
 }
 
 #[test]
