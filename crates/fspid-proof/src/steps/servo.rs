@@ -253,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_gap_adds_lies_on_its_line_and_lines_are_no_wider_than_a_piece_makes_them() {
+    fn what_a_gap_adds_lies_on_the_line_through_its_ends_and_no_further_than_a_piece_makes_it() {
         let (description, curve) = (navion(), curve());
         let plant = plant(&description);
         for seed in 0..150 {
@@ -269,10 +269,15 @@ mod tests {
                 }
             }
             let linear = curve.linear();
-            for ((line, [least, most]), linear) in lines.iter().zip(ends).zip(linear) {
+            let rises =
+                exact(&plant, a).into_iter().zip(exact(&plant, b)).map(|(from, to)| to - from);
+            for (((line, [least, most]), linear), rise) in
+                lines.iter().zip(ends).zip(linear).zip(rises)
+            {
                 let wide = 0.5 * (most - least);
                 let more = linear.magnitude() * RATE * DT_S / f64::from(PIECES);
                 assert!(line.half <= wide + more, "{seed}: {wide:e} {more:e} {line:?}");
+                assert!((line.slope * (b - a) - rise).abs() <= more, "{seed}: {rise} {line:?}");
             }
             let last = lines.len() - 1;
             let of_last = lines[last].slope / linear[last].midpoint();

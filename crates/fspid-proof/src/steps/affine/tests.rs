@@ -186,17 +186,19 @@ fn combinations<const N: usize>(of: [&[f64]; N]) -> impl Iterator<Item = [f64; N
     })
 }
 
-/// Balls that are lost in a large one, each half a digit of it.
+/// Balls that are lost in a large one, each half a digit of it, and likewise what terms are off.
 #[test]
-fn the_ball_of_a_sum_holds_what_rounding_drops_and_not_much_more() {
-    let ball = |of_ball: f64| Affine { of_ball, ..Affine::default() };
+fn the_own_of_a_sum_holds_what_rounding_drops_and_not_much_more() {
+    let ball = |own: f64| Affine { off: own, of_ball: own, ..Affine::default() };
     let (large, lost) = (ball(1.0), ball(HALF_A_DIGIT));
     for count in 1..300_usize {
         let terms = [&large].into_iter().chain(std::iter::repeat_n(&lost, count));
         let sum = Affine::sum(terms.map(|term| (Interval::ONE, term)));
-        let beyond = (sum.of_ball - 1.0) / HALF_A_DIGIT;
         let lost = count as f64;
-        assert!(beyond >= lost && beyond <= 9.0 * lost + 60.0, "{count}: {beyond}");
+        for own in [sum.off, sum.of_ball] {
+            let beyond = (own - 1.0) / HALF_A_DIGIT;
+            assert!(beyond >= lost && beyond <= 9.0 * lost + 60.0, "{count}: {beyond}");
+        }
     }
 }
 
