@@ -10,6 +10,7 @@ fn the_spread_of_a_number_is_at_least_its_parts_and_no_more_than_rounding_above(
         let parts = (0..count).map(|at| if at % 3 == 0 { -(at as f64) } else { at as f64 });
         let whole = (0..count).sum::<usize>() as f64;
         let number = Affine { parts: parts.collect(), ..Affine::default() };
+        assert_eq!(number.parts.each().len(), count);
         let spread = number.spread();
         assert!(spread >= whole && spread <= whole * (1.0 + 1e-12) + 1e-300, "{count}: {spread}");
         let wider = number.clone().and_noise(0.75, &mut || count + 2);
@@ -330,6 +331,12 @@ fn a_range_holds_what_is_less_than_a_digit_of_its_middle() {
         assert!(range.lower() < centre && range.upper() > centre, "{range:?}");
         assert!(range.width() <= 6.0 * f64::EPSILON, "{range:?}");
     }
+    // Of a large middle a digit is large, and of a small one small.
+    for centre in [1024.0, 1.0 / 1024.0] {
+        let range = number(centre, &[0.1 * f64::EPSILON * centre]).range();
+        assert!(range.lower() < centre && range.upper() > centre, "{range:?}");
+        assert!(range.width() <= 6.0 * f64::EPSILON * centre, "{range:?}");
+    }
 }
 
 #[test]
@@ -338,6 +345,25 @@ fn noise_upon_a_part_holds_what_rounding_drops_of_it() {
     let whole = number(0.0, &[1.0]).and_noise(noise, &mut || 0);
     assert_eq!(whole.parts.of(0).to_bits(), 1.0_f64.to_bits(), "lost");
     assert!(whole.off >= noise && whole.off <= 5.0 * noise, "{}", whole.off);
+}
+
+/// In whole numbers.
+#[test]
+fn numbers_are_added_and_taken_off_and_put_in_place_of_an_unknown() {
+    let (one, other) = (number(3.0, &[1.0, -2.0]), number(-1.0, &[0.5, 0.0, 4.0]));
+    for (found, centre, parts) in [
+        (one.plus(&other), 2.0, [1.5, -2.0, 4.0]),
+        (one.less(&other), 4.0, [0.5, -2.0, -4.0]),
+        (one.with(1, &other), 5.0, [0.0, 0.0, -8.0]),
+        (other.with(1, &one), -1.0, [0.5, 0.0, 4.0]),
+        (other.times(Interval::point(-2.0)), 2.0, [-1.0, 0.0, -8.0]),
+    ] {
+        assert!((found.centre - centre).abs() <= 0.0, "{found:?} {centre}");
+        assert!(found.off < 1e-13, "{found:?}");
+        for (at, part) in parts.into_iter().enumerate() {
+            assert!((found.parts.of(at) - part).abs() <= 0.0, "{found:?} {parts:?}");
+        }
+    }
 }
 
 #[test]
