@@ -64,7 +64,7 @@ impl Curve {
             // The curve is Lipschitz, so that a knot may be called by a float near it.
             let slope = plant.over(left)?.by_command;
             let value = landed(&plant, [ran, left], limit, limit * lag_s)?;
-            let beside = (gap - Interval::point(gap.midpoint())).hull(Interval::ZERO);
+            let beside = Interval::point(gap.midpoint()) - gap;
             let value = value.iter().zip(&slope).map(|(value, slope)| *value + *slope * beside);
             knots.push((gap.midpoint(), value.collect()));
             if piece > 0 {
@@ -186,4 +186,193 @@ fn landed(
     let moved = follow.product(&IntervalMatrix::from_rows(&states)?)?;
     let command = deflection + gap_left;
     Ok(moved.entries().zip(by_command).map(|(value, by)| value + by * command).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use fspid_core::{Gains, Pid, PidConfig};
+    use fspid_sim::actuator::Actuator;
+    use fspid_sim::loop_model::Sensing;
+    use fspid_sim::{Controller, ElevatorSign};
+
+    use super::*;
+    use crate::rest::drawn::Dice;
+
+    const RATE: f64 = 0.35;
+    const LAG_S: f64 = 0.1;
+    const DT_S: f64 = 0.05;
+
+    /// The Navion behind a servo of 20 deg/s.
+    fn navion() -> LoopDescription {
+        let gains = Gains { kp: 0.82, ki: 0.43, kd: 0.165 };
+        let servo = Actuator::first_order(LAG_S).and_then(|servo| servo.with_rate_limit(RATE));
+        let pid = Pid::new(gains, PidConfig::sampled_every(DT_S));
+        LoopDescription {
+            numerator: vec![-11.01, -22.6, -1.31],
+            denominator: vec![1.0, 5.1, 13.3, 0.684, 0.632],
+            elevator_sign: ElevatorSign::NoseDownPositive,
+            actuator: servo.expect("allowed"),
+            pitch: Sensing::DIRECT,
+            rate: Sensing::DIRECT,
+            controller: Controller::Fixed(pid.expect("allowed")),
+        }
+    }
+
+    fn plant(description: &LoopDescription) -> PrintedPlant<'_> {
+        PrintedPlant {
+            numerator: &description.numerator,
+            denominator: &description.denominator,
+            elevator_sign: description.elevator_sign,
+            lag: ActuatorLag::from(description.actuator.lag()),
+            dt_s: DT_S,
+        }
+    }
+
+    fn curve() -> Curve {
+        Curve::of(&navion()).expect("enclosed").expect("a rate limit")
+    }
+
+    /// D at a gap, from the time at the rate limit, without pieces.
+    fn exact(plant: &PrintedPlant<'_>, gap: f64) -> Vec<f64> {
+        let size = gap.abs();
+        let ran = (size / RATE - LAG_S).clamp(0.0, DT_S);
+        let times = [ran, DT_S - ran].map(Interval::point);
+        let left = Interval::point(size.min(RATE * LAG_S));
+        let landed = landed(plant, times, Interval::point(RATE), left).expect("enclosed");
+        landed.iter().map(|value| value.midpoint() * gap.signum()).collect()
+    }
+
+    /// A range of gaps: of the linear part, of either side, across zero, and beyond where D stands still.
+    fn drawn(dice: &mut Dice) -> [f64; 2] {
+        let most = 1.3 * RATE * (LAG_S + DT_S);
+        let one = dice.between(-most, most);
+        let other = dice.between(-most, most);
+        let near = one + 0.1 * other;
+        let end = if dice.part() < 0.5 { other } else { near };
+        [one.min(end), one.max(end)]
+    }
+
+    #[test]
+    fn what_a_gap_adds_lies_on_the_line_through_its_ends_and_no_further_than_a_piece_makes_it() {
+        let (description, curve) = (navion(), curve());
+        let plant = plant(&description);
+        for seed in 0..150 {
+            let [a, b] = drawn(&mut Dice::new(seed));
+            let (lines, share) = curve.lines(Interval::between(a, b));
+            let mut ends = vec![[f64::INFINITY, f64::NEG_INFINITY]; lines.len()];
+            for step in 0..=20 {
+                let gap = a + (b - a) * f64::from(step) / 20.0;
+                for ((line, value), ends) in lines.iter().zip(exact(&plant, gap)).zip(&mut ends) {
+                    let off = value - line.slope * gap - line.offset.midpoint();
+                    assert!(off.abs() <= line.half + 1e-15, "{seed}: {off:e} {line:?}");
+                    *ends = [ends[0].min(off), ends[1].max(off)];
+                }
+            }
+            let linear = curve.linear();
+            let rises =
+                exact(&plant, a).into_iter().zip(exact(&plant, b)).map(|(from, to)| to - from);
+            for (((line, [least, most]), linear), rise) in
+                lines.iter().zip(ends).zip(linear).zip(rises)
+            {
+                let wide = 0.5 * (most - least);
+                let more = linear.magnitude() * RATE * DT_S / f64::from(PIECES);
+                assert!(line.half <= wide + more, "{seed}: {wide:e} {more:e} {line:?}");
+                assert!((line.slope * (b - a) - rise).abs() <= more, "{seed}: {rise} {line:?}");
+            }
+            let last = lines.len() - 1;
+            let of_last = lines[last].slope / linear[last].midpoint();
+            assert!((share - of_last).abs() < 1e-9, "{seed}: {share} {of_last}");
+        }
+    }
+
+    /// A float stands for the gap at which a piece begins, which is known to some digits; so that slopes hold a little longer.
+    #[test]
+    fn slopes_hold_a_little_beyond_the_times_of_their_pieces() {
+        let (description, curve) = (navion(), curve());
+        let plant = plant(&description);
+        let over = |time_s: f64| plant.over(Interval::point(time_s)).expect("enclosed").by_command;
+        let holds = |slopes: &[Interval], time_s: f64| {
+            let beyond = [-0.9, 0.9].map(|part| over(time_s * (1.0 + part * WIDER)));
+            beyond.iter().all(|exact| {
+                slopes.iter().zip(exact).all(|(slope, exact)| slope.contains(exact.midpoint()))
+            })
+        };
+        let piece_s = DT_S / f64::from(PIECES);
+        assert!(holds(&curve.linear, DT_S));
+        assert_eq!(curve.slopes.len(), PIECES as usize);
+        for (place, slopes) in curve.slopes.iter().enumerate() {
+            let left_s = DT_S - piece_s * place as f64;
+            assert!(holds(slopes, left_s) && holds(slopes, left_s - piece_s), "{place}");
+        }
+        for (slope, exact) in curve.linear.iter().zip(over(DT_S)) {
+            assert!(slope.width() < 1e-9 * exact.magnitude(), "{slope:?}");
+        }
+    }
+
+    #[test]
+    fn knots_are_the_gaps_of_even_times_with_what_they_add() {
+        let (description, curve) = (navion(), curve());
+        let plant = plant(&description);
+        for (place, (at, value)) in curve.knots.iter().enumerate() {
+            let gap = RATE * (LAG_S + DT_S * place as f64 / f64::from(PIECES));
+            assert!((at - gap).abs() < 1e-15, "{place}: {at}");
+            for (value, exact) in value.iter().zip(exact(&plant, *at)) {
+                assert!((value.midpoint() - exact).abs() < 1e-13, "{place}: {value:?} {exact}");
+                assert!(value.width() < 1e-13, "{place}: {value:?}");
+            }
+        }
+        assert!(curve.knots.len() == PIECES as usize + 1 && curve.size() == 5);
+    }
+
+    #[test]
+    fn gaps_up_to_the_first_knot_are_linear_but_for_the_last_digits() {
+        let curve = curve();
+        let first = RATE * LAG_S;
+        for (gap, is_linear) in [(1.0 - 1e-8, true), (1.0 - 1e-10, false), (1.0 + 1e-10, false)] {
+            let gap = gap * first;
+            assert_eq!(curve.is_linear(Interval::between(0.0, gap)), is_linear, "{gap}");
+            assert_eq!(curve.is_linear(Interval::between(-gap, 0.5 * gap)), is_linear, "{gap}");
+        }
+    }
+
+    /// Beyond the last knot, however far, on either side.
+    #[test]
+    fn gaps_beyond_the_last_knot_add_what_it_does() {
+        let (description, curve) = (navion(), curve());
+        let last = RATE * (LAG_S + DT_S);
+        let exact = exact(&plant(&description), last);
+        let beyond = |from: f64| Interval::new(from, f64::INFINITY).unwrap();
+        for (gap, sign) in [
+            (beyond(last * (1.0 + 1e-8)), 1.0),
+            (beyond(7.0), 1.0),
+            (-beyond(last * (1.0 + 1e-8)), -1.0),
+            (-beyond(7.0), -1.0),
+        ] {
+            let (lines, share) = curve.lines(gap);
+            assert!(share.abs() <= 0.0, "{gap:?}: {share}");
+            for (line, exact) in lines.iter().zip(&exact) {
+                let off = line.offset.midpoint() - sign * exact;
+                assert!(line.slope.abs() <= 0.0 && line.half < 1e-13, "{gap:?}: {line:?}");
+                assert!(off.abs() < 1e-13, "{gap:?}: {line:?} {exact}");
+            }
+        }
+        for gap in [beyond(last * (1.0 + 1e-10)), -beyond(last * (1.0 - 1e-10))] {
+            let (lines, _) = curve.lines(gap);
+            assert!(lines.iter().all(|line| line.half > 1e300), "the last digits: {gap:?}");
+        }
+    }
+
+    /// A range of one gap has no slope.
+    #[test]
+    fn one_gap_adds_one_value() {
+        let (description, curve) = (navion(), curve());
+        let plant = plant(&description);
+        for gap in [-0.07, -0.04, -0.01, 0.0, 0.02, 0.045, 0.051, 0.09] {
+            let (lines, _) = curve.lines(Interval::point(gap));
+            for (line, exact) in lines.iter().zip(exact(&plant, gap)) {
+                let off = (line.offset.midpoint() - exact).abs();
+                assert!(line.slope.abs() <= 0.0 && off <= line.half + 1e-15, "{gap}: {line:?}");
+            }
+        }
+    }
 }
