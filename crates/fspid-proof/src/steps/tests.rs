@@ -12,6 +12,8 @@ use crate::steps::flights::{Beginning, Patch, Way};
 use crate::steps::joined::{Joined, narrowed};
 use crate::steps::sample::{Judge, Moment};
 
+pub(super) mod allowed;
+
 /// Samples of a flight, and what rounding of the simulator's own may be off, rad.
 const SAMPLES: usize = 160;
 const ROUNDING: f64 = 1e-9;
