@@ -529,3 +529,6 @@ impl Group {
         filled.then_some(()).ok_or("flights: the parts do not fill what is commanded")
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -238,3 +238,246 @@ impl Commands {
         legs
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use fspid_sim::Timing;
+    use fspid_sim::signal::{Disturbance, Interpolation, Profile, Shape};
+
+    use super::*;
+    use crate::rest::drawn::{self, Dice};
+
+    const DT_S: f64 = 0.01;
+
+    fn at(sample: u8) -> f64 {
+        f64::from(sample) * DT_S
+    }
+
+    /// Two seconds with the set-point and the loads of nobody.
+    fn nothing() -> Scenario {
+        let mut scenario = drawn::scenario(&mut Dice::new(0));
+        scenario.timing = Timing::new(DT_S, 2.0).expect("allowed");
+        scenario.setpoint = Profile::new(0.0, Shape::Step { at_s: 0.0 }).expect("allowed");
+        scenario.disturbances.clear();
+        scenario
+    }
+
+    fn steps(rows: &[(u8, f64)]) -> Profile {
+        let (times, values) = rows.iter().map(|(sample, value)| (at(*sample), *value)).unzip();
+        Profile::table(times, values, Interpolation::Hold).expect("a table")
+    }
+
+    fn load(entry: Entry, size_rad: f64, from: u8, samples: u8) -> Disturbance {
+        let shape = Shape::Pulse { at_s: at(from), width_s: at(samples) };
+        Disturbance::new(entry, size_rad, shape).expect("allowed")
+    }
+
+    fn of(scenario: &Scenario) -> Option<Commands> {
+        Commands::of(scenario).expect("flown in sets")
+    }
+
+    fn shares(all: &[(usize, f64)]) -> Shares {
+        Shares(all.to_vec())
+    }
+
+    /// A set-point, and loads before and behind the servo.
+    fn example() -> Commands {
+        Commands {
+            setpoint_rad: 0.1,
+            load_rad: 0.02,
+            setpoint: shares(&[(10, 1.0), (60, -0.5), (110, 0.0)]),
+            at_servo: shares(&[(5, 1.0)]),
+            at_elevator: shares(&[(5, -0.25), (30, 0.5)]),
+        }
+    }
+
+    fn changed(change: impl FnOnce(&mut Commands)) -> Commands {
+        let mut commands = example();
+        change(&mut commands);
+        commands
+    }
+
+    #[test]
+    fn signals_are_shares_of_the_largest_and_the_first_change_is_upwards() {
+        let mut scenario = nothing();
+        scenario.setpoint = steps(&[(3, -0.02), (5, 0.04), (7, 0.0)]);
+        let [behind, before] = [(Entry::Elevator, -0.01, 4), (Entry::Servo, 0.005, 6)]
+            .map(|(entry, size_rad, from)| load(entry, size_rad, from, 5));
+        scenario.disturbances = vec![behind, before];
+        let found = of(&scenario).expect("something");
+        let expected = Commands {
+            setpoint_rad: 0.04,
+            load_rad: 0.01,
+            setpoint: shares(&[(3, 0.5), (5, -1.0), (7, 0.0)]),
+            at_servo: shares(&[(6, -0.5), (11, 0.0)]),
+            at_elevator: shares(&[(4, 1.0), (9, 0.0)]),
+        };
+        assert_eq!(found, expected);
+        // A zero with a sign would be written as such.
+        let all = [&found.setpoint, &found.at_servo, &found.at_elevator];
+        let zeros = all.iter().flat_map(|it| &it.0).filter(|(_, share)| share.abs() <= 0.0);
+        let signs: Vec<u64> = zeros.map(|(_, share)| share.to_bits()).collect();
+        assert_eq!(signs, [0; 3]);
+    }
+
+    #[test]
+    fn a_set_point_alone_and_a_load_alone_are_commanded_and_nothing_is_not() {
+        assert_eq!(of(&nothing()), None);
+        let alone = Scenario { setpoint: steps(&[(3, -0.02)]), ..nothing() };
+        let found = of(&alone).expect("something");
+        assert_eq!(found.setpoint, shares(&[(3, 1.0)]));
+        assert!(found.load_rad <= 0.0 && found.at_servo.0.is_empty());
+        for (entry, size_rad) in [(Entry::Servo, 0.01), (Entry::Elevator, -0.01)] {
+            let disturbances = vec![load(entry, size_rad, 2, 3)];
+            let found = of(&Scenario { disturbances, ..nothing() }).expect("something");
+            assert!(found.setpoint_rad <= 0.0 && found.setpoint.0.is_empty());
+            let loads = if entry == Entry::Servo { &found.at_servo } else { &found.at_elevator };
+            assert_eq!(*loads, shares(&[(2, 1.0), (5, 0.0)]));
+        }
+    }
+
+    #[test]
+    fn a_share_is_flown_with_all_that_is_taken_for_the_same() {
+        let all = shares(&[(1, 0.0), (2, 1.0), (3, -1.0), (4, 0.3), (5, -0.7)]);
+        for sample in 1..4 {
+            let share = all.change(sample).expect("changes");
+            assert!(share.width() <= 0.0, "{share:?}");
+        }
+        for (sample, share) in [(4, 0.3_f64), (5, -0.7)] {
+            let flown = all.change(sample).expect("changes");
+            assert!(flown.width() <= 4.0 * SAME * share.abs(), "{flown:?}");
+            let near = |other: &f64| shares(&[(1, share)]).is_same(&shares(&[(1, *other)]));
+            let others = (-40_i8..=40).map(|part| share * (1.0 + f64::from(part) * 0.1 * SAME));
+            let same: Vec<f64> = others.filter(near).collect();
+            assert!(same.len() > 10, "{same:?}");
+            // The quotients that were rounded to these.
+            let around = same.iter().flat_map(|it| [it.next_down(), it.next_up()]);
+            around.for_each(|it| assert!(flown.contains(it), "{flown:?} {it:e}"));
+        }
+        assert!(all.change(6).is_none() && all.change(0).is_none());
+        assert!((all.before(3) - Interval::ONE).magnitude() <= 0.0);
+    }
+
+    #[test]
+    fn commands_cover_smaller_ones_of_the_same_shape() {
+        let own = example();
+        assert!(own.covers(&own) && own.covers(&own.scaled(0.5)));
+        // What is of no size is commanded nothing.
+        let still = |it: &mut Commands| (it.setpoint_rad, it.setpoint) = (0.0, Shares::default());
+        assert!(own.covers(&changed(still)));
+        let free = |it: &mut Commands| {
+            it.load_rad = 0.0;
+            (it.at_servo, it.at_elevator) = (Shares::default(), Shares::default());
+        };
+        assert!(own.covers(&changed(free)));
+        // A share that another size has rounded to another side.
+        let rounded = changed(|it| it.setpoint.0[1].1 = (-0.5_f64).next_up());
+        assert!(own.covers(&rounded) && rounded.covers(&own));
+    }
+
+    #[test]
+    fn commands_cover_neither_larger_ones_nor_other_shapes_or_times() {
+        let own = example();
+        let others: [(&str, Commands); 13] = [
+            ("larger set-point", changed(|it| it.setpoint_rad *= 1.1)),
+            ("larger load", changed(|it| it.load_rad *= 1.1)),
+            ("later set-point", changed(|it| it.setpoint.0[0].0 += 1)),
+            ("later load at the servo", changed(|it| it.at_servo.0[0].0 += 1)),
+            ("later load at the elevator", changed(|it| it.at_elevator.0[1].0 += 1)),
+            ("other share", changed(|it| it.setpoint.0[1].1 = 0.5)),
+            ("share that is off a little", changed(|it| it.setpoint.0[1].1 -= 2.0 * SAME)),
+            ("share that is off by rounding twice", changed(|it| it.setpoint.0[1].1 += SAME)),
+            ("other load at the servo", changed(|it| it.at_servo.0[0].1 = -1.0)),
+            ("other load at the elevator", changed(|it| it.at_elevator.0[1].1 = 1.0)),
+            ("another change", changed(|it| it.setpoint.0.push((200, 1.0)))),
+            ("another load", changed(|it| it.at_servo.0.push((200, 0.0)))),
+            ("one change less", changed(|it| it.at_elevator.0.truncate(1))),
+        ];
+        for (what, other) in others {
+            assert!(!own.covers(&other), "{what}");
+        }
+    }
+
+    #[test]
+    fn commands_of_sizes_that_are_reached_and_samples_that_rise_are_allowed() {
+        assert!(example().is_allowed());
+        let still = |it: &mut Commands| (it.setpoint_rad, it.setpoint) = (0.0, Shares::default());
+        assert!(changed(still).is_allowed());
+        let behind =
+            |it: &mut Commands| (it.at_servo, it.at_elevator.0[1].1) = (Shares::default(), 1.0);
+        assert!(changed(behind).is_allowed());
+        let many = |count: usize| Shares((0..count).map(|sample| (sample, 1.0)).collect());
+        assert!(changed(|it| it.setpoint = many(MOST_CHANGES)).is_allowed());
+        let refused: [(&str, Commands); 14] = [
+            ("too many", changed(|it| it.setpoint = many(MOST_CHANGES + 1))),
+            ("a sample twice", changed(|it| it.setpoint.0[1].0 = 10)),
+            ("samples that fall", changed(|it| it.at_elevator.0[1].0 = 3)),
+            ("a share above one", changed(|it| it.setpoint.0[1].1 = -1.5)),
+            ("a load above one", changed(|it| it.at_elevator.0[1].1 = 1.5)),
+            ("a share that is no number", changed(|it| it.at_elevator.0[1].1 = f64::NAN)),
+            ("a set-point that is not reached", changed(|it| it.setpoint.0[0].1 = 0.5)),
+            ("a load that is not reached", changed(|it| it.at_servo.0[0].1 = 0.5)),
+            ("a set-point of no size", changed(|it| it.setpoint_rad = 0.0)),
+            ("loads of no size", changed(|it| it.load_rad = 0.0)),
+            (
+                "a negative set-point",
+                changed(|it| {
+                    (it.setpoint_rad, it.setpoint) = (-0.01, Shares::default());
+                }),
+            ),
+            ("a set-point without end", changed(|it| it.setpoint_rad = f64::INFINITY)),
+            (
+                "a load that is no number",
+                changed(|it| {
+                    it.load_rad = f64::NAN;
+                    (it.at_servo, it.at_elevator) = (Shares::default(), Shares::default());
+                }),
+            ),
+            (
+                "nothing",
+                Commands {
+                    setpoint_rad: 0.0,
+                    load_rad: 0.0,
+                    setpoint: Shares::default(),
+                    at_servo: Shares::default(),
+                    at_elevator: Shares::default(),
+                },
+            ),
+        ];
+        for (what, commands) in refused {
+            assert!(!commands.is_allowed(), "{what}");
+        }
+    }
+
+    #[test]
+    fn loads_at_servo_and_elevator_add_up_and_scale_with_the_set_point() {
+        let own = example();
+        assert!((own.whole_load_rad() - 1.5 * 0.02).abs() < 1e-15, "{}", own.whole_load_rad());
+        let half = own.scaled(0.5);
+        assert!((half.setpoint_rad - 0.05).abs() < 1e-15 && (half.load_rad - 0.01).abs() < 1e-15);
+        assert_eq!(half.at_elevator, own.at_elevator);
+    }
+
+    #[test]
+    fn a_leg_begins_where_after_a_pause_something_else_changes() {
+        let legs = |setpoint: &[(usize, f64)], at_servo: &[(usize, f64)], dt_s: f64| {
+            let of = |it: &mut Commands| {
+                (it.setpoint, it.at_servo) = (shares(setpoint), shares(at_servo));
+                it.at_elevator = Shares::default();
+            };
+            changed(of).legs(dt_s)
+        };
+        let loaded = [(20, 1.0)];
+        // Half a second is a pause, and less is none; dt_s is a power of two, so that nothing is rounded.
+        let dt_s = 0.0625;
+        let paused = legs(&[(28, 1.0), (90, 0.0)], &loaded, dt_s);
+        assert_eq!(paused, [(0, Along::Load), (28, Along::Setpoint)]);
+        let both = legs(&[(27, 1.0), (90, 0.0)], &loaded, dt_s);
+        assert_eq!(both, [(0, Along::Both), (90, Along::Setpoint)]);
+        assert_eq!(legs(&[(28, 1.0)], &loaded, 0.5 * dt_s), [(0, Along::Both)]);
+        assert_eq!(legs(&[(30, 1.0)], &loaded, 2.0), [(0, Along::Load), (30, Along::Setpoint)]);
+        // The same again begins none, however long the pause.
+        let again = legs(&[(50, 1.0), (500, 0.0)], &[(900, 1.0)], dt_s);
+        assert_eq!(again, [(0, Along::Setpoint), (900, Along::Load)]);
+    }
+}

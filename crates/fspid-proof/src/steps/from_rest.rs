@@ -197,3 +197,110 @@ impl Steps {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::steps::tests::allowed::{Found, jumping, limited, uneven};
+
+    const SMALL: Range = Range { setpoint_rad: 0.01, load_rad: 0.001 };
+
+    fn boxes(found: &Found, load_rad: f64, loads: usize) -> Boxes<'_> {
+        Boxes { flights: found.flights(), beginnings: &[Beginning::Rest], load_rad, loads }
+    }
+
+    /// Whether a small step is flown with all loads up to one, in two parts.
+    fn flies(found: &Found, load_rad: f64) -> bool {
+        boxes(found, load_rad, 2).pieces([[0.0, 1e-3]]).is_ok()
+    }
+
+    #[test]
+    fn loads_are_flown_from_the_largest_one_way_to_the_largest_the_other_way() {
+        // A servo that holds 0.25 rad one way and 0.35 the other: loads beyond are not flown, whichever way it is.
+        for mirrored in [false, true] {
+            let found = Found::of(uneven(mirrored), SMALL);
+            assert!(flies(&found, 0.2) && !flies(&found, 0.28), "{mirrored}");
+        }
+    }
+
+    fn steps(found: &Found, ends: &[f64]) -> Steps {
+        let terminal = found.search().terminal.clone();
+        Steps { setpoint_rad: 0.01, load_rad: 0.001, terminal, ends: ends.to_vec(), loads: 2 }
+    }
+
+    #[test]
+    fn boxes_fill_both_sides_but_where_one_stands_for_both() {
+        let found = Found::of(uneven(false), SMALL);
+        let fits = |ends: &[f64]| steps(&found, ends).fits(&found.certificate);
+        for good in [&[-0.01, 0.01][..], &[-0.01, 0.0, 0.01], &[-0.02, 0.004, 0.02]] {
+            assert_eq!(fits(good), Ok(()), "{good:?}");
+        }
+        let one_side: [&[f64]; 3] = [&[0.0, 0.01], &[0.01, 0.02], &[-0.01, 0.0]];
+        let ragged: [&[f64]; 4] =
+            [&[-0.01, 0.0, 0.0, 0.01], &[-0.01, 0.02, 0.01], &[-0.009, 0.01], &[-0.01, f64::NAN]];
+        for bad in one_side.into_iter().chain(ragged) {
+            assert_eq!(fits(bad), Err("steps: the boxes do not fill the steps"), "{bad:?}");
+        }
+        let odd = Found::of(limited(), SMALL);
+        assert_eq!(steps(&odd, &[0.0, 0.01]).fits(&odd.certificate), Ok(()));
+        assert!(steps(&odd, &[0.001, 0.01]).fits(&odd.certificate).is_err());
+    }
+
+    #[test]
+    fn steps_are_found_and_proved_with_a_box_for_each_side_that_is_its_own() {
+        for (description, least) in [(uneven(false), -0.01), (limited(), 0.0)] {
+            let found = Found::of(description, SMALL);
+            let steps = found.search().steps().expect("found");
+            let [first, last] = [steps.ends[0], steps.ends[steps.ends.len() - 1]];
+            assert!((first - least).abs() <= 0.0 && (last - 0.01).abs() <= 0.0, "{:?}", steps.ends);
+            assert_eq!(steps.loads, 2);
+            let proved = steps.proved(found.checked()).expect("proved");
+            assert_eq!(proved.sets, 2 * (steps.ends.len() - 1));
+            // Seconds, and not samples: a set is near its rest after eight of them at the earliest.
+            assert!(proved.settled_s >= 0.16 && proved.settled_s < 1.0, "{proved:?}");
+        }
+        let unloaded = Found::of(limited(), Range { load_rad: 0.0, ..SMALL });
+        assert_eq!(unloaded.search().steps().expect("found").loads, 1);
+    }
+
+    #[test]
+    fn no_step_is_found_where_none_is_flown_or_a_load_is_seen_at_once() {
+        let mut found = Found::of(uneven(false), SMALL);
+        found.certificate.range = Range { load_rad: 0.28, ..SMALL };
+        assert_eq!(found.search().steps(), None);
+        let found = Found::of(jumping(), SMALL);
+        assert_eq!(found.search().steps(), None);
+    }
+
+    #[test]
+    fn a_side_is_flown_outwards_within_the_work_of_a_check() {
+        let found = Found::of(limited(), SMALL);
+        let all = boxes(&found, 0.001, 1).side(0.01, usize::MAX);
+        assert!(all.len() > 3 && (all[all.len() - 1] - 0.01).abs() <= 0.0, "{all:?}");
+        assert!(all.windows(2).all(|pair| pair[0] < pair[1]), "{all:?}");
+        let mut each = boxes(&found, 0.001, 1);
+        let work = all.windows(2).take(2).map(|pair| {
+            let before = each.flights.flown;
+            each.pieces([[pair[0], pair[1]]]).expect("flown");
+            each.flights.flown - before
+        });
+        let work: Vec<usize> = work.collect();
+        let within = |allowed: usize| boxes(&found, 0.001, 1).side(0.01, allowed).len() - 1;
+        let of_counts = [work[0] - 1, work[0], work[0] + work[1] - 1, work[0] + work[1]];
+        assert_eq!(of_counts.map(within), [0, 1, 1, 2]);
+    }
+
+    #[test]
+    fn a_box_that_is_not_flown_is_halved_down_to_the_narrowest() {
+        let found = Found::of(uneven(false), SMALL);
+        let mut search = boxes(&found, 0.28, 1);
+        assert_eq!(search.side(0.01, usize::MAX).len(), 1);
+        let mut each = boxes(&found, 0.28, 1);
+        // From a quarter to twice the narrowest, each half as wide as the one before.
+        for halves in 0..10 {
+            let width = 0.01 * BEGINS / f64::from(1 << halves);
+            assert!(each.pieces([[0.0, width]]).is_err());
+        }
+        assert_eq!(search.flights.flown, each.flights.flown);
+    }
+}

@@ -37,7 +37,7 @@ use fspid_numeric::scalar::Interval;
 use fspid_sim::Controller;
 use fspid_sim::loop_model::LoopModel;
 
-use crate::certificate::{Certificate, Claim};
+use crate::certificate::Certificate;
 use crate::description::LoopDescription;
 use crate::gain_set::GainSet;
 use crate::limits;
@@ -131,17 +131,9 @@ fn given_up(stop: Stop) -> &'static str {
 }
 
 impl Terminal {
-    /// The claim that the form near rest is checked as.
+    /// The certificate with the level within which no limit acts near rest.
     pub(crate) fn near_rest(&self, certificate: &Certificate) -> Certificate {
-        let Self { form, rate, level, gains: _ } = self;
-        Certificate {
-            claim: Claim::CommonQuadratic { form: form.clone(), rate: *rate },
-            level: Some(*level),
-            steps: None,
-            commanded: None,
-            disturbances: Vec::new(),
-            ..certificate.clone()
-        }
+        Certificate { level: Some(self.level), ..certificate.clone() }
     }
 }
 
@@ -193,7 +185,7 @@ pub(crate) fn remembers(description: &LoopDescription) -> bool {
 /// True where a load moves the pitch rate at once, and the controller sees it: it is not said whether before or after.
 fn sees_loads_at_once(model: &LoopModel<Interval>, load_rad: f64) -> bool {
     let at_once = model.plant().rate.iter().skip(2).any(|entry| entry.magnitude() > 0.0);
-    load_rad > 0.0 && model.settings().config.rate_gain_s != 0.0 && at_once
+    load_rad > 0.0 && model.settings().uses_rate() && at_once
 }
 
 /// Where an error stays, gains that move are not those at the origin, and rest is elsewhere.

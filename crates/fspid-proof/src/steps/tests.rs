@@ -13,6 +13,7 @@ use crate::steps::joined::{Joined, narrowed};
 use crate::steps::sample::{Judge, Moment};
 
 mod every_structure;
+pub(super) mod allowed;
 
 /// Samples of a flight, and what rounding of the simulator's own may be off, rad.
 const SAMPLES: usize = 160;
