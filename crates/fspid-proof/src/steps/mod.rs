@@ -193,7 +193,7 @@ pub(crate) fn remembers(description: &LoopDescription) -> bool {
 /// True where a load moves the pitch rate at once, and the controller sees it: it is not said whether before or after.
 fn sees_loads_at_once(model: &LoopModel<Interval>, load_rad: f64) -> bool {
     let at_once = model.plant().rate.iter().skip(2).any(|entry| entry.magnitude() > 0.0);
-    load_rad > 0.0 && model.settings().config.rate_gain_s != 0.0 && at_once
+    load_rad > 0.0 && model.settings().uses_rate() && at_once
 }
 
 /// Where an error stays, gains that move are not those at the origin, and rest is elsewhere.
