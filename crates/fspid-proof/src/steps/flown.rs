@@ -150,7 +150,7 @@ mod tests {
             let values = state.iter().map(|value| Affine::constant(Interval::point(*value)));
             flight.values = values.collect();
             let passed = loop_.pass(&flight, Moment::Later, Judge::Forced(FREE, gains));
-            let passed = passed.ok().expect("nothing is judged").flight;
+            let passed = passed.expect("nothing is judged").flight;
             for (place, (row, value)) in rows.iter().zip(&passed.values).enumerate() {
                 let terms = row.iter().zip(&state).map(|(entry, at)| entry.midpoint() * at);
                 let (next, found) = (terms.sum::<f64>(), value.range().midpoint());

@@ -93,8 +93,8 @@ fn are_held(fspid: &Fspid<f64>, seed: u64) -> usize {
             for point in points(dice, sides) {
                 let Some(gains) = answered(fspid, point) else { continue };
                 compared += 1;
-                for gain in 0..3 {
-                    let off = (gains[gain] - found.middle[gain]).abs();
+                for (gain, value) in gains.into_iter().enumerate() {
+                    let off = (value - found.middle[gain]).abs();
                     assert!(off <= found.radius[gain], "{gain} at {point:?} of {sides:?}: {off}");
                 }
             }

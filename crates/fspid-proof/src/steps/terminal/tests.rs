@@ -150,7 +150,7 @@ fn a_form_falls_by_what_is_limited_and_by_what_gains_let_in() {
             found += WEIGHTS.into_iter().filter(|weight| is_the_sum(near, *weight)).count();
         });
     }
-    assert!(found >= WEIGHTS.len() + 1, "{found}");
+    assert!(found > WEIGHTS.len(), "{found}");
 }
 
 #[test]
