@@ -237,4 +237,19 @@ mod tests {
             assert_eq!((flights.flown, flights.most), (1000, most));
         }
     }
+
+    #[test]
+    fn jobs_that_nobody_waits_for_any_more_are_no_answer() {
+        let (description, gains) = navion();
+        let asked = Asked::within(Range { setpoint_rad: 0.05, load_rad: 0.0 });
+        let outcome = certify(&description, &asked, &Effort::default()).expect("an answer");
+        let Verdict::Proved(certificate, _) = outcome.verdict else { panic!("not proved") };
+        let terminal = &certificate.steps.as_ref().expect("steps are proved").terminal;
+        let model = description.enclosed().expect("enclosed");
+        let set = GainSet::fixed(gains);
+        let flights = Flights::of(&certificate, &model, &set, terminal, None);
+        let mut flights = flights.expect("enclosed").searching(1.0, || true);
+        let all = side_by_side(&mut flights, &[1, 2, 3], |_, job| Ok(*job));
+        assert_eq!(all, Err(Stop::Lost));
+    }
 }

@@ -185,3 +185,6 @@ fn around(middle: [f64; 3], bounds: [Interval; 3]) -> Between {
         [0, 1, 2].map(|gain: usize| (bounds[gain] - Interval::point(middle[gain])).magnitude());
     Between { middle, radius }
 }
+
+#[cfg(test)]
+mod tests;

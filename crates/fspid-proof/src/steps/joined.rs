@@ -161,3 +161,146 @@ fn slopes(flown: &Flown<'_>, sets: &[&Set], count: usize) -> Vec<[f64; 2]> {
     let mean = |[sum, weight]: [f64; 2]| if weight > 0.0 { sum / weight } else { 0.0 };
     sums.into_iter().map(|sums| sums.map(mean)).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use fspid_sim::Scenario;
+
+    use super::*;
+    use crate::description::LoopDescription;
+    use crate::gain_set::GainSet;
+    use crate::rest::drawn::{self, Dice};
+    use crate::steps::flights::{Beginning, begun};
+    use crate::steps::flown::flown;
+
+    /// A drawn loop; one that remembers has numbers of its tuner as well.
+    fn described(drawn: fn(&mut Dice) -> Scenario, seed: u64) -> LoopDescription {
+        let scenario = drawn(&mut Dice::new(seed));
+        let plant = scenario.plant.linear().expect("linear");
+        LoopDescription::of(&scenario, plant, &scenario.controllers[0].controller).expect("of it")
+    }
+
+    /// With a ball that reaches.
+    fn with_loop(description: &LoopDescription, asks: impl FnOnce(&Flown<'_>)) {
+        let model = description.enclosed().expect("enclosed");
+        let set = GainSet::fixed(description.controller.nominal());
+        let mut flown = flown(description, &model, &set, None).expect("flown");
+        flown.reach = (0..flown.layout.size).map(|place| 0.1 + 0.01 * place as f64).collect();
+        asks(&flown);
+    }
+
+    /// A set whose numbers move so much with set-point and load, with more of their own up to `left`, and a ball.
+    fn set(flown: &Flown<'_>, patch: Patch, slopes: [f64; 2], [left, ball]: [f64; 2]) -> Set {
+        let [setpoint, load] = patch.unknowns();
+        let mut flight = Flight { ball, ..begun(flown, Beginning::Rest) };
+        let mut symbols = flight.symbols;
+        let mut place = 0.0;
+        let Flight { values, last, tuned, .. } = &mut flight;
+        let all = values.iter_mut().chain([last]);
+        for number in all.chain(tuned.iter_mut().flat_map(Tuned::each_mut)) {
+            place += 1.0;
+            let [by_setpoint, by_load] = slopes.map(|slope| Interval::point(slope * place));
+            let middle = Affine::constant(Interval::point(0.3 * place));
+            let terms = [(by_setpoint, &setpoint), (by_load, &load), (Interval::ONE, &middle)];
+            *number = Affine::sum(terms).and_noise(left, &mut || {
+                symbols += 1;
+                symbols - 1
+            });
+        }
+        flight.symbols = symbols;
+        (patch, flight)
+    }
+
+    /// Everything that a number may be at a set-point and a load.
+    fn at(number: &Affine, patch: Patch, known: [f64; 2]) -> Interval {
+        let mut number = number.clone();
+        for ((symbol, unknown), value) in
+            [SETPOINT, LOAD].into_iter().zip(patch.unknowns()).zip(known)
+        {
+            let radius = unknown.parts.of(symbol);
+            if radius > 0.0 {
+                let share = Affine::constant(Interval::point((value - unknown.centre) / radius));
+                number = number.with(symbol, &share);
+            }
+        }
+        number.range()
+    }
+
+    const ONE: Patch = Patch { setpoint: [0.1, 0.2], load: [-0.02, -0.02] };
+    const OTHER: Patch = Patch { setpoint: [0.2, 0.5], load: [-0.02, -0.02] };
+
+    #[test]
+    fn what_is_joined_holds_every_flight_of_its_sets() {
+        let drawn: [fn(&mut Dice) -> Scenario; 2] =
+            [drawn::with_limits, drawn::remembering_with_limits];
+        for (seed, drawn) in drawn.into_iter().enumerate() {
+            let description = described(drawn, seed as u64);
+            with_loop(&description, |flown| {
+                let beside = Patch { load: [-0.02, 0.03], ..OTHER };
+                let sets = [
+                    set(flown, ONE, [1.5, 0.4], [0.01, 0.5]),
+                    set(flown, OTHER, [2.0, -0.7], [0.002, 0.0]),
+                    set(flown, beside, [-0.3, 0.9], [0.0, 0.1]),
+                ];
+                let each: Vec<&Set> = sets.iter().collect();
+                let joined = Joined::of(flown, &each).expect("three");
+                let whole = Patch { setpoint: [0.1, 0.5], load: [-0.02, 0.03] };
+                let flight = joined.flight(&sets[0].1, &Commands::step(), whole, 3);
+                for (patch, of_set) in &sets {
+                    for share in [0.0, 0.3, 1.0] {
+                        let known = [patch.setpoint, patch.load].map(|[a, b]| a + share * (b - a));
+                        for (one, all) in numbers(flown, of_set).zip(numbers(flown, &flight)) {
+                            let [one, all] = [at(&one, *patch, known), at(&all, whole, known)];
+                            let slack = Interval::between(-1e-12, 1e-12);
+                            assert!((all + slack).encloses(one), "{known:?}: {one:?} {all:?}");
+                        }
+                    }
+                }
+            });
+        }
+    }
+
+    #[test]
+    fn a_number_of_a_joined_set_moves_with_the_set_point_as_those_of_its_sets_and_has_an_unknown_of_its_own()
+     {
+        let description = described(drawn::remembering_with_limits, 1);
+        with_loop(&description, |flown| {
+            let sets =
+                [set(flown, ONE, [1.0, 5.0], [0.0; 2]), set(flown, OTHER, [2.0, 5.0], [0.0; 2])];
+            let joined = Joined::of(flown, &[&sets[0], &sets[1]]).expect("two");
+            // By the widths of their boxes, 0.1 and 0.3; a load that is known says nothing.
+            for (place, number) in joined.numbers.iter().enumerate() {
+                let [by_setpoint, by_load] = number.slopes;
+                let expected = 1.75 * (place + 1) as f64;
+                assert!((by_setpoint - expected).abs() < 1e-9, "{place}: {by_setpoint}");
+                assert!(by_load.abs() <= 0.0, "{place}: {by_load}");
+            }
+            let flight = joined.flight(&sets[0].1, &Commands::step(), ONE.hull(&OTHER), 3);
+            let mut before = OWN - 1;
+            let own = flight.values.iter().chain([&flight.last]);
+            let own = own.chain(flight.tuned.iter().flat_map(Tuned::each));
+            for (value, number) in own.zip(&joined.numbers) {
+                let parts = value.parts.each().iter().enumerate().skip(OWN);
+                let mut there = parts.filter(|(_, part)| part.abs() > 0.0);
+                let (symbol, radius) = there.next().expect("somewhat is left");
+                assert!(there.next().is_none() && symbol == before + 1, "{symbol} {before}");
+                let off = (radius - number.left.radius()).abs();
+                assert!(off <= 1e-9 * radius, "{radius} {:?}", number.left);
+                before = symbol;
+            }
+            assert_eq!(flight.symbols, before + 1);
+        });
+    }
+
+    #[test]
+    fn the_whole_of_a_set_is_the_set_to_the_bit() {
+        let description = described(drawn::with_limits, 0);
+        with_loop(&description, |flown| {
+            let wide = Patch { load: [-0.03, 0.05], ..ONE };
+            for patch in [wide, ONE] {
+                let whole = set(flown, patch, [1.0 / 3.0, 0.7], [0.01, 0.0]);
+                assert_eq!(narrowed(&whole, patch).values, whole.1.values);
+            }
+        });
+    }
+}

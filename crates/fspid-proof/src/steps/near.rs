@@ -113,3 +113,6 @@ pub(super) fn seen_within(
     };
     Ok([error_rad, second])
 }
+
+#[cfg(test)]
+mod tests;

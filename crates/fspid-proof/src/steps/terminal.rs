@@ -189,3 +189,6 @@ impl NearRest<'_> {
         })
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -210,3 +210,6 @@ impl<'a> Tuner<'a> {
         (!is_model).then_some(self.equations.numbers.change_divisor)
     }
 }
+
+#[cfg(test)]
+mod tests;

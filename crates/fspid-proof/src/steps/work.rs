@@ -201,3 +201,6 @@ fn common(certificate: &Certificate, terminal: &Terminal) -> Terminal {
         _ => terminal.clone(),
     }
 }
+
+#[cfg(test)]
+mod tests;

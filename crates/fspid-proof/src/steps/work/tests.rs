@@ -1,0 +1,115 @@
+//! What is counted as work, and which form falls for all gains.
+
+use fspid_core::fuzzy::{Defuzzifier, OutOfRange, Supervisor};
+use fspid_core::{
+    ControllerSetting, Fspid, Gains, Limits, Pid, PidConfig, SelfTuner, TunerSettings,
+};
+use fspid_lti::Matrix;
+use fspid_sim::ElevatorSign;
+use fspid_sim::actuator::Actuator;
+use fspid_sim::loop_model::Sensing;
+
+use super::*;
+use crate::scope::Range;
+use crate::steps::commands::Commands;
+use crate::steps::flights::Patch;
+use crate::{Asked, Effort, Verdict, certify};
+
+const GAINS: Gains<f64> = Gains { kp: 0.82, ki: 0.43, kd: 0.165 };
+
+fn config() -> PidConfig<f64> {
+    let limits = Limits::new(ControllerSetting::OutputLimits, -0.35, 0.35).expect("allowed");
+    PidConfig { limits: Some(limits), ..PidConfig::sampled_every(0.02) }
+}
+
+/// The Navion.
+fn navion() -> LoopDescription {
+    LoopDescription {
+        numerator: vec![-11.01, -22.6, -1.31],
+        denominator: vec![1.0, 5.1, 13.3, 0.684, 0.632],
+        elevator_sign: ElevatorSign::NoseDownPositive,
+        actuator: Actuator::first_order(0.1).expect("allowed"),
+        pitch: Sensing::DIRECT,
+        rate: Sensing::DIRECT,
+        controller: Controller::Fixed(Pid::new(GAINS, config()).expect("allowed")),
+    }
+}
+
+fn proved() -> Certificate {
+    let asked = Asked::within(Range { setpoint_rad: 0.05, load_rad: 0.0 });
+    let outcome = certify(&navion(), &asked, &Effort::default()).expect("an answer");
+    let Verdict::Proved(certificate, _) = outcome.verdict else { panic!("not proved") };
+    certificate
+}
+
+fn with_flights(asks: impl FnOnce(Flights<'_>)) {
+    let certificate = proved();
+    let terminal = &certificate.steps.as_ref().expect("steps are proved").terminal;
+    let model = navion().enclosed().expect("enclosed");
+    let set = GainSet::fixed(GAINS);
+    let flights = Flights::of(&certificate, &model, &set, terminal, None);
+    asks(flights.expect("enclosed"));
+}
+
+#[test]
+fn the_form_that_falls_for_all_gains_is_that_of_the_claim_with_its_rate_where_gains_move() {
+    let claimed = |rate: f64| Claim::CommonQuadratic { form: Matrix::identity(2), rate };
+    let form = Matrix::identity(2).scaled(3.0);
+    let terminal = Terminal { form, rate: 0.99, level: 7.0, gains: None };
+    let mut certificate = Certificate { claim: claimed(0.9), ..proved() };
+    assert_eq!(common(&certificate, &terminal), terminal, "gains stand still");
+    let (rules, rule) = (fspid_core::paper::rules(), Defuzzifier::Exact);
+    let labels = Supervisor::new(&rules, 5.0, rule, OutOfRange::Clamp).expect("allowed");
+    let tuner = SelfTuner::new(GAINS, labels, TunerSettings::literal()).expect("allowed");
+    let fspid = Fspid::new(tuner, config()).expect("allowed");
+    certificate.description.controller = Controller::SelfTuning(fspid);
+    let of_claim = Terminal { form: Matrix::identity(2), rate: 0.9, ..terminal.clone() };
+    assert_eq!(common(&certificate, &terminal), of_claim);
+    certificate.claim = claimed(1.0);
+    assert_eq!(common(&certificate, &terminal), terminal, "it does not fall");
+}
+
+#[test]
+fn of_two_the_later_counts_and_the_work_of_both() {
+    let one = Landed { flown: 2, samples: 9, limited: true };
+    let other = Landed { flown: 3, samples: 4, limited: false };
+    let both = Landed { flown: 5, samples: 9, limited: true };
+    assert_eq!([one.worse(other), other.worse(one)], [both; 2]);
+}
+
+#[test]
+fn a_flight_may_go_beyond_the_most_work_by_its_own_length_and_none_begins_there() {
+    with_flights(|mut flights| {
+        (flights.each, flights.longest, flights.most) = (6, 10, 6000);
+        for (flown, left) in
+            [(600, Ok(900)), (5990, Ok(10)), (6000, Ok(10)), (6001, Err(Stop::Work))]
+        {
+            flights.flown = flown;
+            assert_eq!(flights.left(), left, "{flown}");
+        }
+        let commands = Commands::step();
+        let from = Beginning::Controller;
+        let patch = Patch { setpoint: [0.0099, 0.01], load: [0.0; 2] };
+        let way = Way { commands: &commands, patch, from };
+        let begun = flights.begun(from);
+        flights.flown = 5990;
+        assert_eq!(flights.until(&way, begun.clone(), [3, 14]).err(), Some(Stop::Work));
+        assert!(flights.until(&way, begun, [3, 13]).is_ok());
+        assert_eq!(flights.flown, 5990 + 10 * 6);
+        flights.flown = 0;
+        flights.halted.store(true, Ordering::Relaxed);
+        assert_eq!(flights.left(), Err(Stop::Lost));
+    });
+}
+
+#[test]
+fn a_search_may_take_its_part_of_more_than_a_check_and_is_stopped_by_who_asked() {
+    with_flights(|mut flights| {
+        flights.most = 1000;
+        let search = flights.searching(0.5, || true);
+        assert_eq!((search.most, search.paced), (3000, true));
+        assert!(search.is_stopped() && search.left() == Err(Stop::Lost));
+        assert!(!search.another().is_stopped(), "another is told by `halted` alone");
+        assert_eq!(search.another().most, 3000);
+    });
+}
