@@ -12,8 +12,8 @@ use crate::steps::flights::{Beginning, Patch, Way};
 use crate::steps::joined::{Joined, narrowed};
 use crate::steps::sample::{Judge, Moment};
 
-mod every_structure;
 pub(super) mod allowed;
+mod every_structure;
 
 /// Samples of a flight, and what rounding of the simulator's own may be off, rad.
 const SAMPLES: usize = 160;

@@ -398,10 +398,10 @@ fn flights_land_as_soon_as_a_look_finds_them_near_rest_from_wherever_they_are_fl
     let patch = Patch { setpoint: [0.01, 0.0101], load: [0.0, 0.0] };
     let way = Way { commands: &commands, patch, from: Beginning::Controller };
     let begun = ready.begun(Beginning::Controller);
-    let whole = ready.landed(&way, begun.clone(), 0..2000).expect("it lands");
+    let whole = ready.landed(&way, begun.clone(), 0..20_000).expect("it lands");
     assert!(whole.flown == whole.samples && whole.samples % LOOKS == 0, "{whole:?}");
     let flight = ready.until(&way, begun.clone(), 0..5).expect("known");
-    let part = ready.landed(&way, flight, 5..2000).expect("it lands");
+    let part = ready.landed(&way, flight, 5..20_000).expect("it lands");
     assert_eq!(part, Landed { flown: whole.flown - 5, ..whole });
     // Not a look before: the flights of then are not near rest.
     let before = ready.until(&way, begun.clone(), 0..whole.samples - LOOKS).expect("known");
@@ -410,7 +410,7 @@ fn flights_land_as_soon_as_a_look_finds_them_near_rest_from_wherever_they_are_fl
     assert_eq!(too_short, Err((Stop::Lost, whole.samples - 1)));
     // How many samples were flown before it was given up.
     ready.flown.config.guard = Guard::new(0.005).expect("allowed");
-    assert_eq!(ready.landed(&way, begun, 0..2000), Err((Stop::Guard, 0)));
+    assert_eq!(ready.landed(&way, begun, 0..20_000), Err((Stop::Guard, 0)));
 }
 
 #[test]
