@@ -28,7 +28,7 @@ fn tight(dice: &mut drawn::Dice, seed: u64, config: PidConfig<f64>) -> PidConfig
     PidConfig {
         anti_windup,
         limits: Some(around(dice.between(4.0, 15.0))),
-        slew_rad_s: (seed % 5 == 0).then(|| dice.between(20.0, 80.0) * DEG),
+        slew_rad_s: seed.is_multiple_of(5).then(|| dice.between(20.0, 80.0) * DEG),
         rate_gain_s: dice.between(0.05, 0.4),
         ..config
     }

@@ -128,7 +128,8 @@ impl Search<'_> {
                 let side: Interval = bounds[gain];
                 near[gain] =
                     (from[gain] + way * distance * side.radius()).clamp(side.lower(), side.upper());
-                if near == from || !self.set.contains(gains(near)) {
+                let stays = near[gain].to_bits() == from[gain].to_bits();
+                if stays || !self.set.contains(gains(near)) {
                     continue;
                 }
                 let point = self.point(gains(near))?;
