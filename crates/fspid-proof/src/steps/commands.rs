@@ -67,9 +67,12 @@ impl Shares {
         self.0.iter().map(|(_, share)| share.abs()).fold(0.0, f64::max)
     }
 
-    /// True for the same changes, but for what shares are rounded by.
-    fn is_same(&self, other: &Self) -> bool {
-        let near = |one: f64, other: f64| (one - other).abs() <= SAME * one.abs();
+    /// True for the same changes, but for what shares are rounded by; none and the whole are flown without that.
+    fn holds(&self, other: &Self) -> bool {
+        let near = |one: f64, other: f64| match one.abs() {
+            0.0 | 1.0 => (one - other) == 0.0,
+            _ => (one - other).abs() <= SAME * one.abs(),
+        };
         let mut pairs = self.0.iter().zip(&other.0);
         self.0.len() == other.0.len()
             && pairs
@@ -192,7 +195,7 @@ impl Commands {
     /// True where everything that `other` commands is one of these.
     #[must_use]
     pub fn covers(&self, other: &Self) -> bool {
-        let same = |own: &Shares, other: &Shares, size: f64| !(size > 0.0) || own.is_same(other);
+        let same = |own: &Shares, other: &Shares, size: f64| !(size > 0.0) || own.holds(other);
         self.setpoint_rad >= other.setpoint_rad
             && self.load_rad >= other.load_rad
             && same(&self.setpoint, &other.setpoint, other.setpoint_rad)
@@ -346,13 +349,17 @@ mod tests {
         for (sample, share) in [(4, 0.3_f64), (5, -0.7)] {
             let flown = all.change(sample).expect("changes");
             assert!(flown.width() <= 4.0 * SAME * share.abs(), "{flown:?}");
-            let near = |other: &f64| shares(&[(1, share)]).is_same(&shares(&[(1, *other)]));
+            let near = |other: &f64| shares(&[(1, share)]).holds(&shares(&[(1, *other)]));
             let others = (-40_i8..=40).map(|part| share * (1.0 + f64::from(part) * 0.1 * SAME));
             let same: Vec<f64> = others.filter(near).collect();
             assert!(same.len() > 10, "{same:?}");
             // The quotients that were rounded to these.
             let around = same.iter().flat_map(|it| [it.next_down(), it.next_up()]);
             around.for_each(|it| assert!(flown.contains(it), "{flown:?} {it:e}"));
+        }
+        for share in [0.0_f64, 1.0, -1.0] {
+            let holds = |other: f64| shares(&[(1, share)]).holds(&shares(&[(1, other)]));
+            assert!(holds(share) && !holds(share.next_up()) && !holds(share.next_down()));
         }
         assert!(all.change(6).is_none() && all.change(0).is_none());
         assert!((all.before(3) - Interval::ONE).magnitude() <= 0.0);
