@@ -126,18 +126,16 @@ pub(super) fn side_by_side<'a, Job: Sync, Answer: Send>(
 
 #[cfg(test)]
 mod tests {
-    use fspid_core::{ControllerSetting, Derivative, Gains, Limits, Pid, PidConfig};
+    use fspid_core::{ControllerSetting, Derivative, Limits, Pid, PidConfig};
+    use fspid_sim::Controller;
     use fspid_sim::actuator::Actuator;
-    use fspid_sim::loop_model::Sensing;
-    use fspid_sim::{Controller, ElevatorSign};
 
     use super::*;
     use crate::description::LoopDescription;
     use crate::gain_set::GainSet;
-    use crate::scope::Range;
     use crate::steps::commands::Commands;
     use crate::steps::flights::{Beginning, Landed, Patch, Way};
-    use crate::{Asked, Effort, Verdict, certify};
+    use crate::steps::tests::navion::{GAINS, navion, proved};
 
     fn board(jobs: usize, most: usize) -> Board<char> {
         let answers = (0..jobs).map(|_| None).collect();
@@ -165,8 +163,7 @@ mod tests {
     }
 
     /// The Navion with a PID behind a servo of 20 deg/s.
-    fn navion() -> (LoopDescription, Gains<f64>) {
-        let gains = Gains { kp: 0.82, ki: 0.43, kd: 0.165 };
+    fn limited() -> LoopDescription {
         let limits = Limits::new(ControllerSetting::OutputLimits, -0.35, 0.35).expect("allowed");
         let config = PidConfig {
             derivative: Derivative { filter_s: 0.05 },
@@ -174,27 +171,17 @@ mod tests {
             ..PidConfig::sampled_every(0.02)
         };
         let servo = Actuator::first_order(0.1).and_then(|servo| servo.with_rate_limit(0.35));
-        let description = LoopDescription {
-            numerator: vec![-11.01, -22.6, -1.31],
-            denominator: vec![1.0, 5.1, 13.3, 0.684, 0.632],
-            elevator_sign: ElevatorSign::NoseDownPositive,
-            actuator: servo.expect("allowed"),
-            pitch: Sensing::DIRECT,
-            rate: Sensing::DIRECT,
-            controller: Controller::Fixed(Pid::new(gains, config).expect("allowed")),
-        };
-        (description, gains)
+        let pid = Pid::new(GAINS, config).expect("allowed");
+        navion(servo.expect("allowed"), Controller::Fixed(pid))
     }
 
     #[test]
     fn on_any_number_of_threads_sets_come_to_the_same_and_take_the_same_work() {
-        let (description, gains) = navion();
-        let asked = Asked::within(Range { setpoint_rad: 0.05, load_rad: 0.0 });
-        let outcome = certify(&description, &asked, &Effort::default()).expect("an answer");
-        let Verdict::Proved(certificate, _) = outcome.verdict else { panic!("not proved") };
+        let description = limited();
+        let certificate = proved(&description);
         let terminal = &certificate.steps.as_ref().expect("steps are proved").terminal;
         let model = description.enclosed().expect("enclosed");
-        let set = GainSet::fixed(gains);
+        let set = GainSet::fixed(GAINS);
         let commands = Commands::step();
         let flown = |largest_rad: &[f64], threads: usize, most: usize| {
             let flights = Flights::of(&certificate, &model, &set, terminal, None);
@@ -240,13 +227,11 @@ mod tests {
 
     #[test]
     fn jobs_that_nobody_waits_for_any_more_are_no_answer() {
-        let (description, gains) = navion();
-        let asked = Asked::within(Range { setpoint_rad: 0.05, load_rad: 0.0 });
-        let outcome = certify(&description, &asked, &Effort::default()).expect("an answer");
-        let Verdict::Proved(certificate, _) = outcome.verdict else { panic!("not proved") };
+        let description = limited();
+        let certificate = proved(&description);
         let terminal = &certificate.steps.as_ref().expect("steps are proved").terminal;
         let model = description.enclosed().expect("enclosed");
-        let set = GainSet::fixed(gains);
+        let set = GainSet::fixed(GAINS);
         let flights = Flights::of(&certificate, &model, &set, terminal, None);
         let mut flights = flights.expect("enclosed").searching(1.0, || true);
         let all = side_by_side(&mut flights, &[1, 2, 3], |_, job| Ok(*job));

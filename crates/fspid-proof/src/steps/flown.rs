@@ -107,8 +107,8 @@ mod tests {
     use crate::steps::affine::Affine;
     use crate::steps::flights::{Beginning, begun};
     use crate::steps::gains::Between;
+    use crate::steps::not_covered;
     use crate::steps::sample::{FREE, Judge, Moment};
-    use crate::steps::{not_covered, sees_loads_at_once};
 
     /// A drawn loop that sees pitch and rate late, by samples and parts of one.
     fn seen_late(seed: u64) -> Option<LoopDescription> {
@@ -173,26 +173,6 @@ mod tests {
             following += usize::from(follows);
         }
         assert!(compared > 60 && all > 5 && following > 5, "{compared} {all} {following}");
-    }
-
-    #[test]
-    fn a_load_is_seen_at_once_also_by_a_rate_gain_that_follows_kd_alone() {
-        let mut asked = [0, 0];
-        for seed in (1..60).step_by(3) {
-            let Some(mut description) = seen_late(seed) else { continue };
-            // Of relative degree 1, so that the elevator moves the pitch rate at once.
-            description.numerator = vec![-1.2, -0.5];
-            description.denominator = vec![1.0, 1.1, 0.6];
-            let config = *description.controller.config();
-            let Controller::SelfTuning(fspid) = &description.controller else { continue };
-            let follows = fspid.tuner().settings().gain_coupling.rate_gain != 0.0;
-            let sees = follows || config.rate_gain_s != 0.0;
-            let model = description.enclosed().expect("enclosed");
-            assert_eq!(sees_loads_at_once(&model, 0.01), sees, "seed {seed}");
-            assert!(!sees_loads_at_once(&model, 0.0), "no load");
-            asked[usize::from(follows && config.rate_gain_s.abs() <= 0.0)] += 1;
-        }
-        assert!(asked.iter().all(|count| *count > 1), "{asked:?}");
     }
 
     #[test]

@@ -190,32 +190,23 @@ fn landed(
 
 #[cfg(test)]
 mod tests {
-    use fspid_core::{Gains, Pid, PidConfig};
+    use fspid_core::{Pid, PidConfig};
+    use fspid_sim::Controller;
     use fspid_sim::actuator::Actuator;
-    use fspid_sim::loop_model::Sensing;
-    use fspid_sim::{Controller, ElevatorSign};
 
     use super::*;
     use crate::rest::drawn::Dice;
+    use crate::steps::tests::navion::{GAINS, navion};
 
     const RATE: f64 = 0.35;
     const LAG_S: f64 = 0.1;
     const DT_S: f64 = 0.05;
 
     /// The Navion behind a servo of 20 deg/s.
-    fn navion() -> LoopDescription {
-        let gains = Gains { kp: 0.82, ki: 0.43, kd: 0.165 };
+    fn limited() -> LoopDescription {
         let servo = Actuator::first_order(LAG_S).and_then(|servo| servo.with_rate_limit(RATE));
-        let pid = Pid::new(gains, PidConfig::sampled_every(DT_S));
-        LoopDescription {
-            numerator: vec![-11.01, -22.6, -1.31],
-            denominator: vec![1.0, 5.1, 13.3, 0.684, 0.632],
-            elevator_sign: ElevatorSign::NoseDownPositive,
-            actuator: servo.expect("allowed"),
-            pitch: Sensing::DIRECT,
-            rate: Sensing::DIRECT,
-            controller: Controller::Fixed(pid.expect("allowed")),
-        }
+        let pid = Pid::new(GAINS, PidConfig::sampled_every(DT_S));
+        navion(servo.expect("allowed"), Controller::Fixed(pid.expect("allowed")))
     }
 
     fn plant(description: &LoopDescription) -> PrintedPlant<'_> {
@@ -229,7 +220,7 @@ mod tests {
     }
 
     fn curve() -> Curve {
-        Curve::of(&navion()).expect("enclosed").expect("a rate limit")
+        Curve::of(&limited()).expect("enclosed").expect("a rate limit")
     }
 
     /// D at a gap, from the time at the rate limit, without pieces.
@@ -254,7 +245,7 @@ mod tests {
 
     #[test]
     fn what_a_gap_adds_lies_on_the_line_through_its_ends_and_no_further_than_a_piece_makes_it() {
-        let (description, curve) = (navion(), curve());
+        let (description, curve) = (limited(), curve());
         let plant = plant(&description);
         for seed in 0..150 {
             let [a, b] = drawn(&mut Dice::new(seed));
@@ -288,7 +279,7 @@ mod tests {
     /// A float stands for the gap at which a piece begins, which is known to some digits; so that slopes hold a little longer.
     #[test]
     fn slopes_hold_a_little_beyond_the_times_of_their_pieces() {
-        let (description, curve) = (navion(), curve());
+        let (description, curve) = (limited(), curve());
         let plant = plant(&description);
         let over = |time_s: f64| plant.over(Interval::point(time_s)).expect("enclosed").by_command;
         let holds = |slopes: &[Interval], time_s: f64| {
@@ -311,7 +302,7 @@ mod tests {
 
     #[test]
     fn knots_are_the_gaps_of_even_times_with_what_they_add() {
-        let (description, curve) = (navion(), curve());
+        let (description, curve) = (limited(), curve());
         let plant = plant(&description);
         for (place, (at, value)) in curve.knots.iter().enumerate() {
             let gap = RATE * (LAG_S + DT_S * place as f64 / f64::from(PIECES));
@@ -338,7 +329,7 @@ mod tests {
     /// Beyond the last knot, however far, on either side.
     #[test]
     fn gaps_beyond_the_last_knot_add_what_it_does() {
-        let (description, curve) = (navion(), curve());
+        let (description, curve) = (limited(), curve());
         let last = RATE * (LAG_S + DT_S);
         let exact = exact(&plant(&description), last);
         let beyond = |from: f64| Interval::new(from, f64::INFINITY).unwrap();
@@ -365,7 +356,7 @@ mod tests {
     /// A range of one gap has no slope.
     #[test]
     fn one_gap_adds_one_value() {
-        let (description, curve) = (navion(), curve());
+        let (description, curve) = (limited(), curve());
         let plant = plant(&description);
         for gap in [-0.07, -0.04, -0.01, 0.0, 0.02, 0.045, 0.051, 0.09] {
             let (lines, _) = curve.lines(Interval::point(gap));

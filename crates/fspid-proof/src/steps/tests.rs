@@ -14,6 +14,7 @@ use crate::steps::sample::{Judge, Moment};
 
 pub(super) mod allowed;
 mod every_structure;
+pub(super) mod navion;
 
 /// Samples of a flight, and what rounding of the simulator's own may be off, rad.
 const SAMPLES: usize = 160;

@@ -226,17 +226,12 @@ fn push_frozen(out: &mut String, all: &str, worst: &Result<Margins, Absent>, at:
 fn push_reach(out: &mut String, reach: &FrozenReach) {
     let stability = reach.stability();
     let (points, bad) = (reach.points.len(), reach.count(stability));
+    let of = "looked at within the law's reach";
     let all = match (stability, bad) {
-        (Stability::Stable, _) => format!("all {points} that the law may come to hold"),
-        (_, 0) => format!(
-            "all {points} that the law may come to hold, and of some between them this is not so"
-        ),
-        (Stability::Unstable, _) => {
-            format!("{bad} of {points} that the law may come to would NOT HOLD")
-        }
-        (Stability::Undecided, _) => {
-            format!("of {points} that the law may come to {bad} UNDECIDED")
-        }
+        (Stability::Stable, _) => format!("all {points} {of} hold"),
+        (_, 0) => format!("all {points} {of} hold, and some between them do not or are undecided"),
+        (Stability::Unstable, _) => format!("{bad} of {points} {of} would NOT HOLD"),
+        (Stability::Undecided, _) => format!("{bad} of {points} {of} are UNDECIDED"),
     };
     push_frozen(out, &all, &reach.worst.margins, &triple(reach.worst.gains));
 }

@@ -100,11 +100,13 @@ fn of_frozen(found: &AnalysedLoop) -> String {
             format!(" A frozen gain of its supervisor does not hold: {reason}.")
         }
         (None, Some(Ok(margins))) => format!(
-            " Of the frozen gains that its law may come to the worst has a disk margin of {}.",
+            " Of the frozen gains looked at within its law's reach the worst has a disk margin of {}.",
             disk(margins)
         ),
         (None, Some(Err(reason))) => {
-            format!(" Of the frozen gains that its law may come to one does not hold: {reason}.")
+            format!(
+                " Of the frozen gains looked at within its law's reach one does not hold: {reason}."
+            )
         }
         (None, None) => String::new(),
     }

@@ -113,7 +113,7 @@ fn gains_flown_by_an_accumulating_law_have_no_less_margin_than_the_worst_that_it
     let all = reach.points.iter().map(|point| point.margins.expect("stable").disk_margin);
     assert!(all.fold(f64::INFINITY, f64::min) >= worst);
     assert!(
-        analysis.text().contains("that the law may come to hold; the worst"),
+        analysis.text().contains("looked at within the law's reach hold; the worst"),
         "{}",
         analysis.text()
     );
@@ -156,7 +156,9 @@ fn gains_within_reach_that_would_not_hold_are_told_and_do_not_make_a_loop_unstab
     assert!(reach.count(Stability::Unstable) > 0 && reach.worst.stability() == Stability::Unstable);
     let text = analysis.text();
     assert!(
-        text.contains("that the law may come to would NOT HOLD; the worst: the loop is unstable"),
+        text.contains(
+            "looked at within the law's reach would NOT HOLD; the worst: the loop is unstable"
+        ),
         "{text}"
     );
     assert!(text.contains("bounded from outside"), "{text}");

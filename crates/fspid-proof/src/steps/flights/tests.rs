@@ -5,12 +5,11 @@ use fspid_core::{
     TunerSettings,
 };
 use fspid_fuzzy::{Defuzzifier, OutOfRange, Supervisor};
-use fspid_sim::ElevatorSign;
 use fspid_sim::actuator::Actuator;
-use fspid_sim::loop_model::Sensing;
 
 use super::*;
 use crate::rest::drawn::Dice;
+use crate::steps::tests::navion::{GAINS, navion};
 use crate::{Asked, Certificate, Effort, Range, Verdict, certify};
 
 const DEG: f64 = core::f64::consts::PI / 180.0;
@@ -41,16 +40,7 @@ fn description() -> LoopDescription {
         .and_then(|servo| servo.with_command_limits(-20.0 * DEG, 20.0 * DEG))
         .and_then(|servo| servo.with_rate_limit(40.0 * DEG))
         .and_then(|servo| servo.with_delay(2));
-    let gains = Gains { kp: 0.82, ki: 0.43, kd: 0.165 };
-    LoopDescription {
-        numerator: vec![-11.01, -22.6, -1.31],
-        denominator: vec![1.0, 5.1, 13.3, 0.684, 0.632],
-        elevator_sign: ElevatorSign::NoseDownPositive,
-        actuator: servo.expect("allowed"),
-        pitch: Sensing::DIRECT,
-        rate: Sensing::DIRECT,
-        controller: Controller::Fixed(Pid::new(gains, config).expect("allowed")),
-    }
+    navion(servo.expect("allowed"), Controller::Fixed(Pid::new(GAINS, config).expect("allowed")))
 }
 
 impl Loop {

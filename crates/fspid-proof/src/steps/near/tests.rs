@@ -6,15 +6,13 @@ use fspid_core::{
 };
 use fspid_fuzzy::NumberTable;
 use fspid_lti::Matrix;
-use fspid_sim::ElevatorSign;
 use fspid_sim::actuator::Actuator;
-use fspid_sim::loop_model::Sensing;
 
 use super::*;
 use crate::gain_set::{GainCell, IncrementMap, producible};
 use crate::steps::terminal::NearGains;
+use crate::steps::tests::navion::{GAINS, navion};
 
-const NOMINAL: Gains<f64> = Gains { kp: 0.82, ki: 0.43, kd: 0.165 };
 const DT_S: f64 = 0.02;
 const RANGE: f64 = 5.0;
 
@@ -28,19 +26,11 @@ fn settings() -> TunerSettings<f64> {
 
 /// The Navion.
 fn description(controller: Controller) -> LoopDescription {
-    LoopDescription {
-        numerator: vec![-11.01, -22.6, -1.31],
-        denominator: vec![1.0, 5.1, 13.3, 0.684, 0.632],
-        elevator_sign: ElevatorSign::NoseDownPositive,
-        actuator: Actuator::first_order(0.1).expect("allowed"),
-        pitch: Sensing::DIRECT,
-        rate: Sensing::DIRECT,
-        controller,
-    }
+    navion(Actuator::first_order(0.1).expect("allowed"), controller)
 }
 
 fn tuned_by(supervisor: Supervisor<f64>, settings: TunerSettings<f64>) -> LoopDescription {
-    let tuner = SelfTuner::new(NOMINAL, supervisor, settings).expect("allowed");
+    let tuner = SelfTuner::new(GAINS, supervisor, settings).expect("allowed");
     let fspid = Fspid::new(tuner, PidConfig::sampled_every(DT_S)).expect("allowed");
     description(Controller::SelfTuning(fspid))
 }
@@ -125,14 +115,14 @@ fn a_box_has_each_of_its_corners_once() {
 #[test]
 fn rules_are_made_ready_of_a_self_tuner_alone() {
     assert!(system(&by_labels()).is_some());
-    let fixed = Pid::new(NOMINAL, PidConfig::sampled_every(DT_S)).expect("allowed");
+    let fixed = Pid::new(GAINS, PidConfig::sampled_every(DT_S)).expect("allowed");
     let fixed = description(Controller::Fixed(fixed));
     assert!(system(&fixed).is_none());
     let model = model(&fixed);
-    let set = GainSet::fixed(NOMINAL);
+    let set = GainSet::fixed(GAINS);
     let corners = corners_within(&fixed, &model, &set, &terminal(&model, 1.0, None));
     let corners = corners.expect("there are some");
-    assert!(corners.iter().all(|corner| corner.gains == NOMINAL) && corners.len() == 1);
+    assert!(corners.iter().all(|corner| corner.gains == GAINS) && corners.len() == 1);
 }
 
 #[test]
@@ -178,7 +168,7 @@ fn holding(within: [f64; 2], change_gain: f64) -> GainSet {
         }
     }
     let rest = [Interval::ONE; 3];
-    GainSet { cells, ..GainSet::boxed(NOMINAL, rest, rest) }
+    GainSet { cells, ..GainSet::boxed(GAINS, rest, rest) }
 }
 
 #[test]

@@ -2,25 +2,21 @@
 
 use fspid_core::fuzzy::{Defuzzifier, OutOfRange, Supervisor};
 use fspid_core::{Fspid, InputScale, Pid, PidConfig, SelfTuner, TunerSettings};
-use fspid_sim::ElevatorSign;
 use fspid_sim::actuator::Actuator;
-use fspid_sim::loop_model::Sensing;
 
 use super::*;
 use crate::certificate::Claim;
-use crate::description::LoopDescription;
 use crate::gain_set::IncrementMap;
 use crate::scope::Range;
 use crate::solve::never;
-
-const NOMINAL: Gains<f64> = Gains { kp: 0.82, ki: 0.43, kd: 0.165 };
+use crate::steps::tests::navion::{GAINS, navion};
 
 fn config() -> PidConfig<f64> {
     PidConfig::sampled_every(0.02)
 }
 
 fn fixed() -> Controller {
-    Controller::Fixed(Pid::new(NOMINAL, config()).expect("allowed"))
+    Controller::Fixed(Pid::new(GAINS, config()).expect("allowed"))
 }
 
 /// By the paper's rules.
@@ -33,7 +29,7 @@ fn by_labels() -> Controller {
         output_scale: Gains { kp: 0.05, ki: 0.03, kd: 0.01 },
         ..TunerSettings::literal()
     };
-    let tuner = SelfTuner::new(NOMINAL, labels, settings).expect("allowed");
+    let tuner = SelfTuner::new(GAINS, labels, settings).expect("allowed");
     Controller::SelfTuning(Fspid::new(tuner, config()).expect("allowed"))
 }
 
@@ -42,15 +38,7 @@ fn certificate(controller: Controller) -> Certificate {
     let actuator = Actuator::first_order(0.1)
         .and_then(|servo| servo.with_rate_limit(0.35))
         .and_then(|servo| servo.with_command_limits(-0.3, 0.25));
-    let description = LoopDescription {
-        numerator: vec![-11.01, -22.6, -1.31],
-        denominator: vec![1.0, 5.1, 13.3, 0.684, 0.632],
-        elevator_sign: ElevatorSign::NoseDownPositive,
-        actuator: actuator.expect("allowed"),
-        pitch: Sensing::DIRECT,
-        rate: Sensing::DIRECT,
-        controller,
-    };
+    let description = navion(actuator.expect("allowed"), controller);
     Certificate {
         description,
         output_factor: 1.0,

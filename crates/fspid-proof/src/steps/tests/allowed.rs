@@ -6,16 +6,15 @@ use fspid_core::{
 };
 use fspid_fuzzy::{Defuzzifier, Network, NumberTable, OutOfRange, RuleTable, Supervisor};
 use fspid_lti::Matrix;
-use fspid_sim::ElevatorSign;
 use fspid_sim::actuator::{Actuator, Lag};
 use fspid_sim::loop_model::Sensing;
 
+use super::navion::{GAINS, NUMERATOR, navion};
 use super::*;
 use crate::certificate::Claim;
 use crate::scope::Range;
 use crate::solve::never;
 
-const NOMINAL: Gains<f64> = Gains { kp: 0.82, ki: 0.43, kd: 0.165 };
 const SCALE: Gains<f64> = Gains { kp: 0.02, ki: 0.01, kd: 0.005 };
 const LEAKS: Law<f64> = Law::Accumulating { leakage_per_s: 0.5 };
 
@@ -39,19 +38,11 @@ pub(in crate::steps) fn limited() -> LoopDescription {
         .and_then(|servo| servo.with_rate_limit(0.35));
     let anti_windup = AntiWindup::Clamping(limits(-0.3, 0.3));
     let config = PidConfig { limits: Some(limits(-0.35, 0.35)), anti_windup, ..config() };
-    LoopDescription {
-        numerator: vec![-11.01, -22.6, -1.31],
-        denominator: vec![1.0, 5.1, 13.3, 0.684, 0.632],
-        elevator_sign: ElevatorSign::NoseDownPositive,
-        actuator: servo.expect("allowed"),
-        pitch: Sensing::DIRECT,
-        rate: Sensing::DIRECT,
-        controller: fixed(config),
-    }
+    navion(servo.expect("allowed"), fixed(config))
 }
 
 fn fixed(config: PidConfig<f64>) -> Controller {
-    Controller::Fixed(Pid::new(NOMINAL, config).expect("allowed"))
+    Controller::Fixed(Pid::new(GAINS, config).expect("allowed"))
 }
 
 fn of(controller: Controller) -> LoopDescription {
@@ -127,7 +118,7 @@ fn settings(law: Law<f64>) -> TunerSettings<f64> {
 }
 
 fn tuner_of(supervisor: Supervisor<f64>, settings: TunerSettings<f64>) -> SelfTuner<f64> {
-    SelfTuner::new(NOMINAL, supervisor, settings).expect("allowed")
+    SelfTuner::new(GAINS, supervisor, settings).expect("allowed")
 }
 
 fn tuned(
@@ -265,7 +256,7 @@ fn seeing(numerator: &[f64], controller: Controller) -> LoopModel<Interval> {
 
 #[test]
 fn a_load_is_seen_at_once_by_a_rate_that_is_used_of_a_plant_whose_rate_jumps() {
-    let smooth: &[f64] = &[-11.01, -22.6, -1.31];
+    let smooth: &[f64] = &NUMERATOR;
     let jumps: &[f64] = &[-0.1, -11.01, -22.6, -1.31];
     let seen = |numerator, controller| sees_loads_at_once(&seeing(numerator, controller), 0.01);
     for rate_gain_s in [0.1, -0.1] {
@@ -312,7 +303,7 @@ fn flights_are_believed_of_loops_that_are_flown_in_sets_at_their_own_scale_and_r
 fn where_gains_move_and_an_error_stays_no_flight_is_believed() {
     let without =
         TunerSettings { output_scale: Gains { ki: 0.0, ..SCALE }, ..settings(Law::Memoryless) };
-    let nominal = Gains { ki: 0.0, ..NOMINAL };
+    let nominal = Gains { ki: 0.0, ..GAINS };
     let tuner = SelfTuner::new(nominal, rising(), without).expect("allowed");
     let fspid = Fspid::new(tuner, config()).expect("allowed");
     let leaves = of(Controller::SelfTuning(fspid));

@@ -1,21 +1,14 @@
 //! What is counted as work, and which form falls for all gains.
 
 use fspid_core::fuzzy::{Defuzzifier, OutOfRange, Supervisor};
-use fspid_core::{
-    ControllerSetting, Fspid, Gains, Limits, Pid, PidConfig, SelfTuner, TunerSettings,
-};
+use fspid_core::{ControllerSetting, Fspid, Limits, Pid, PidConfig, SelfTuner, TunerSettings};
 use fspid_lti::Matrix;
-use fspid_sim::ElevatorSign;
 use fspid_sim::actuator::Actuator;
-use fspid_sim::loop_model::Sensing;
 
 use super::*;
-use crate::scope::Range;
 use crate::steps::commands::Commands;
 use crate::steps::flights::Patch;
-use crate::{Asked, Effort, Verdict, certify};
-
-const GAINS: Gains<f64> = Gains { kp: 0.82, ki: 0.43, kd: 0.165 };
+use crate::steps::tests::navion::{GAINS, navion, proved};
 
 fn config() -> PidConfig<f64> {
     let limits = Limits::new(ControllerSetting::OutputLimits, -0.35, 0.35).expect("allowed");
@@ -23,29 +16,17 @@ fn config() -> PidConfig<f64> {
 }
 
 /// The Navion.
-fn navion() -> LoopDescription {
-    LoopDescription {
-        numerator: vec![-11.01, -22.6, -1.31],
-        denominator: vec![1.0, 5.1, 13.3, 0.684, 0.632],
-        elevator_sign: ElevatorSign::NoseDownPositive,
-        actuator: Actuator::first_order(0.1).expect("allowed"),
-        pitch: Sensing::DIRECT,
-        rate: Sensing::DIRECT,
-        controller: Controller::Fixed(Pid::new(GAINS, config()).expect("allowed")),
-    }
-}
-
-fn proved() -> Certificate {
-    let asked = Asked::within(Range { setpoint_rad: 0.05, load_rad: 0.0 });
-    let outcome = certify(&navion(), &asked, &Effort::default()).expect("an answer");
-    let Verdict::Proved(certificate, _) = outcome.verdict else { panic!("not proved") };
-    certificate
+fn fixed() -> LoopDescription {
+    navion(
+        Actuator::first_order(0.1).expect("allowed"),
+        Controller::Fixed(Pid::new(GAINS, config()).expect("allowed")),
+    )
 }
 
 fn with_flights(asks: impl FnOnce(Flights<'_>)) {
-    let certificate = proved();
+    let certificate = proved(&fixed());
     let terminal = &certificate.steps.as_ref().expect("steps are proved").terminal;
-    let model = navion().enclosed().expect("enclosed");
+    let model = fixed().enclosed().expect("enclosed");
     let set = GainSet::fixed(GAINS);
     let flights = Flights::of(&certificate, &model, &set, terminal, None);
     asks(flights.expect("enclosed"));
@@ -56,7 +37,7 @@ fn the_form_that_falls_for_all_gains_is_that_of_the_claim_with_its_rate_where_ga
     let claimed = |rate: f64| Claim::CommonQuadratic { form: Matrix::identity(2), rate };
     let form = Matrix::identity(2).scaled(3.0);
     let terminal = Terminal { form, rate: 0.99, level: 7.0, gains: None };
-    let mut certificate = Certificate { claim: claimed(0.9), ..proved() };
+    let mut certificate = Certificate { claim: claimed(0.9), ..proved(&fixed()) };
     assert_eq!(common(&certificate, &terminal), terminal, "gains stand still");
     let (rules, rule) = (fspid_core::paper::rules(), Defuzzifier::Exact);
     let labels = Supervisor::new(&rules, 5.0, rule, OutOfRange::Clamp).expect("allowed");

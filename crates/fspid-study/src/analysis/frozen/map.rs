@@ -49,7 +49,8 @@ impl FrozenMap {
             return Ok(None);
         }
         let rest = producible(fspid.tuner(), 0.0, 0.0);
-        Mapper(FrozenLoops::new(scenario, plant, fspid, rest, question)?).map()
+        let loops = FrozenLoops::new(scenario, plant, fspid, rest, question)?;
+        Mapper { loops }.map()
     }
 
     /// Every gain that was looked at: on the map, at the cells, and the worst of the search.
@@ -95,13 +96,15 @@ impl FrozenPoint {
     }
 }
 
-/// The loops of a map's gains.
-struct Mapper<'a>(FrozenLoops<'a>);
+/// Makes a map of loops.
+struct Mapper<'a> {
+    loops: FrozenLoops<'a>,
+}
 
 impl Mapper<'_> {
     fn map(&self) -> Result<Option<FrozenMap>, SimError> {
-        let side = self.0.question.map_points;
-        let range = self.0.fspid.tuner().supervisor().range();
+        let side = self.loops.question.map_points;
+        let range = self.loops.fspid.tuner().supervisor().range();
         let place = |index: usize| match side {
             1 => 0.0,
             _ => range * (2.0 * index as f64 / (side - 1) as f64 - 1.0),
@@ -116,15 +119,15 @@ impl Mapper<'_> {
             return Ok(None);
         };
         let mut worst = self.refined(worst.clone(), range, 2.0 * range / side.max(2) as f64)?;
-        worst.margins = self.0.margins_in_full(worst.gains)?;
-        let beside = self.0.fspid.tuner().settings().second_input.beside();
+        worst.margins = self.loops.margins_in_full(worst.gains)?;
+        let beside = self.loops.fspid.tuner().settings().second_input.beside();
         Ok(Some(FrozenMap { beside, side, points, nodes, worst }))
     }
 
     /// Inputs at the numbers themselves, where rules conclude some: between them the gains are mixtures, so
     /// that the largest and the smallest of each are there.
     fn nodes(&self) -> Vec<[f64; 2]> {
-        let tuner = self.0.fspid.tuner();
+        let tuner = self.loops.fspid.tuner();
         if tuner.supervisor().numbers().is_none() {
             return Vec::new();
         }
@@ -159,7 +162,7 @@ impl Mapper<'_> {
     }
 
     fn point(&self, input: [f64; 2]) -> Result<FrozenPoint, SimError> {
-        let gains = producible(self.0.fspid.tuner(), input[0], input[1]);
-        Ok(FrozenPoint { input, gains, margins: self.0.margins(gains)? })
+        let gains = producible(self.loops.fspid.tuner(), input[0], input[1]);
+        Ok(FrozenPoint { input, gains, margins: self.loops.margins(gains)? })
     }
 }
