@@ -2,8 +2,10 @@
 # The long checks, one after the other, and one page about them at the end: target/nightly/summary.md.
 #   run.sh                  every lane
 #   run.sh --list           their names and commands
-#   run.sh fuzz coverage    those alone
-# A lane that fails does not end the others; the script ends with 1 where one has failed. What a lane printed is in target/nightly.
+#   run.sh fuzz coverage    those alone, beside the answers of the others that are on the page
+#   run.sh --rest           those that are not on the page, or failed there: a night in parts
+# A lane that fails does not end the others; the script ends with 1 where one on the page has failed. What a lane printed is in
+# target/nightly; each line of the page names its commit.
 # Takes a night on two cores.
 set -uo pipefail
 cd "$(dirname "$0")/../.."
@@ -49,6 +51,11 @@ if [[ "${1:-}" == --list ]]; then
     lanes | awk -F'|' '{ printf "%-16s %s\n%-16s   %s\n", $1, $2, "", $3 }'
     exit
 fi
+rest=""
+if [[ "${1:-}" == --rest ]]; then
+    rest=1
+    shift
+fi
 for name in "$@"; do
     if ! lanes | grep -q "^$name|"; then
         echo "there is no lane \`$name\`; known are $(lanes | cut -d'|' -f1 | paste -sd' ')" >&2
@@ -56,20 +63,36 @@ for name in "$@"; do
     fi
 done
 out="$PWD/target/nightly"
-mkdir -p "$out"
+rows="$out/rows"
 summary="$out/summary.md"
-{
-    printf '# The night of %s\n\n' "$(date --utc '+%F %H:%M') UTC"
-    printf 'Commit %s%s; %s; %s, %s cores.\n\n' "$(git rev-parse --short=12 HEAD)" "$([[ -z "$(git status --porcelain)" ]] || echo ' and changes')" \
-        "$(rustc --version)" "$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)" "$(nproc)"
-    printf '| lane | asks | minutes | of processor | answer |\n| --- | --- | --- | --- | --- |\n'
-} >"$summary"
+[[ "$rest" ]] || (($#)) || rm -rf "$rows"
+mkdir -p "$rows"
 
-failed=0 asked=0
+# The page, of what is answered so far.
+write_summary() {
+    printf '# A night\n\n%s; %s, %s cores.\n\n' "$(rustc --version)" "$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)" "$(nproc)"
+    printf '| lane | asks | commit, when | minutes | of processor | answer |\n| --- | --- | --- | --- | --- | --- |\n'
+    local name what command answered=0 missing=() failed=0
+    while IFS='|' read -r name what command; do
+        if [[ ! -e "$rows/$name" ]]; then
+            missing+=("$name")
+            continue
+        fi
+        answered=$((answered + 1))
+        has_failed "$name" && failed=$((failed + 1))
+        printf '| %s | %s | %s\n' "$name" "$what" "$(cat "$rows/$name")"
+    done < <(lanes)
+    printf '\n%d lanes answered, %d of them failed; not asked: %s.\n' "$answered" "$failed" "$(IFS=' '; echo "${missing[*]:-none}")"
+    ((failed == 0))
+}
+has_failed() { grep -q '\*\*FAILED' "$rows/$1"; }
+
+commit="$(git rev-parse --short=8 HEAD)$([[ -z "$(git status --porcelain)" ]] || echo ' and changes')"
 while IFS='|' read -r name what command; do
     if (($#)) && [[ " $* " != *" $name "* ]]; then continue; fi
+    if [[ "$rest" && -e "$rows/$name" ]] && ! has_failed "$name"; then continue; fi
     printf '== %s: %s\n' "$name" "$command"
-    asked=$((asked + 1)) began=$SECONDS
+    began=$SECONDS
     TIMEFORMAT='%U %S'
     { time bash -c "$command" >"$out/$name.log" 2>&1 </dev/null; } 2>"$out/time"
     code=$?
@@ -78,15 +101,14 @@ while IFS='|' read -r name what command; do
     processor="$(awk 'END { printf "%.1f", ($1 + $2) / 60 }' "$out/time")"
     last="$(grep -v '^[[:space:]]*$' "$out/$name.log" | tail -n 1 | tr '|' '/' | cut -c1-140)"
     if ((code)); then
-        failed=$((failed + 1))
         answer="**FAILED ($code)**: $last"
     elif grep -q 'NOT CHECKED\|not judged' "$out/$name.log"; then
         answer="in part: $(grep -m 1 'NOT CHECKED\|not judged' "$out/$name.log" | tr '|' '/' | cut -c1-140)"
     else
         answer="$last"
     fi
-    printf '| %s | %s | %s | %s | %s |\n' "$name" "$what" "$minutes" "$processor" "$answer" >>"$summary"
+    printf '%s, %s | %s | %s | %s |\n' "$commit" "$(date --utc '+%F %H:%M')" "$minutes" "$processor" "$answer" >"$rows/$name"
+    write_summary >"$summary"
 done < <(lanes)
-printf '\n%d lanes, %d failed, %d minutes. What each printed is beside this page.\n' "$asked" "$failed" "$((SECONDS / 60))" >>"$summary"
-cat "$summary"
-((failed == 0))
+write_summary | tee "$summary"
+((PIPESTATUS[0] == 0))

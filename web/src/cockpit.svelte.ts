@@ -68,6 +68,8 @@ class Cockpit {
   certifying = $state("");
   /** How many flights were drawn: for tests that wait. */
   flights = $state(0);
+  /** How many moves of a value are on their way, until the scenario is read as a whole: for tests that wait. */
+  moving = $state(0);
 
   get tuned(): string[] {
     return this.summary?.controllers.filter((it) => it.kind === "self-tuning").map((it) => it.name) ?? [];
@@ -153,8 +155,17 @@ class Cockpit {
     await this.refresh();
   }
 
-  /** A value in the place of another, from the text before a slider began to move. */
+  /** A value in the place of another, from the text before a slider began to move; false where it was not taken. */
   async set(path: string, value: string, before = this.text): Promise<boolean> {
+    this.moving += 1;
+    try {
+      return await this.#set(path, value, before);
+    } finally {
+      this.moving -= 1;
+    }
+  }
+
+  async #set(path: string, value: string, before: string): Promise<boolean> {
     const found = await this.engine.latest("set", "set", { text: before, path, value });
     if (found === OVERTAKEN) return false;
     if (found.json.text === undefined) {

@@ -55,7 +55,8 @@ class Intervals {
   asking = $state("");
   done = $state(0);
   total = $state(0);
-  #of: Asked | null = null;
+  /** What is looked at now is about this: state, so that who follows is told of the first question too. */
+  #of = $state.raw<Asked | null>(null);
   #engine: Engine | null = null;
   #turn = 0;
 

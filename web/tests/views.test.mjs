@@ -32,8 +32,11 @@ async function opened(options = {}, address = PAGE) {
 
 const flights = (page) => page.locator("#panel").getAttribute("data-flights").then(Number);
 const flown = (page, count) => page.waitForFunction((count) => Number(document.querySelector("#panel")?.dataset.flights) >= count, count);
+/** Every value that was moved is in the text: what is asked from here on is of the last of them. */
+const settled = (page) => page.waitForFunction(() => document.querySelector("#panel")?.dataset.moving === "0");
 const metric = (page, name, controller) => page.locator(`[data-metric="${name}"][data-controller="${controller}"]`).getAttribute("data-value").then(Number);
 const text = async (page) => {
+  await settled(page);
   await page.click("#tab-keep");
   return page.inputValue("[data-test=text]");
 };
@@ -61,7 +64,7 @@ test("Fly: a slider that is dragged moves the measures, and undo brings them bac
   for (const part of [0.7, 0.8, 0.9]) await page.mouse.move(box.x + box.width * part, box.y + box.height / 2, { steps: 4 });
   await page.mouse.up();
   await page.waitForFunction(([name, value]) => Number(document.querySelector(`[data-metric="${name}"][data-controller="FSPID"]`)?.dataset.value) !== value, ["overshoot_pct", before]);
-  await page.waitForTimeout(300);
+  await settled(page);
   await page.keyboard.press("Control+z");
   await page.waitForFunction(([name, value]) => Number(document.querySelector(`[data-metric="${name}"][data-controller="FSPID"]`)?.dataset.value) === value, ["overshoot_pct", before]);
   assert.ok(await page.getByRole("button", { name: "undo" }).isDisabled(), "a drag is one step");
@@ -152,6 +155,7 @@ test("Judge: margins move with a slider, a ready set is judged, and a fixed cont
   await page.locator('[data-path="controller.CPID.kp"] input[type=range]').focus();
   for (let times = 0; times < 20; times += 1) await page.keyboard.press("ArrowRight");
   await page.waitForFunction((before) => ![...document.querySelectorAll("[data-test=margins] tr")].some((it) => it.innerText === before), before);
+  await settled(page);
   await page.getByRole("button", { name: "map of frozen gains" }).click();
   assert.match(await page.locator(".frozen figcaption").innerText(), /✓ stable at all 81 points/);
   await page.locator(`[data-path="${KP}"] input[type=range]`).focus();
@@ -250,6 +254,8 @@ test("all intervals are looked at one after the other, stop at a word, and a cha
   await field.fill("2.25");
   await field.press("Enter");
   await page.locator("[data-test=all-intervals]").waitFor();
+  const all = Number(/all (\d+) hold/.exec(await page.locator("[data-test=all-intervals]").innerText())[1]);
+  assert.ok((await page.locator("[data-test=holds]").count()) < all, "what was not looked at yet is not looked at any more");
   await page.locator(".band.old").first().waitFor();
   await close(page);
 });
