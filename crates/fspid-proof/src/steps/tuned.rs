@@ -212,4 +212,4 @@ impl<'a> Tuner<'a> {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

@@ -82,8 +82,8 @@ fn plant(plant: &PlantLoop) -> Value {
             .as_ref()
             .map_or_else(|reason| json!({ "absent": reason.to_string() }), margins),
         present(json!({
-            "frozen_gains": plant.map.as_ref().map(frozen),
-            "frozen_gains_within_reach": plant.reach.as_ref().map(within_reach),
+            "frozen_gains": plant.map().map(frozen),
+            "frozen_gains_within_reach": plant.reach().map(within_reach),
         })),
     ])
 }

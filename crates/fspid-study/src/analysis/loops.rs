@@ -13,7 +13,7 @@ use super::Question;
 use super::answer::Margins;
 use super::equilibrium::{Equilibrium, equilibrium};
 use super::flights::Flights;
-use super::frozen::{FrozenGains, FrozenMap, FrozenPoint, FrozenReach};
+use super::frozen::{Frozen, FrozenGains, FrozenMap, FrozenPoint, FrozenReach};
 use super::modes::AnalysedMode;
 use super::stability::{Stability, of_stand};
 use crate::metrics::Absent;
@@ -46,10 +46,8 @@ pub struct PlantLoop {
     pub others: Vec<RestLoop>,
     /// Of each margin the worst of all rests.
     pub margins: Result<Margins, Absent>,
-    /// Every gain of a self-tuning controller whose law has no memory, standing still.
-    pub map: Option<FrozenMap>,
-    /// The gains that an accumulating law may come to, standing still.
-    pub reach: Option<FrozenReach>,
+    /// The gains of a self-tuning controller, standing still, where they were asked for and something bounds them.
+    pub frozen: Option<Frozen>,
 }
 
 /// A controller's loop, at the gains that it has at rest.
@@ -96,14 +94,8 @@ impl AnalysedLoop {
         let mut plants = Vec::new();
         for (from_s, plant) in &lasting_plants(scenario)? {
             let found = PlantLoop::of(scenario, plant, controller, gains, question.point)?;
-            let (map, reach) = match controller {
-                Controller::SelfTuning(fspid) if question.map_points > 0 => (
-                    FrozenMap::of(scenario, plant, fspid, question)?,
-                    FrozenReach::of(scenario, plant, fspid, gains, question)?,
-                ),
-                _ => (None, None),
-            };
-            plants.push(PlantLoop { from_s: *from_s, map, reach, ..found });
+            let frozen = Frozen::of(scenario, plant, controller, gains, question)?;
+            plants.push(PlantLoop { from_s: *from_s, frozen, ..found });
         }
         let modes = AnalysedMode::all(scenario, controller, gains)?;
         Ok(Self { name, equilibrium, plants, absent: None, flights, modes })
@@ -120,7 +112,7 @@ impl AnalysedLoop {
     #[must_use]
     pub fn worst_frozen(&self) -> Option<(f64, &FrozenPoint)> {
         let worst = self.plants.iter().filter_map(|plant| {
-            let map = plant.map.as_ref()?;
+            let map = plant.map()?;
             Some((plant.from_s, &map.worst))
         });
         worst.min_by(|one, other| rank(&one.1.margins).total_cmp(&rank(&other.1.margins)))
@@ -129,7 +121,7 @@ impl AnalysedLoop {
     /// The worst gains that an accumulating law may come to, over all plants.
     #[must_use]
     pub fn worst_within_reach(&self) -> Option<&FrozenGains> {
-        let worst = self.plants.iter().filter_map(|plant| Some(&plant.reach.as_ref()?.worst));
+        let worst = self.plants.iter().filter_map(|plant| Some(&plant.reach()?.worst));
         worst.min_by(|one, other| rank(&one.margins).total_cmp(&rank(&other.margins)))
     }
 
@@ -173,9 +165,8 @@ impl AnalysedLoop {
     /// True if every plant is held with margins that are proved, at rest and at every gain of the map.
     #[must_use]
     pub fn is_held(&self) -> bool {
-        let held = |plant: &PlantLoop| {
-            plant.margins.is_ok() && plant.map.as_ref().is_none_or(FrozenMap::is_held)
-        };
+        let held =
+            |plant: &PlantLoop| plant.margins.is_ok() && plant.map().is_none_or(FrozenMap::is_held);
         !self.plants.is_empty() && self.plants.iter().all(held) && self.growing_modes() == 0
     }
 }
@@ -218,7 +209,7 @@ impl RestLoop {
 }
 
 impl PlantLoop {
-    /// The loop with a plant from the beginning on, without a map.
+    /// The loop with a plant from the beginning on, without gains that stand still.
     fn of(
         scenario: &Scenario,
         plant: &LinearPlant,
@@ -239,7 +230,25 @@ impl PlantLoop {
                 (Ok(worst), Ok(other)) => Ok(worst.or_worse(&other)),
                 (reason @ Err(_), _) | (Ok(_), reason) => reason,
             });
-        Ok(Self { from_s: 0.0, worst, others, margins, map: None, reach: None })
+        Ok(Self { from_s: 0.0, worst, others, margins, frozen: None })
+    }
+
+    /// Every gain of a law without memory, standing still.
+    #[must_use]
+    pub fn map(&self) -> Option<&FrozenMap> {
+        match &self.frozen {
+            Some(Frozen::OfInputs(map)) => Some(map),
+            Some(Frozen::WithinReach(_)) | None => None,
+        }
+    }
+
+    /// The gains that an accumulating law may come to, standing still.
+    #[must_use]
+    pub fn reach(&self) -> Option<&FrozenReach> {
+        match &self.frozen {
+            Some(Frozen::WithinReach(reach)) => Some(reach),
+            Some(Frozen::OfInputs(_)) | None => None,
+        }
     }
 
     /// Every rest, the worst first.
@@ -256,7 +265,7 @@ impl PlantLoop {
     /// The same, at rest and at every gain of its map.
     #[must_use]
     pub fn stability_at_every_gain(&self) -> Stability {
-        let frozen = self.map.as_ref().map(FrozenMap::stability);
+        let frozen = self.map().map(FrozenMap::stability);
         Stability::of_all(frozen.into_iter().chain([self.stability()]))
     }
 }

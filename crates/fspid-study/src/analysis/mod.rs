@@ -38,7 +38,7 @@ pub use equilibrium::{Equilibrium, equilibrium};
 pub use externals::FlownExternal;
 pub use flights::Flights;
 pub use flown::flown_inputs;
-pub use frozen::{FrozenGains, FrozenMap, FrozenPoint, FrozenReach};
+pub use frozen::{Frozen, FrozenGains, FrozenMap, FrozenPoint, FrozenReach};
 pub use fspid_sim::loop_model::BreakPoint;
 pub use loops::{AnalysedLoop, PlantLoop, RestLoop};
 pub(crate) use loops::{held_at_rest, lasting_plants};

@@ -6,8 +6,8 @@ use fspid_lti::{Complex, Mode, modulus};
 use super::answer::{Margins, NO_CROSSOVER, NO_LOWER_LIMIT, NO_UPPER_LIMIT, POOR_MARGINS};
 
 use super::{
-    AnalysedLoop, Analysis, Equilibrium, Flights, FrozenMap, FrozenReach, PlantLoop, Stability,
-    held_in_words,
+    AnalysedLoop, Analysis, Equilibrium, Flights, Frozen, FrozenMap, FrozenReach, PlantLoop,
+    Stability, held_in_words,
 };
 use crate::metrics::Absent;
 
@@ -82,11 +82,10 @@ fn push_loop(out: &mut String, found: &AnalysedLoop) {
             out.push_str(&format!("  plant from {} s on\n", crate::metrics::short(plant.from_s)));
         }
         push_plant(out, plant);
-        if let Some(map) = &plant.map {
-            push_map(out, map);
-        }
-        if let Some(reach) = &plant.reach {
-            push_reach(out, reach);
+        match &plant.frozen {
+            Some(Frozen::OfInputs(map)) => push_map(out, map),
+            Some(Frozen::WithinReach(reach)) => push_reach(out, reach),
+            None => {}
         }
     }
     for mode in &found.modes {

@@ -53,9 +53,9 @@ pub(super) fn report(study: &Study, analysis: &Analysis) -> Result<String, SimEr
 }
 
 fn verdict(found: &AnalysedLoop) -> Verdict {
-    let frozen = found.plants.iter().filter_map(|plant| plant.map.as_ref());
+    let frozen = found.plants.iter().filter_map(PlantLoop::map);
     let frozen = Stability::of_all(frozen.map(FrozenMap::stability));
-    let within_reach = found.plants.iter().filter_map(|plant| plant.reach.as_ref());
+    let within_reach = found.plants.iter().filter_map(PlantLoop::reach);
     let within_reach = Stability::of_all(within_reach.map(FrozenReach::stability));
     let (standing, word) = match (found.stability(), found.margins()) {
         _ if found.absent.is_some() => (Standing::Fair, "No margins"),
@@ -278,7 +278,7 @@ fn flights(found: &AnalysedLoop) -> Option<Chapter> {
 }
 
 fn frozen(study: &Study, found: &AnalysedLoop) -> Option<Chapter> {
-    let map = found.worst()?.map.as_ref()?;
+    let map = found.worst()?.map()?;
     let flown = crate::analysis::flown_inputs(study, &found.name);
     let id = format!("frozen-{}", found.name);
     let of = |quantity, what: &str| {

@@ -72,7 +72,7 @@ fn the_margins_at_rest_and_of_frozen_gains_are_those_of_the_rate_gain_that_has_f
     assert_eq!(found.expect("stable"), expected.expect("stable"));
     assert_ne!(found, analysed(TUNED, &[]).loops[0].margins());
     let worst = |analysis: &fspid_study::analysis::Analysis| {
-        let map = analysis.loops[0].plants[0].map.as_ref().expect("a map");
+        let map = analysis.loops[0].plants[0].map().expect("a map");
         map.worst.margins.as_ref().map(|margins| margins.disk_margin).ok()
     };
     assert_ne!(worst(&analysis), worst(&fixed));
@@ -81,7 +81,7 @@ fn the_margins_at_rest_and_of_frozen_gains_are_those_of_the_rate_gain_that_has_f
 #[test]
 fn the_worst_frozen_gain_is_no_better_than_any_point_of_a_finer_map() {
     let analysis = analysed(TUNED, &[]);
-    let map = analysis.loops[0].plants[0].map.as_ref().expect("a map");
+    let map = analysis.loops[0].plants[0].map().expect("a map");
     assert_eq!(map.points.len(), 81);
     assert_eq!(map.stability(), Stability::Stable);
     let worst = map.worst.margins.expect("stable").disk_margin;
@@ -93,7 +93,7 @@ fn the_worst_frozen_gain_is_no_better_than_any_point_of_a_finer_map() {
 #[test]
 fn a_gain_that_does_not_hold_makes_the_map_say_so() {
     let analysis = analysed(TUNED, &["controller.C.supervisor.output_scale.kp=3.0"]);
-    let map = analysis.loops[0].plants[0].map.as_ref().expect("a map");
+    let map = analysis.loops[0].plants[0].map().expect("a map");
     assert!(analysis.loops[0].plants[0].margins.is_ok(), "the equilibrium holds");
     assert!(map.stability() == Stability::Unstable && map.unstable() > 0 && !analysis.all_held());
     assert!(analysis.text().contains("DO NOT HOLD"), "{}", analysis.text());
@@ -106,8 +106,8 @@ const LEAKING: [&str; 2] = ["controller.C.law=\"accumulating\"", "controller.C.l
 fn gains_flown_by_an_accumulating_law_have_no_less_margin_than_the_worst_that_it_may_come_to() {
     let analysis = analysed(TUNED, &LEAKING);
     let plant = &analysis.loops[0].plants[0];
-    let reach = plant.reach.as_ref().expect("leakage bounds the gains");
-    assert!(plant.map.is_none());
+    let reach = plant.reach().expect("leakage bounds the gains");
+    assert!(plant.map().is_none());
     assert_eq!(reach.stability(), Stability::Stable);
     let worst = reach.worst.margins.expect("stable").disk_margin;
     let all = reach.points.iter().map(|point| point.margins.expect("stable").disk_margin);
@@ -142,7 +142,7 @@ fn gains_that_nothing_bounds_have_no_worst() {
     assert!(analysis.loops[0].plants.is_empty());
     let rests = ["controller.C.dead_zone={ error_deg = 0.1, change_deg_s = 0.1 }"];
     let analysis = analysed(TUNED, &[LEAKING[0], rests[0]]);
-    assert!(analysis.loops[0].plants[0].reach.is_none());
+    assert!(analysis.loops[0].plants[0].reach().is_none());
 }
 
 #[test]
@@ -150,7 +150,7 @@ fn gains_within_reach_that_would_not_hold_are_told_and_do_not_make_a_loop_unstab
     let wild = ["controller.C.supervisor.output_scale.kp=1.5"];
     let analysis = analysed(TUNED, &[&LEAKING[..], &wild[..]].concat());
     let plant = &analysis.loops[0].plants[0];
-    let reach = plant.reach.as_ref().expect("leakage bounds the gains");
+    let reach = plant.reach().expect("leakage bounds the gains");
     assert!(plant.margins.is_ok(), "at rest it holds");
     assert_eq!(reach.stability(), Stability::Unstable);
     assert!(reach.count(Stability::Unstable) > 0 && reach.worst.stability() == Stability::Unstable);
@@ -193,7 +193,7 @@ fn every_number_is_among_the_frozen_gains_and_the_worst_of_them_is_found() {
     let sets = ["controller.C.supervisor.error_set_centres=[0.1, 0.5]"];
     for (set, [small, medium]) in [(&[][..], [5.0 / 3.0, 10.0 / 3.0]), (&sets, [0.5, 2.5])] {
         let analysis = analysed(&text, set);
-        let map = analysis.loops[0].plants[0].map.as_ref().expect("a map");
+        let map = analysis.loops[0].plants[0].map().expect("a map");
         let [found_error, found_change] = map.worst.input;
         assert!((found_error - small).abs() < 1e-12, "{:?}", map.worst);
         assert!((found_change + 10.0 / 3.0).abs() < 1e-12, "{:?}", map.worst);
@@ -220,7 +220,7 @@ fn a_cell_that_alone_does_not_hold_is_counted_beside_the_points_of_the_map() {
     // kp is 2 + 5 * 4.0 at the cell and, on the nearest point of the map, 2 + 0.75^2 * 5 * 4.0.
     let set = ["controller.C.supervisor.output_scale.kp=4.0"];
     let analysis = analysed(&with_cells(&[([1, 1], [5.0, 0.0])]), &set);
-    let map = analysis.loops[0].plants[0].map.as_ref().expect("a map");
+    let map = analysis.loops[0].plants[0].map().expect("a map");
     assert_eq!((map.unstable(), map.unstable_nodes()), (0, 1), "{:?}", map.worst);
     assert!(map.stability() == Stability::Unstable && !analysis.all_held());
     let text = analysis.text();

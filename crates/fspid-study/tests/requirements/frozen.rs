@@ -10,7 +10,7 @@ use crate::requirements::{JUMBO, of, one, study, values, verified, written};
 #[test]
 fn the_frozen_margins_are_the_least_of_the_map() {
     let analysis = Analysis::of(&study(JUMBO, &[]), Question::default()).expect("it is analysed");
-    let map = analysis.loops[1].plants[0].map.as_ref().expect("it tunes itself");
+    let map = analysis.loops[1].plants[0].map().expect("it tunes itself");
     let least = |of: fn(&Margins) -> f64| {
         let points = map.points.iter().chain([&map.worst]);
         points.map(|p| of(&p.margins.expect("stable"))).fold(f64::INFINITY, f64::min)
@@ -81,7 +81,7 @@ fn frozen_margins_of_an_accumulating_law_are_the_least_of_what_it_may_come_to() 
     let text = JUMBO.replace("law = \"memoryless\"", leaking);
     let question = Question { every_point_in_full: true, ..Question::default() };
     let analysis = Analysis::of(&study(&text, &[]), question).expect("it is analysed");
-    let reach = analysis.loops[1].plants[0].reach.as_ref().expect("leakage bounds the gains");
+    let reach = analysis.loops[1].plants[0].reach().expect("leakage bounds the gains");
     for (measure, of) in [
         ("disk_margin", (|m| m.disk_margin) as fn(&Margins) -> f64),
         ("phase_margin_deg", |m| m.phase_margin_deg),

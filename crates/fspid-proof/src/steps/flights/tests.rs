@@ -12,6 +12,8 @@ use crate::rest::drawn::Dice;
 use crate::steps::tests::navion::{GAINS, navion};
 use crate::{Asked, Certificate, Effort, Range, Verdict, certify};
 
+mod remembering;
+
 const DEG: f64 = core::f64::consts::PI / 180.0;
 /// Set-points of the flights that are at rest, rad.
 const SETPOINT_RAD: f64 = 0.05;

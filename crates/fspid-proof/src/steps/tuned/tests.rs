@@ -25,7 +25,7 @@ fn settings() -> TunerSettings<f64> {
 }
 
 /// Rules that conclude numbers, which rise with both inputs.
-fn numbers() -> Supervisor<f64> {
+pub(in crate::steps) fn numbers() -> Supervisor<f64> {
     let grid = |by_error: f64, by_second: f64| {
         core::array::from_fn(|row| {
             core::array::from_fn(|column| {

@@ -1,6 +1,6 @@
 //! Margins at every gain that a supervisor can produce under a law without memory.
 
-use fspid_core::{Fspid, Gains, Law};
+use fspid_core::{Fspid, Gains};
 use fspid_proof::gain_set::producible;
 use fspid_sim::{LinearPlant, Scenario, SimError};
 
@@ -38,16 +38,13 @@ pub struct FrozenMap {
 }
 
 impl FrozenMap {
-    /// The map of a self-tuning controller with a plant; none for gains that remember.
+    /// The map of a self-tuning controller with a plant, whose law has no memory; none where no point is asked for.
     pub(in crate::analysis) fn of(
         scenario: &Scenario,
         plant: &LinearPlant,
         fspid: &Fspid<f64>,
         question: Question,
     ) -> Result<Option<Self>, SimError> {
-        if fspid.tuner().settings().law != Law::Memoryless {
-            return Ok(None);
-        }
         let rest = producible(fspid.tuner(), 0.0, 0.0);
         let loops = FrozenLoops::new(scenario, plant, fspid, rest, question)?;
         Mapper { loops }.map()

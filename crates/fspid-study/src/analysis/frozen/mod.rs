@@ -6,10 +6,10 @@
 mod map;
 mod reach;
 
-use fspid_core::{Fspid, Gains};
+use fspid_core::{Fspid, Gains, Law};
 use fspid_lti::LoopFamily;
 use fspid_sim::loop_model::{LoopModel, Memory};
-use fspid_sim::{LinearPlant, Scenario, SimError};
+use fspid_sim::{Controller, LinearPlant, Scenario, SimError};
 
 use super::Question;
 use super::answer::Margins;
@@ -25,6 +25,40 @@ const REFINEMENTS: u32 = 4;
 /// How many of some gains have this verdict.
 pub(super) fn count(all: impl Iterator<Item = Stability>, verdict: Stability) -> usize {
     all.filter(|found| *found == verdict).count()
+}
+
+/// The gains of a self-tuner, each standing still.
+#[derive(Clone, Debug)]
+pub enum Frozen {
+    /// Those of a law without memory.
+    OfInputs(FrozenMap),
+    /// Those that an accumulating law may come to.
+    WithinReach(FrozenReach),
+}
+
+impl Frozen {
+    /// Those of a controller around a plant; none of gains that are fixed, or that nothing bounds, or where none is asked for.
+    pub(super) fn of(
+        scenario: &Scenario,
+        plant: &LinearPlant,
+        controller: &Controller,
+        at_rest: Gains<f64>,
+        question: Question,
+    ) -> Result<Option<Self>, SimError> {
+        let Controller::SelfTuning(fspid) = controller else { return Ok(None) };
+        if question.map_points == 0 {
+            return Ok(None);
+        }
+        Ok(match fspid.tuner().settings().law {
+            Law::Memoryless => {
+                FrozenMap::of(scenario, plant, fspid, question)?.map(Self::OfInputs)
+            }
+            Law::Accumulating { .. } => {
+                let reach = FrozenReach::of(scenario, plant, fspid, at_rest, question)?;
+                reach.map(Self::WithinReach)
+            }
+        })
+    }
 }
 
 /// The loops of all frozen gains, and how their margins are found.

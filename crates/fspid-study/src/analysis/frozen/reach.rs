@@ -1,6 +1,6 @@
 //! Margins at the gains that an accumulating law may come to.
 
-use fspid_core::{Fspid, Gains, Law};
+use fspid_core::{Fspid, Gains};
 use fspid_numeric::scalar::Interval;
 use fspid_proof::gain_set::{GainSet, IncrementMap};
 use fspid_sim::{LinearPlant, Scenario, SimError};
@@ -36,7 +36,7 @@ pub struct FrozenReach {
 }
 
 impl FrozenReach {
-    /// That of a controller whose law accumulates, with a plant; none for other laws, and where nothing bounds the gains.
+    /// That of a controller whose law accumulates, with a plant; none where nothing bounds the gains.
     pub(in crate::analysis) fn of(
         scenario: &Scenario,
         plant: &LinearPlant,
@@ -45,9 +45,6 @@ impl FrozenReach {
         question: Question,
     ) -> Result<Option<Self>, SimError> {
         let tuner = fspid.tuner();
-        if tuner.settings().law == Law::Memoryless {
-            return Ok(None);
-        }
         let Ok(map) = IncrementMap::of(tuner, DIVISIONS) else { return Ok(None) };
         let set = map.sampled_every(fspid.config().dt_s).gains(1.0);
         let loops = FrozenLoops::new(scenario, plant, fspid, fspid.tuner().nominal(), question)?;

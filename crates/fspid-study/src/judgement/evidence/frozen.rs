@@ -6,7 +6,7 @@ use fspid_proof::gain_set::IncrementMap;
 use fspid_sim::Controller;
 
 use super::linear::{PlantEvidence, of_margins, with_place};
-use crate::analysis::{FrozenGains, FrozenPoint, Margins};
+use crate::analysis::{Frozen, FrozenGains, FrozenPoint, Margins};
 use crate::judgement::{Case, CasePlace, FrozenAt, NotEvaluated};
 use crate::metrics::Absent;
 use fspid_scenario::measure::Measure;
@@ -39,17 +39,17 @@ pub(super) fn cases(
     loops: &[PlantEvidence],
     requirement: &Requirement,
 ) -> Result<Vec<Case>, NotEvaluated> {
-    let of_plant = |plant: &PlantEvidence| match (&plant.at_rest.map, &plant.at_rest.reach) {
-        (Some(map), _) => {
+    let of_plant = |plant: &PlantEvidence| match &plant.at_rest.frozen {
+        Some(Frozen::OfInputs(map)) => {
             let at =
                 |point: &FrozenPoint| FrozenAt { gains: point.gains, inputs: Some(point.input) };
             worst(plant, map.all().map(|point| (at(point), point.margins)), requirement)
         }
-        (None, Some(reach)) => {
+        Some(Frozen::WithinReach(reach)) => {
             let at = |found: &FrozenGains| FrozenAt { gains: found.gains, inputs: None };
             worst(plant, reach.all().map(|found| (at(found), found.margins)), requirement)
         }
-        (None, None) => case(plant.at_rest.margins, requirement, plant.place()),
+        None => case(plant.at_rest.margins, requirement, plant.place()),
     };
     loops.iter().map(of_plant).collect()
 }
