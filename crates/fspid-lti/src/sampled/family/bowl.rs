@@ -20,65 +20,84 @@ pub(in crate::sampled) type Point = (f64, f64);
 /// R. P. Brent, Algorithms for Minimization without Derivatives, Prentice-Hall (1973), chapter 5.
 pub(in crate::sampled) fn lowest(
     function: impl Fn(f64) -> f64,
-    [left, middle, right]: [Point; 3],
+    points: [Point; 3],
     enough: f64,
 ) -> Point {
-    let (mut low, mut high, mut best) = (left.0, right.0, middle);
-    let (mut second, mut third) = if left.1 < right.1 { (left, right) } else { (right, left) };
-    let (mut step, mut before, mut doubted) = (high - low, high - low, false);
+    let mut search = Search::between(points);
     for _ in 0..STEPS_MAX {
-        let end = if best.0 < 0.5 * (low + high) { high } else { low };
-        let next = match vertex(best, second, third) {
-            Some((_, promise)) if promise <= PROMISE * best.1.abs() => {
-                if doubted {
-                    break;
-                }
-                doubted = true;
-                best.0 + PROBE * (end - best.0)
-            }
-            Some((place, _))
-                if low < place && place < high && (place - best.0).abs() < 0.5 * before.abs() =>
-            {
-                doubted = false;
-                place
-            }
-            _ => {
-                doubted = false;
-                step = end - best.0;
-                best.0 + GOLDEN * step
-            }
-        };
-        before = step;
-        step = next - best.0;
-        if step.abs() <= 4.0 * f64::EPSILON * best.0.abs() {
-            break;
-        }
-        let point = (next, function(next));
-        if point.1 < best.1 {
-            if next < best.0 {
-                high = best.0;
-            } else {
-                low = best.0;
-            }
-            (third, second, best) = (second, best, point);
-        } else {
-            if next < best.0 {
-                low = next;
-            } else {
-                high = next;
-            }
-            // Two points at the same bits are one, which no parabola goes through.
-            if point.1 <= second.1 || second.0.to_bits() == best.0.to_bits() {
-                (third, second) = (second, point);
-            } else if point.1 <= third.1 {
-                third = point;
-            }
-        }
-        if best.1 < enough {
+        let Some(place) = search.next_place() else { break };
+        search.take((place, function(place)));
+        if search.best.1 < enough {
             break;
         }
     }
-    best
+    search.best
+}
+
+/// What is known of the lowest point.
+struct Search {
+    low: f64,
+    high: f64,
+    best: Point,
+    second: Point,
+    third: Point,
+    /// From the best point of then to the one that was asked for last, and the same of the one before.
+    step: f64,
+    before: f64,
+    /// A parabola promised nothing, and a point beside is asked.
+    doubted: bool,
+}
+
+impl Search {
+    fn between([left, middle, right]: [Point; 3]) -> Self {
+        let (second, third) = if left.1 < right.1 { (left, right) } else { (right, left) };
+        let (low, high) = (left.0, right.0);
+        let step = high - low;
+        Self { low, high, best: middle, second, third, step, before: step, doubted: false }
+    }
+
+    /// Where to ask next; nowhere where the best point is as low as can be told.
+    fn next_place(&mut self) -> Option<f64> {
+        let Self { low, high, best, .. } = *self;
+        let end = if best.0 < 0.5 * (low + high) { high } else { low };
+        let is_shorter = |place: f64| (place - best.0).abs() < 0.5 * self.before.abs();
+        let next = match vertex(best, self.second, self.third) {
+            Some((_, promise)) if promise <= PROMISE * best.1.abs() => {
+                if self.doubted {
+                    return None;
+                }
+                self.doubted = true;
+                best.0 + PROBE * (end - best.0)
+            }
+            Some((place, _)) if low < place && place < high && is_shorter(place) => {
+                self.doubted = false;
+                place
+            }
+            _ => {
+                self.doubted = false;
+                self.step = end - best.0;
+                best.0 + GOLDEN * self.step
+            }
+        };
+        (self.before, self.step) = (self.step, next - best.0);
+        (self.step.abs() > 4.0 * f64::EPSILON * best.0.abs()).then_some(next)
+    }
+
+    fn take(&mut self, point: Point) {
+        let is_left = point.0 < self.best.0;
+        if point.1 < self.best.1 {
+            *(if is_left { &mut self.high } else { &mut self.low }) = self.best.0;
+            (self.third, self.second, self.best) = (self.second, self.best, point);
+            return;
+        }
+        *(if is_left { &mut self.low } else { &mut self.high }) = point.0;
+        // Two points at the same bits are one, which no parabola goes through.
+        if point.1 <= self.second.1 || self.second.0.to_bits() == self.best.0.to_bits() {
+            (self.third, self.second) = (self.second, point);
+        } else if point.1 <= self.third.1 {
+            self.third = point;
+        }
+    }
 }
 
 /// The lowest point of the parabola through three points, and how far below the first it lies; `None` if it opens

@@ -50,9 +50,7 @@ impl Frozen {
             return Ok(None);
         }
         Ok(match fspid.tuner().settings().law {
-            Law::Memoryless => {
-                FrozenMap::of(scenario, plant, fspid, question)?.map(Self::OfInputs)
-            }
+            Law::Memoryless => FrozenMap::of(scenario, plant, fspid, question)?.map(Self::OfInputs),
             Law::Accumulating { .. } => {
                 let reach = FrozenReach::of(scenario, plant, fspid, at_rest, question)?;
                 reach.map(Self::WithinReach)
