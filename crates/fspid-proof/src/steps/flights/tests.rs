@@ -12,6 +12,7 @@ use crate::rest::drawn::Dice;
 use crate::steps::tests::navion::{GAINS, navion};
 use crate::{Asked, Certificate, Effort, Range, Verdict, certify};
 
+mod flown_on;
 mod remembering;
 
 const DEG: f64 = core::f64::consts::PI / 180.0;
