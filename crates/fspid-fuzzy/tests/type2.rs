@@ -44,17 +44,6 @@ fn system(blur: f64, drop: f64, defuzzifier: Defuzzifier, numbers: bool) -> Syst
             .into()
     };
     let output_term = |(index, conclusion)| OutputTerm { name: format!("out{index}"), conclusion };
-    let is = |input, term, hedges: &[Hedge]| {
-        let variable = Variable::Input(input);
-        Antecedent::Is(Statement { variable, term: Some(term), hedges: hedges.to_vec() })
-    };
-    let rule = |antecedent, term, weight| Rule {
-        name: String::new(),
-        enabled: true,
-        antecedent,
-        consequents: vec![Consequent { output: 0, term, hedges: Vec::new() }],
-        weight,
-    };
     let parts = Parts {
         name: "type-2".into(),
         description: String::new(),
@@ -70,22 +59,38 @@ fn system(blur: f64, drop: f64, defuzzifier: Defuzzifier, numbers: bool) -> Syst
             defuzzifier,
             fallback: Fallback::default(),
         }],
-        blocks: vec![RuleBlock {
-            name: String::new(),
-            description: String::new(),
-            enabled: true,
-            and: Default::default(),
-            or: Default::default(),
-            implication: Default::default(),
-            activation: Activation::General,
-            rules: vec![
-                rule(Antecedent::All(vec![is(0, 0, &[]), is(1, 0, &[])]), 0, 1.0),
-                rule(Antecedent::Any(vec![is(0, 1, &[]), is(1, 1, &[Hedge::Very])]), 1, 0.8),
-                rule(is(0, 0, &[Hedge::Not]), 1, 1.0),
-            ],
-        }],
+        blocks: vec![block()],
     };
     System::new(parts).unwrap_or_else(|errors| panic!("{errors:?}"))
+}
+
+/// Rules with "and", "or", hedges and a weight.
+fn block() -> RuleBlock {
+    let is = |input, term, hedges: &[Hedge]| {
+        let variable = Variable::Input(input);
+        Antecedent::Is(Statement { variable, term: Some(term), hedges: hedges.to_vec() })
+    };
+    let rule = |antecedent, term, weight| Rule {
+        name: String::new(),
+        enabled: true,
+        antecedent,
+        consequents: vec![Consequent { output: 0, term, hedges: Vec::new() }],
+        weight,
+    };
+    RuleBlock {
+        name: String::new(),
+        description: String::new(),
+        enabled: true,
+        and: Default::default(),
+        or: Default::default(),
+        implication: Default::default(),
+        activation: Activation::General,
+        rules: vec![
+            rule(Antecedent::All(vec![is(0, 0, &[]), is(1, 0, &[])]), 0, 1.0),
+            rule(Antecedent::Any(vec![is(0, 1, &[]), is(1, 1, &[Hedge::Very])]), 1, 0.8),
+            rule(is(0, 0, &[Hedge::Not]), 1, 1.0),
+        ],
+    }
 }
 
 fn ask(system: &System, inputs: [f64; 2]) -> (f64, [f64; 2]) {

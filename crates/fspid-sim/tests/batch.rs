@@ -141,15 +141,20 @@ fn config(random: &mut Random, structure: Structure) -> PidConfig<f64> {
     config
 }
 
-fn tuner(random: &mut Random, structure: Structure, gains: Gains<f64>) -> SelfTuner<f64> {
+fn supervisor(random: &mut Random, structure: Structure) -> Supervisor<f64> {
     let supervisor = if structure.numbers {
         let grids = [[[0.0; 7]; 7]; 3];
         let grids = grids.map(|grid| grid.map(|row| row.map(|_| random.between(-5.0, 5.0))));
         let numbers = NumberTable::new(grids).expect("finite");
-        Supervisor::of_numbers(&numbers, 5.0, structure.policy).expect("allowed")
+        Supervisor::of_numbers(&numbers, 5.0, structure.policy)
     } else {
-        Supervisor::new(&table(), 5.0, Defuzzifier::Exact, structure.policy).expect("allowed")
+        Supervisor::new(&table(), 5.0, Defuzzifier::Exact, structure.policy)
     };
+    supervisor.expect("allowed")
+}
+
+fn tuner(random: &mut Random, structure: Structure, gains: Gains<f64>) -> SelfTuner<f64> {
+    let supervisor = supervisor(random, structure);
     let scale = if random.one_in(6) { 100.0 } else { 1.0 };
     let mut settings = TunerSettings {
         input_scale: InputScale {
@@ -175,41 +180,43 @@ fn tuner(random: &mut Random, structure: Structure, gains: Gains<f64>) -> SelfTu
         settings.law = Law::Accumulating { leakage_per_s: random.between(0.0, 2.0) };
     }
     if structure.wild {
-        if random.one_in(2) {
-            settings.error_sign = ErrorSign::MeasurementMinusSetpoint;
-        }
-        if random.one_in(2) {
-            settings.change = Change::Delta;
-        }
-        let places = |random: &mut Random| {
-            let places = SetCentres::new(random.between(0.05, 0.4), random.between(0.5, 0.95));
-            random.one_in(2).then(|| places.expect("in order"))
-        };
-        settings.input_sets = InputSets { error: places(random), change: places(random) };
-        if random.one_in(2) {
-            settings.gain_coupling = GainCoupling {
-                setpoint_weight: random.between(-1.0, 1.0),
-                rate_gain: random.between(-1.0, 1.0),
-            };
-        }
-        if random.one_in(2) {
-            settings.dead_zone = Some(DeadZone {
-                error_rad: random.between(0.0, 0.2),
-                change_rad: random.between(0.0, 2.0),
-            });
-        }
-        if random.one_in(2) {
-            let around = |gain: f64| {
-                Limits::new(ControllerSetting::GainLimits, gain - 0.2, gain + 0.3).expect("allowed")
-            };
-            settings.gain_limits = Some(GainLimits {
-                kp: around(gains.kp),
-                ki: around(gains.ki),
-                kd: around(gains.kd),
-            });
-        }
+        make_wild(&mut settings, random, gains);
     }
     SelfTuner::new(gains, supervisor, settings).expect("allowed")
+}
+
+/// Each setting that few tuners have, in half of all draws.
+fn make_wild(settings: &mut TunerSettings<f64>, random: &mut Random, gains: Gains<f64>) {
+    if random.one_in(2) {
+        settings.error_sign = ErrorSign::MeasurementMinusSetpoint;
+    }
+    if random.one_in(2) {
+        settings.change = Change::Delta;
+    }
+    let places = |random: &mut Random| {
+        let places = SetCentres::new(random.between(0.05, 0.4), random.between(0.5, 0.95));
+        random.one_in(2).then(|| places.expect("in order"))
+    };
+    settings.input_sets = InputSets { error: places(random), change: places(random) };
+    if random.one_in(2) {
+        settings.gain_coupling = GainCoupling {
+            setpoint_weight: random.between(-1.0, 1.0),
+            rate_gain: random.between(-1.0, 1.0),
+        };
+    }
+    if random.one_in(2) {
+        settings.dead_zone = Some(DeadZone {
+            error_rad: random.between(0.0, 0.2),
+            change_rad: random.between(0.0, 2.0),
+        });
+    }
+    if random.one_in(2) {
+        let around = |gain: f64| {
+            Limits::new(ControllerSetting::GainLimits, gain - 0.2, gain + 0.3).expect("allowed")
+        };
+        settings.gain_limits =
+            Some(GainLimits { kp: around(gains.kp), ki: around(gains.ki), kd: around(gains.kd) });
+    }
 }
 
 fn controller(random: &mut Random, structure: Structure) -> Controller {

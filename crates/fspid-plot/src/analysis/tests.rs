@@ -201,13 +201,21 @@ pub(crate) fn odd(draw: &mut Draw) -> Vec<Svg> {
         let points = numbers.chunks_exact(3).map(point).collect();
         curves.push(LoopCurve { name: "a <b> & \"c\"".to_owned(), style, points });
     }
-    let pairs = |draw: &mut Draw| -> Vec<(f64, f64)> {
-        draw.list(6).into_iter().zip(draw.list(6)).collect()
-    };
-    let triples = |draw: &mut Draw| -> Vec<[f64; 3]> {
-        draw.list(12).chunks_exact(3).map(|part| [part[0], part[1], part[2]]).collect()
-    };
     let mut found = odd_loops(draw, &curves);
+    found.extend(odd_poles(draw));
+    found.extend(odd_gains(draw));
+    found
+}
+
+fn pairs(draw: &mut Draw) -> Vec<(f64, f64)> {
+    draw.list(6).into_iter().zip(draw.list(6)).collect()
+}
+
+fn triples(draw: &mut Draw) -> Vec<[f64; 3]> {
+    draw.list(12).chunks_exact(3).map(|part| [part[0], part[1], part[2]]).collect()
+}
+
+fn odd_poles(draw: &mut Draw) -> [Svg; 2] {
     let samples =
         (0..4).map(|_| LocusSample { factor: draw.mixed(), poles: pairs(draw) }).collect();
     let plane = RootLocus {
@@ -219,8 +227,10 @@ pub(crate) fn odd(draw: &mut Draw) -> Vec<Svg> {
         open_zeros: pairs(draw),
         crossings: vec![Crossing { factor: draw.odd(), at: (draw.mixed(), draw.odd()) }],
     };
-    found.push(plane.render());
-    found.push(PoleZeroMap { dt_s: draw.odd(), ..poles(pairs(draw)) }.render());
+    [plane.render(), PoleZeroMap { dt_s: draw.odd(), ..poles(pairs(draw)) }.render()]
+}
+
+fn odd_gains(draw: &mut Draw) -> [Svg; 4] {
     let cells = (0..4).map(|_| draw.list(5).into_iter().map(MapCell::Value).collect()).collect();
     let map = GainMap {
         xs: draw.list(5),
@@ -231,11 +241,11 @@ pub(crate) fn odd(draw: &mut Draw) -> Vec<Svg> {
         flown: pairs(draw),
         ..map(0)
     };
-    found.push(map.render());
+    let drawn = map.render();
     let gains = (0..4).map(|_| draw.list(5)).collect();
-    found.push(GainSurface { map, gains, gain_label: "k_{p".to_owned() }.render());
+    let surface = GainSurface { map, gains, gain_label: "k_{p".to_owned() };
     let (radii, below) = (vec![draw.series(), draw.series()], vec![draw.series()]);
-    found.push(RadiusFigure { radii, below, width_px: draw.mixed() * 200.0, ..radius(0) }.render());
+    let radius = RadiusFigure { radii, below, width_px: draw.mixed() * 200.0, ..radius(0) };
     let boxes = triples(draw).into_iter().zip(triples(draw));
     let cell = |(lower, upper)| GainCell { lower, upper, state: CellState::Open };
     let set = GainSet {
@@ -246,8 +256,7 @@ pub(crate) fn odd(draw: &mut Draw) -> Vec<Svg> {
         nominal: triples(draw).first().copied(),
         ..gain_set(0)
     };
-    found.push(set.render());
-    found
+    [drawn, surface.render(), radius.render(), set.render()]
 }
 
 fn odd_loops(draw: &mut Draw, curves: &[LoopCurve]) -> Vec<Svg> {

@@ -328,55 +328,48 @@ fn flown() -> Vec<(f64, f64)> {
     (0..=400).map(|n| f64::from(n) * 0.03).map(|t| (at(t), 3.0 * (at(t + 0.3) - at(t)))).collect()
 }
 
-fn maps(plant: &Plant) -> Outcome<Vec<(&'static str, Svg)>> {
-    let map = |count: u32| -> Outcome<GainMap> {
-        let nodes: Vec<f64> =
-            (0..count).map(|n| -5.0 + 10.0 * f64::from(n) / f64::from(count - 1)).collect();
-        let mut cells = Vec::new();
-        let mut worst = (f64::INFINITY, (0.0, 0.0));
-        for ec in &nodes {
-            let mut row = Vec::new();
-            for e in &nodes {
-                let found = plant.gain_margin_db(supervised(*e, *ec).map(|gain| gain * BOLD))?;
-                if found.unwrap_or(-1.0) < worst.0 {
-                    worst = (found.unwrap_or(-1.0), (*e, *ec));
-                }
-                row.push(found.map_or(MapCell::Unstable, MapCell::Value));
+/// Gain margins of the bold gains that the supervisor makes of so many errors and changes.
+fn map(plant: &Plant, count: u32) -> Outcome<GainMap> {
+    let bold = |e: f64, ec: f64| supervised(e, ec).map(|gain| gain * BOLD);
+    let node = |n: u32| -5.0 + 10.0 * f64::from(n) / f64::from(count - 1);
+    let nodes: Vec<f64> = (0..count).map(node).collect();
+    let mut cells = Vec::new();
+    let mut worst = (f64::INFINITY, (0.0, 0.0));
+    for ec in &nodes {
+        let mut row = Vec::new();
+        for e in &nodes {
+            let found = plant.gain_margin_db(bold(*e, *ec))?;
+            if found.unwrap_or(-1.0) < worst.0 {
+                worst = (found.unwrap_or(-1.0), (*e, *ec));
             }
-            cells.push(row);
+            row.push(found.map_or(MapCell::Unstable, MapCell::Value));
         }
-        let (e, ec) = worst.1;
-        let at_rest = plant.gain_margin_db(supervised(0.0, 0.0).map(|gain| gain * BOLD))?;
-        let rest = words(supervised(0.0, 0.0).map(|gain| gain * BOLD));
-        Ok(GainMap {
-            title: "Gain margin with the gains frozen: FSPID on the 747".to_owned(),
-            x_label: "error e [deg]".to_owned(),
-            y_label: "change of error ec [deg]".to_owned(),
-            quantity: "gain margin [dB]".to_owned(),
-            xs: nodes.clone(),
-            ys: nodes,
-            cells,
-            scale: None,
-            required: Some((6.0, "6 dB".to_owned())),
-            worst: Some(MapPoint {
-                at: (e, ec),
-                name: format!(
-                    "UNSTABLE at e = {e:.2} deg, ec = {ec:.2} deg: {}",
-                    words(supervised(e, ec).map(|gain| gain * BOLD))
-                ),
-            }),
-            equilibrium: Some(MapPoint {
-                at: (0.0, 0.0),
-                name: format!(
-                    "{}{rest}",
-                    at_rest.map_or(String::new(), |db| format!("{db:.1} dB, "))
-                ),
-            }),
-            flown: flown(),
-        })
-    };
-    let nine = map(9)?;
-    let fine = map(33)?;
+        cells.push(row);
+    }
+    let (e, ec) = worst.1;
+    let at_rest = plant.gain_margin_db(bold(0.0, 0.0))?;
+    let at_rest = at_rest.map_or(String::new(), |db| format!("{db:.1} dB, "));
+    let rest = format!("{at_rest}{}", words(bold(0.0, 0.0)));
+    let least = format!("UNSTABLE at e = {e:.2} deg, ec = {ec:.2} deg: {}", words(bold(e, ec)));
+    Ok(GainMap {
+        title: "Gain margin with the gains frozen: FSPID on the 747".to_owned(),
+        x_label: "error e [deg]".to_owned(),
+        y_label: "change of error ec [deg]".to_owned(),
+        quantity: "gain margin [dB]".to_owned(),
+        xs: nodes.clone(),
+        ys: nodes,
+        cells,
+        scale: None,
+        required: Some((6.0, "6 dB".to_owned())),
+        worst: Some(MapPoint { at: (e, ec), name: least }),
+        equilibrium: Some(MapPoint { at: (0.0, 0.0), name: rest }),
+        flown: flown(),
+    })
+}
+
+fn maps(plant: &Plant) -> Outcome<Vec<(&'static str, Svg)>> {
+    let nine = map(plant, 9)?;
+    let fine = map(plant, 33)?;
     let gains = fine.ys.iter().map(|ec| fine.xs.iter().map(|e| supervised(*e, *ec)[0]).collect());
     let surface = GainSurface {
         gains: gains.collect(),

@@ -17,6 +17,7 @@ fn word_fault(
     (schema, value, path): (&Value, &Value, &str),
 ) -> Option<String> {
     let members = || value.as_object().into_iter().flatten();
+    let items = value.as_array();
     let inner = |rule: &Value, item: &Value, key: &str| fault(rule, item, &format!("{path}.{key}"));
     let good = match word {
         "$ref" => {
@@ -38,8 +39,8 @@ fn word_fault(
             rule == true || others.next().is_none()
         }
         "items" => {
-            let items = value.as_array().into_iter().flatten().enumerate();
-            return items.into_iter().find_map(|(n, item)| inner(rule, item, &n.to_string()));
+            let mut all = items.into_iter().flatten().enumerate();
+            return all.find_map(|(n, item)| inner(rule, item, &n.to_string()));
         }
         "oneOf" => {
             let ways = rule.as_array().expect("a list").iter();
@@ -57,30 +58,30 @@ fn word_fault(
             let mut names = rule.as_array().expect("a list").iter();
             names.all(|name| object.contains_key(name.as_str().expect("a name")))
         }),
-        "type" => match rule.as_str().expect("one type") {
-            "object" => value.is_object(),
-            "array" => value.is_array(),
-            "string" => value.is_string(),
-            "boolean" => value.is_boolean(),
-            "integer" => value.is_i64() || value.is_u64(),
-            "number" => value.is_number() || value.as_str() == Some("inf"),
-            other => panic!("type {other}"),
-        },
+        "type" => is_of(rule.as_str().expect("one type"), value),
         "enum" => rule.as_array().expect("a list").contains(value),
         "const" => rule == value,
         "minimum" => value.as_f64().is_none_or(|x| x >= rule.as_f64().expect("a number")),
         "maximum" => value.as_f64().is_none_or(|x| x <= rule.as_f64().expect("a number")),
         "exclusiveMinimum" => value.as_f64().is_none_or(|x| x > rule.as_f64().expect("a number")),
-        "minItems" => {
-            value.as_array().is_none_or(|l| l.len() as u64 >= rule.as_u64().expect("a number"))
-        }
-        "maxItems" => {
-            value.as_array().is_none_or(|l| l.len() as u64 <= rule.as_u64().expect("a number"))
-        }
+        "minItems" => items.is_none_or(|all| all.len() as u64 >= rule.as_u64().expect("a number")),
+        "maxItems" => items.is_none_or(|all| all.len() as u64 <= rule.as_u64().expect("a number")),
         "minLength" | "pattern" => true,
         other => panic!("the test does not know `{other}`"),
     };
     (!good).then(|| format!("{path}: {word} {rule} for {value}"))
+}
+
+fn is_of(kind: &str, value: &Value) -> bool {
+    match kind {
+        "object" => value.is_object(),
+        "array" => value.is_array(),
+        "string" => value.is_string(),
+        "boolean" => value.is_boolean(),
+        "integer" => value.is_i64() || value.is_u64(),
+        "number" => value.is_number() || value.as_str() == Some("inf"),
+        other => panic!("type {other}"),
+    }
 }
 
 /// The file as JSON; an infinite number, which JSON does not have, is the text `inf`.
