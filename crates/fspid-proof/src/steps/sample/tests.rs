@@ -140,3 +140,125 @@ fn what_a_slew_limit_keeps_of_the_ball_of_the_command_before_belongs_to_the_comm
     assert_eq!(pass.limited(&near), near);
     assert!(pass.shares[COMMAND] >= 1.0);
 }
+
+fn pass<'a, 's>(flown: &'a Flown<'s>, now: &'a Flight, judge: Judge) -> Pass<'a, 's> {
+    Pass { flown, now, judge, shares: FREE, symbols: now.symbols }
+}
+
+#[test]
+fn what_the_ball_adds_to_a_row_is_its_reach_along_each_state_times_the_factor() {
+    let loop_ = Loop::new();
+    let ready = loop_.ready();
+    let mut now = at_rest(&ready);
+    now.ball = 0.002;
+    let row = vec![(0, point(0.5)), (2, point(-3.0))];
+    let found = pass(&ready.flown, &now, Judge::Measured).row(&row);
+    let reach = &ready.flown.reach;
+    let expected = (0.5 * reach[0] + 3.0 * reach[2]) * now.ball;
+    assert!(found.of_ball >= expected && found.of_ball < expected * (1.0 + HAIR));
+    now.ball = 0.0;
+    assert!(pass(&ready.flown, &now, Judge::Measured).row(&row).of_ball == 0.0);
+}
+
+/// What a controller sees, with kp 0.8, kd 0.2 and so much of ki.
+fn seen(error: Affine, [ki, off_ki]: [f64; 2]) -> Seen {
+    Seen {
+        pitch: Affine::default(),
+        rate: between(-0.02, 0.3),
+        error,
+        derivative: Some(Affine::default()),
+        gains: Between { middle: [0.8, ki, 0.2], radius: [0.0, off_ki, 0.05] },
+        tuned: None,
+    }
+}
+
+#[test]
+fn a_rate_gain_that_follows_kd_is_as_uncertain_as_its_share_of_it() {
+    let loop_ = Loop::new();
+    let ready = loop_.ready();
+    let mut flown = ready.flown.clone();
+    flown.config.rate_gain_s = 0.1;
+    flown.followers.coupling.rate_gain = -0.7;
+    flown.followers.nominal.kd = 0.15;
+    let now = at_rest(&ready);
+    let seen = seen(Affine::default(), [0.4, 0.0]);
+    let (damping, off) = pass(&flown, &now, Judge::Measured).damped(&seen);
+    let gain = 0.1 - 0.7 * (0.2 - 0.15);
+    let [lower, upper] = [damping.range().lower(), damping.range().upper()];
+    assert!((lower - -0.02 * gain).abs() < HAIR && (upper - 0.3 * gain).abs() < HAIR);
+    assert!((off - 0.7 * 0.05 * 0.3).abs() < HAIR, "{off}");
+}
+
+/// The excess over the limits is pulled out of the integral; while the gain is zero nothing is.
+#[test]
+fn back_calculation_pulls_what_is_cut_where_it_is_known_that_there_is_a_gain() {
+    let loop_ = Loop::new();
+    let ready = loop_.ready();
+    let mut flown = ready.flown.clone();
+    flown.config.slew_rad_s = None;
+    flown.config.anti_windup = AntiWindup::BackCalculation { tracking_s: 0.5 };
+    flown.config.limits =
+        Some(Limits::new(ControllerSetting::OutputLimits, -0.1, 0.1).expect("allowed"));
+    let mut now = at_rest(&ready);
+    now.values.iter_mut().for_each(|value| *value = Affine::default());
+    let mut answered = |setpoint: f64, ki: [f64; 2]| {
+        now.setpoint = Affine::constant(point(setpoint));
+        let seen = seen(now.setpoint.clone(), ki);
+        let answered = pass(&flown, &now, Judge::Measured).answered(&seen);
+        answered.map(|answered| answered.integral.expect("there is one"))
+    };
+    let (known, perhaps_none) = ([0.4, 0.0], [0.4, 0.41]);
+    // Nothing is cut: nothing is pulled.
+    let added = 0.4 * 0.02 * 0.05;
+    let free = answered(0.05, known).expect("known");
+    assert!((free.centre - added).abs() < HAIR && answered(0.05, perhaps_none).is_ok());
+    // A command of 0.8 times the set-point and what the integral has, of which 0.1 is left.
+    let wound = 0.4 * 0.02 * 0.5;
+    let excess = 0.8 * 0.5 + wound - 0.1;
+    let cut = answered(0.5, known).expect("known").centre;
+    assert!((cut - (wound - 0.02 / 0.5 * excess)).abs() < HAIR, "{cut}");
+    assert_eq!(answered(0.5, perhaps_none).err(), Some(Stop::Lost));
+}
+
+#[test]
+fn what_is_kept_of_the_ball_before_is_what_a_slew_limit_does_not_let_through() {
+    let loop_ = Loop::new();
+    let ready = loop_.ready();
+    let mut flown = ready.flown.clone();
+    let most = flown.config.slew_rad_s.expect("limited") * flown.config.dt_s;
+    flown.config.limits = None;
+    let mut now = at_rest(&ready);
+    now.last = Affine { of_ball: 0.01 * most, ..Affine::constant(Interval::ONE) };
+    let mut pass = pass(&flown, &now, Judge::Measured);
+    let command = pass.limited(&between(1.0 + 0.2 * most, 1.0 + 1.5 * most));
+    let share = pass.shares[COMMAND];
+    assert!(share > 0.2 && share < 0.9, "{share}");
+    let expected = (1.0 - share) * 0.01 * most;
+    assert!((command.off - expected).abs() < HAIR * most, "{} {expected}", command.off);
+}
+
+/// Between all and nothing of what a rate limit lets through, a sample goes along a straight line.
+#[test]
+fn a_share_of_a_rate_limit_lets_through_that_share_of_what_moves_the_servo() {
+    let loop_ = Loop::new();
+    let ready = loop_.ready();
+    let flown = &ready.flown;
+    let gains = flown.gains.at_rest();
+    let mut now = at_rest(&ready);
+    now.ball = 0.01;
+    now.load = Affine::constant(point(0.03));
+    let with = |share: f64| {
+        let shares = core::array::from_fn(|place| if place == RATE { share } else { 1.0 });
+        flown.pass(&now, Moment::Later, Judge::Forced(shares, gains)).expect("known").flight
+    };
+    let [none, part, all] = [0.0, 0.4, 1.0].map(with);
+    let mut moved = 0.0_f64;
+    for ((none, part), all) in none.values.iter().zip(&part.values).zip(&all.values) {
+        let between = 0.6 * none.centre + 0.4 * all.centre;
+        assert!((part.centre - between).abs() < HAIR, "{} {between}", part.centre);
+        // The share of the ball goes along with it.
+        assert!(part.off < 1e-8, "{}", part.off);
+        moved = moved.max((all.centre - none.centre).abs());
+    }
+    assert!(moved > 1e-3, "{moved}");
+}
