@@ -191,4 +191,4 @@ impl NearRest<'_> {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

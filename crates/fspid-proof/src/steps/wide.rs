@@ -157,48 +157,4 @@ fn times(matrix: &Matrix, state: &[f64]) -> Option<Vec<f64>> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn diagonal(entries: [f64; 2]) -> Matrix {
-        Matrix::from_rows(&[[entries[0], 0.0], [0.5, entries[1]]]).unwrap()
-    }
-
-    /// A quarter of what the slowest mode of all falls by; nothing where a mode stands still or grows.
-    #[test]
-    fn a_rate_leaves_room_beside_the_slowest_mode_of_all() {
-        for (modes, rate) in [
-            ([[0.5, 0.2], [0.1, -0.8]], Some(0.95)),
-            ([[0.6, 0.0], [0.1, 0.2]], Some(0.9)),
-            ([[0.0, 0.0], [0.0, 0.0]], Some(0.75)),
-            ([[0.5, 0.2], [0.1, -1.0]], None),
-            ([[1.2, 0.2], [0.1, 0.3]], None),
-        ] {
-            let found = slower(&modes.map(diagonal));
-            assert_eq!(found.is_some(), rate.is_some(), "{modes:?}");
-            let off = found.zip(rate).map_or(0.0, |(found, rate)| found - rate);
-            assert!(off.abs() < 1e-9, "{modes:?}: {found:?}");
-        }
-    }
-
-    #[test]
-    fn rows_are_divided_by_their_limit_and_states_multiplied_by_a_matrix() {
-        assert_eq!(over(&[1.0, -3.0], 4.0), [0.25, -0.75]);
-        assert_eq!(times(&diagonal([2.0, -1.0]), &[1.0, 3.0]), Some(vec![2.0, -2.5]));
-        assert_eq!(times(&diagonal([2.0, -1.0]), &[1.0]), None, "another size");
-    }
-
-    #[test]
-    fn the_corners_of_a_box_are_all_of_its_ends() {
-        let bounds = [(1.0, 2.0), (3.0, 5.0), (-1.0, 0.5)];
-        let found = corners(bounds.map(|(lower, upper)| Interval::between(lower, upper)));
-        let all = (0..8_usize).filter(|corner| {
-            let end = |gain: usize| {
-                let (lower, upper) = bounds[gain];
-                if corner >> gain & 1 == 1 { upper } else { lower }
-            };
-            found.contains(&Gains { kp: end(0), ki: end(1), kd: end(2) })
-        });
-        assert_eq!((all.count(), found.len()), (8, 8));
-    }
-}
+mod tests;

@@ -55,7 +55,8 @@ fn certificate(controller: Controller) -> Certificate {
     }
 }
 
-fn with_near(controller: Controller, asks: impl FnOnce(&NearRest<'_>)) {
+/// Asks about the Navion with a controller, near rest.
+pub(in crate::steps) fn with_near(controller: Controller, asks: impl FnOnce(&NearRest<'_>)) {
     let certificate = certificate(controller);
     let held = match &controller {
         Controller::Fixed(pid) => GainSet::fixed(pid.gains()),
