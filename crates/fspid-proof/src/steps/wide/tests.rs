@@ -57,7 +57,8 @@ fn same(found: f64, expected: f64) {
 #[test]
 fn what_is_seen_beside_the_error_is_to_it_as_their_bounds_in_a_form_that_falls_at_rest() {
     with_wide(of_model(), |wide| {
-        assert_eq!([wide.second_per_rad, wide.model_off], [1.0 + MODEL, MODEL]);
+        same(wide.second_per_rad, 1.0 + MODEL);
+        same(wide.model_off, MODEL);
     });
     let mut of_change = [0.0; 2];
     for (found, change) in of_change.iter_mut().zip([Change::Delta, Change::Rate]) {
