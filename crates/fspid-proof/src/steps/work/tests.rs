@@ -6,7 +6,7 @@ use fspid_lti::Matrix;
 use fspid_sim::actuator::Actuator;
 
 use super::*;
-use crate::steps::commands::Commands;
+use crate::steps::commands::{Commands, Shares};
 use crate::steps::flights::Patch;
 use crate::steps::tests::navion::{GAINS, navion, proved};
 
@@ -92,5 +92,36 @@ fn a_search_may_take_its_part_of_more_than_a_check_and_is_stopped_by_who_asked()
         assert!(search.is_stopped() && search.left() == Err(Stop::Lost));
         assert!(!search.another().is_stopped(), "another is told by `halted` alone");
         assert_eq!(search.another().most, 3000);
+    });
+}
+
+#[test]
+fn what_was_flown_until_it_landed_or_was_given_up_is_counted_as_often_as_a_sample_costs() {
+    with_flights(|mut flights| {
+        assert_eq!(flights.rests_s(), None, "gains stand still");
+        let from = Beginning::Controller;
+        let commands = Commands::step();
+        let patch = Patch { setpoint: [0.0099, 0.01], load: [0.0; 2] };
+        let way = Way { commands: &commands, patch, from };
+        let begun = flights.begun(from);
+        flights.each = 6;
+        let landed = flights.landed(&way, begun.clone(), 0).expect("it lands");
+        assert_eq!(flights.flown, 6 * landed.flown);
+        flights.flown = 0;
+        flights.longest = landed.flown / 2;
+        assert_eq!(flights.landed(&way, begun.clone(), 0).err(), Some(Stop::Lost));
+        assert_eq!(flights.flown, 6 * (landed.flown / 2));
+        // A last change may be as far as what is left, and no further.
+        (flights.flown, flights.longest, flights.most) = (0, 10, 6 * 40);
+        let later = |last: usize| {
+            let pulse = Shares(vec![(0, 1.0), (last, 0.5)]);
+            Commands { setpoint: pulse, ..Commands::step() }
+        };
+        for (last, stop) in [(40, Stop::Lost), (41, Stop::Work)] {
+            let commands = later(last);
+            let way = Way { commands: &commands, ..way };
+            flights.flown = 0;
+            assert_eq!(flights.landed(&way, begun.clone(), 0).err(), Some(stop), "{last}");
+        }
     });
 }
