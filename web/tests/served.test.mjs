@@ -58,7 +58,7 @@ async function opened(view, options = {}) {
   page.on("request", (request) => /^https?:/.test(request.url()) && !request.url().startsWith("http://127.0.0.1") && page.outside.push(request.url()));
   page.on("pageerror", (error) => page.wrong.push(error.message));
   page.on("console", (message) => message.type() === "error" && page.wrong.push(message.text()));
-  page.setDefaultTimeout(30_000);
+  page.setDefaultTimeout(60_000);
   await page.goto(address);
   await page.waitForFunction(() => Number(document.querySelector("#panel")?.dataset.flights) >= 1);
   await page.waitForFunction(() => document.querySelector("[data-test=scenario]").selectedOptions[0]?.text === "mine.toml");

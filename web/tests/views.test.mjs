@@ -24,7 +24,7 @@ async function opened(options = {}, address = PAGE) {
   page.on("pageerror", (error) => page.wrong.push(error.message));
   page.on("console", (message) => message.type() === "error" && page.wrong.push(message.text()));
   page.on("request", (request) => /^https?:/.test(request.url()) && page.outside.push(request.url()));
-  page.setDefaultTimeout(30_000);
+  page.setDefaultTimeout(60_000);
   await page.goto(address);
   await flown(page, 1);
   return page;
