@@ -419,6 +419,14 @@ fn rest_is_where_a_sample_moves_nothing() {
     assert!(next.last.less(&rest.last).magnitude() < 1e-9);
     // Of a set-point and a load of 1 together no more than twice what a sample moves of one.
     assert!(ready.off_rest > 0.0 && ready.off_rest < 1e-6, "{:e}", ready.off_rest);
+    // What a sample moves there, and all of the samples after it.
+    let unit = ready.unit(Some(&ready.rest));
+    let forced = Judge::Forced(FREE, ready.flown.gains.at_rest());
+    let moved = ready.flown.pass(&unit, Moment::Later, forced).expect("known").flight.values;
+    let off = moved.iter().zip(&unit.values).map(|(next, now)| next.less(now).magnitude());
+    let rate = loop_.certificate.steps.as_ref().expect("proved").terminal.rate;
+    let off: Vec<f64> = off.collect();
+    same(ready.off_rest, ready.near.of_box(&off) / (1.0 - rate));
 }
 
 #[test]
@@ -430,6 +438,33 @@ fn how_far_pitch_angles_are_apart_leaves_out_what_set_point_and_load_make_of_the
     flight.values[0].parts = [0.3, 0.2, 0.01, -0.02].into_iter().collect();
     flight.ball = 0.001;
     same(ready.apart_rad(&flight), 0.03 + 0.001 * ready.flown.reach[0]);
+}
+
+/// What rounding may make of an entry lies to both sides of it.
+#[test]
+fn the_matrix_of_a_sample_holds_what_its_flights_are_off() {
+    let loop_ = Loop::new();
+    let ready = loop_.ready();
+    let size = ready.flown.layout.size;
+    let gains = ready.flown.gains.at_rest();
+    let matrix = forced(&ready.flown, FREE, gains).expect("known");
+    let mut unit = ready.unit(None);
+    (unit.setpoint, unit.load, unit.symbols) = (Affine::default(), Affine::default(), size);
+    for (place, value) in unit.values.iter_mut().enumerate() {
+        value.parts = (0..size).map(|at| if at == place { 1.0 } else { 0.0 }).collect();
+    }
+    let pass = ready.flown.pass(&unit, Moment::Later, Judge::Forced(FREE, gains));
+    let moved = pass.expect("known").flight.values;
+    let entries: Vec<Interval> = matrix.entries().collect();
+    for (row, value) in moved.iter().enumerate() {
+        for place in 0..size {
+            let [entry, part] =
+                [entries[row * size + place], Interval::point(value.parts.of(place))];
+            let held = part + Interval::between(-value.off, value.off);
+            assert!(entry.encloses(held), "{row} {place}: {entry:?} {held:?}");
+        }
+    }
+    assert!(moved.iter().any(|value| value.off > 1e-17));
 }
 
 #[test]

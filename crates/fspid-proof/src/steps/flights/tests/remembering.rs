@@ -194,19 +194,40 @@ fn the_ball_grows_by_all_gains_that_a_law_with_memory_reaches() {
     assert_eq!(ready.grown(FREE, at_rest).to_bits(), all.to_bits());
 }
 
-/// With so many unknowns that some are gathered, or one less.
+/// A sample adds as many unknowns whatever there are, so that the most that is followed can be met.
 #[test]
 fn unknowns_of_gains_that_remember_are_gathered_when_there_are_too_many() {
     let remembering = Remembering::new();
     let mut ready = remembering.ready();
-    let dice = &mut Dice::new(5);
-    for (symbols, is_gathered) in [(MOST_FOLLOWED + 60, true), (OWN + 400, false)] {
-        let mut flight = with_unknowns(&ready, dice, symbols, 1e-6);
+    let mut after = |symbols: usize| {
+        let mut flight = with_unknowns(&ready, &mut Dice::new(5), symbols, 1e-6);
         flight.ball = 1e-6;
         flight.tuned = near_rest(&remembering, &ready).tuned;
-        let next = ready.after(&flight, Moment::Later).expect("known");
+        ready.after(&flight, Moment::Later).expect("known")
+    };
+    let added = after(OWN + 400).symbols - OWN - 400;
+    for (symbols, is_gathered) in
+        [(OWN + 400, false), (MOST_FOLLOWED - added, false), (MOST_FOLLOWED - added + 1, true)]
+    {
+        let next = after(symbols);
         assert_eq!(next.symbols < symbols, is_gathered, "{symbols}: {}", next.symbols);
         assert_eq!(next.ball.to_bits() == 0, is_gathered);
+    }
+}
+
+#[test]
+fn flights_begin_with_the_nominal_gains_or_with_those_after_a_rest() {
+    let remembering = Remembering::new();
+    let mut ready = remembering.ready();
+    let nominal = [GAINS.kp, GAINS.ki, GAINS.kd];
+    let rested = ready.flown.rested;
+    let first = ready.begun(Beginning::Controller).tuned.expect("remembers").gains;
+    let later = ready.begun(Beginning::Rest).tuned.expect("remembers").gains;
+    for gain in 0..3 {
+        assert!((first[gain].centre - nominal[gain]).abs() < 1e-12 && first[gain].spread() < 1e-12);
+        let range = later[gain].range();
+        assert!(range.encloses(rested[gain]) && rested[gain].width() > 1e-9, "{gain}");
+        assert!(range.width() < rested[gain].width() * (1.0 + 1e-9));
     }
 }
 
