@@ -14,6 +14,7 @@ use crate::{Asked, Certificate, Effort, Range, Verdict, certify};
 
 mod flown_on;
 mod remembering;
+pub(in crate::steps) mod self_tuned;
 
 const DEG: f64 = core::f64::consts::PI / 180.0;
 /// Set-points of the flights that are at rest, rad.

@@ -8,6 +8,7 @@ use fspid_sim::actuator::Actuator;
 use super::*;
 use crate::steps::commands::{Commands, Shares};
 use crate::steps::flights::Patch;
+use crate::steps::flights::tests::self_tuned::SelfTuned;
 use crate::steps::tests::navion::{GAINS, navion, proved};
 
 fn config() -> PidConfig<f64> {
@@ -123,5 +124,27 @@ fn what_was_flown_until_it_landed_or_was_given_up_is_counted_as_often_as_a_sampl
             flights.flown = 0;
             assert_eq!(flights.landed(&way, begun.clone(), 0).err(), Some(stop), "{last}");
         }
+    });
+}
+
+#[test]
+fn a_rest_is_that_of_gains_that_remember_and_what_was_asked_is_forgotten() {
+    let asked = |flights: &Flights<'_>, most: f64| {
+        let side = Interval::between(0.0, most);
+        flights.ready.flown.gains.seen(side, side).expect("some")
+    };
+    with_flights(|flights| {
+        let remembering = SelfTuned::remembering();
+        let of_gains = Flights { ready: remembering.ready(), ..flights.clone() };
+        assert_eq!(of_gains.rests_s(), of_gains.ready.rests_s());
+        assert!(of_gains.rests_s().is_some());
+        let without_memory = SelfTuned::without_memory();
+        let mut flights = Flights { ready: without_memory.ready(), ..flights };
+        let alone = asked(&flights, 0.016);
+        flights.forget();
+        asked(&flights, 0.02);
+        assert!(asked(&flights, 0.016) != alone, "it is answered as the wider one was");
+        flights.forget();
+        assert_eq!(asked(&flights, 0.016), alone);
     });
 }

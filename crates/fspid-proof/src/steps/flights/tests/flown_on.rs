@@ -1,9 +1,8 @@
 //! How a set is flown on: from where, how far, with how many unknowns, and what is forgotten before the next.
 
+use super::self_tuned::SelfTuned;
 use super::*;
-use crate::gain_set::IncrementMap;
 use crate::steps::commands::Shares;
-use crate::steps::tuned::tests::numbers;
 
 const PATCH: Patch = Patch { setpoint: [0.01, 0.0101], load: [0.0, 0.0] };
 
@@ -147,19 +146,8 @@ fn what_rounding_makes_of_an_entry_does_not_make_another_loop_of_it() {
 /// What is answered depends on nothing that another set has asked.
 #[test]
 fn what_gains_were_asked_for_is_forgotten_before_another_set() {
-    let loop_ = Loop::new();
-    let mut description = loop_.certificate.description.clone();
-    let input_scale = fspid_core::InputScale { error_per_rad: 40.0, change_per_rad: 8.0 };
-    let output_scale = Gains { kp: 0.02, ki: 0.005, kd: 0.01 };
-    let settings = TunerSettings { input_scale, output_scale, ..TunerSettings::literal() };
-    let tuner = SelfTuner::new(GAINS, numbers(), settings).expect("allowed");
-    let fspid = Fspid::new(tuner, *description.controller.config()).expect("allowed");
-    let set = IncrementMap::of(fspid.tuner(), 12).expect("bounded").gains(1.0);
-    description.controller = Controller::SelfTuning(fspid);
-    let model = description.enclosed().expect("enclosed");
-    let terminal = &loop_.certificate.steps.as_ref().expect("proved").terminal;
-    let ready = Ready::of(&description, &model, &set, [terminal, terminal], None);
-    let mut ready = ready.expect("proved").expect("enclosed");
+    let without_memory = SelfTuned::without_memory();
+    let mut ready = without_memory.ready();
     let asked = |ready: &Ready<'_>, most: f64| {
         let side = Interval::between(0.0, most);
         ready.flown.gains.seen(side, side).expect("some")

@@ -1,64 +1,10 @@
 //! Gains that remember: where they are near those at rest, how much of their reach a set has, and what is gathered of them.
 
-use fspid_core::{InputScale, Law, ReferenceModel, SecondInput};
-
+use super::self_tuned::{LEAKAGE_PER_S, SelfTuned};
 use super::*;
-use crate::gain_set::IncrementMap;
-use crate::steps::tuned::tests::numbers;
-
-const LEAKAGE_PER_S: f64 = 0.6;
-const MODEL: ReferenceModel<f64> = ReferenceModel { bandwidth_rad_s: 2.4, damping: 0.58 };
-
-/// The loop with a self-tuner that remembers, in the place of its PID; its form is not proved for it.
-struct Remembering {
-    description: LoopDescription,
-    model: LoopModel<Interval>,
-    set: GainSet,
-    terminal: Terminal,
-}
-
-impl Remembering {
-    /// A quarter of the way from each gain at rest to the ends of its reach is near.
-    fn new() -> Self {
-        let loop_ = Loop::new();
-        let steps = loop_.certificate.steps.as_ref().expect("steps are proved");
-        let mut terminal = steps.terminal.clone();
-        let mut description = loop_.certificate.description.clone();
-        let settings = TunerSettings {
-            input_scale: InputScale { error_per_rad: 40.0, change_per_rad: 8.0 },
-            output_scale: Gains { kp: 0.02, ki: 0.005, kd: 0.01 },
-            law: Law::Accumulating { leakage_per_s: LEAKAGE_PER_S },
-            second_input: SecondInput::ModelError(MODEL),
-            ..TunerSettings::literal()
-        };
-        let tuner = SelfTuner::new(GAINS, numbers(), settings).expect("allowed");
-        let fspid = Fspid::new(tuner, *description.controller.config()).expect("allowed");
-        let set = IncrementMap::of(fspid.tuner(), 12).expect("bounded").gains(1.0);
-        let reach = around(&set, 1.0);
-        let near = [0, 1, 2].map(|gain: usize| {
-            let rest = set.rest[gain].midpoint();
-            [reach[gain].lower(), reach[gain].upper()].map(|end| rest + 0.25 * (end - rest))
-        });
-        terminal.gains = Some(NearGains { gains: near, model_rad: 0.01 });
-        description.controller = Controller::SelfTuning(fspid);
-        let model = description.enclosed().expect("enclosed");
-        Self { description, model, set, terminal }
-    }
-
-    fn ready(&self) -> Ready<'_> {
-        let Self { description, model, set, terminal } = self;
-        let slower = Terminal { rate: 1.0 - 0.5 * (1.0 - terminal.rate), ..terminal.clone() };
-        let ready = Ready::of(description, model, set, [terminal, &slower], None);
-        ready.expect("proved").expect("enclosed")
-    }
-
-    fn near(&self) -> NearGains {
-        self.terminal.gains.expect("of gains that remember")
-    }
-}
 
 /// Flights at their rests, with all the gains that are near.
-fn near_rest(remembering: &Remembering, ready: &Ready<'_>) -> Flight {
+fn near_rest(remembering: &SelfTuned, ready: &Ready<'_>) -> Flight {
     let mut flight = at_rest(ready);
     flight.symbols = OWN + 3;
     let gains = remembering.near().gains;
@@ -79,7 +25,7 @@ fn tuned(flight: &mut Flight) -> &mut Tuned {
 
 #[test]
 fn a_rest_has_to_last_as_long_as_the_gains_of_a_loop_take() {
-    let remembering = Remembering::new();
+    let remembering = SelfTuned::remembering();
     let ready = remembering.ready();
     let share = LEAKAGE_PER_S * 0.02;
     let samples = libm::log(1.0 / 1024.0) / libm::log(1.0 - share);
@@ -89,7 +35,7 @@ fn a_rest_has_to_last_as_long_as_the_gains_of_a_loop_take() {
 
 #[test]
 fn flights_are_near_rest_while_each_of_their_gains_is() {
-    let remembering = Remembering::new();
+    let remembering = SelfTuned::remembering();
     let ready = remembering.ready();
     let rest = near_rest(&remembering, &ready);
     assert!(ready.is_near(&rest) && ready.is_near_in_gains(&rest));
@@ -108,7 +54,7 @@ fn flights_are_near_rest_while_each_of_their_gains_is() {
 /// Bounds of a set may be wider than all that its law can reach.
 #[test]
 fn gains_are_near_where_all_that_their_law_reaches_is() {
-    let mut remembering = Remembering::new();
+    let mut remembering = SelfTuned::remembering();
     let reach = around(&remembering.set, 1.0);
     let ends = reach.map(|reach| [reach.lower(), reach.upper()]);
     remembering.terminal.gains = Some(NearGains { gains: ends, model_rad: 0.01 });
@@ -123,7 +69,7 @@ fn gains_are_near_where_all_that_their_law_reaches_is() {
 
 #[test]
 fn flights_are_near_rest_while_their_reference_model_is() {
-    let remembering = Remembering::new();
+    let remembering = SelfTuned::remembering();
     let ready = remembering.ready();
     let rest = near_rest(&remembering, &ready);
     let tuner = ready.flown.tuner.as_ref().expect("remembers");
@@ -143,7 +89,7 @@ fn flights_are_near_rest_while_their_reference_model_is() {
 
 #[test]
 fn without_a_place_for_gains_that_remember_or_without_such_gains_nothing_is_near() {
-    let remembering = Remembering::new();
+    let remembering = SelfTuned::remembering();
     let ready = remembering.ready();
     let rest = near_rest(&remembering, &ready);
     let without_place = Ready { near_gains: None, ..ready.clone() };
@@ -160,7 +106,7 @@ fn without_a_place_for_gains_that_remember_or_without_such_gains_nothing_is_near
 
 #[test]
 fn gains_of_a_set_are_told_as_shares_of_what_their_law_reaches() {
-    let remembering = Remembering::new();
+    let remembering = SelfTuned::remembering();
     let mut ready = remembering.ready();
     let mut flight = near_rest(&remembering, &ready);
     for share in ready.gains_of_reach(&flight) {
@@ -179,7 +125,7 @@ fn gains_of_a_set_are_told_as_shares_of_what_their_law_reaches() {
 /// Of a law with memory a norm has to fall for all gains: those of the widest box.
 #[test]
 fn the_ball_grows_by_all_gains_that_a_law_with_memory_reaches() {
-    let remembering = Remembering::new();
+    let remembering = SelfTuned::remembering();
     let mut ready = remembering.ready();
     ready.growth = vec![Growth::default(); SHARES.len()];
     let at_rest = ready.flown.gains.at_rest();
@@ -197,7 +143,7 @@ fn the_ball_grows_by_all_gains_that_a_law_with_memory_reaches() {
 /// A sample adds as many unknowns whatever there are, so that the most that is followed can be met.
 #[test]
 fn unknowns_of_gains_that_remember_are_gathered_when_there_are_too_many() {
-    let remembering = Remembering::new();
+    let remembering = SelfTuned::remembering();
     let mut ready = remembering.ready();
     let mut after = |symbols: usize| {
         let mut flight = with_unknowns(&ready, &mut Dice::new(5), symbols, 1e-6);
@@ -217,7 +163,7 @@ fn unknowns_of_gains_that_remember_are_gathered_when_there_are_too_many() {
 
 #[test]
 fn flights_begin_with_the_nominal_gains_or_with_those_after_a_rest() {
-    let remembering = Remembering::new();
+    let remembering = SelfTuned::remembering();
     let mut ready = remembering.ready();
     let nominal = [GAINS.kp, GAINS.ki, GAINS.kd];
     let rested = ready.flown.rested;
@@ -233,7 +179,7 @@ fn flights_begin_with_the_nominal_gains_or_with_those_after_a_rest() {
 
 #[test]
 fn what_is_gathered_of_gains_that_remember_counts_them_and_is_held_in_them() {
-    let remembering = Remembering::new();
+    let remembering = SelfTuned::remembering();
     let ready = remembering.ready();
     let dice = &mut Dice::new(6);
     let symbols = OWN + KEPT_FOLLOWED + 30;
