@@ -234,7 +234,13 @@ mod tests {
         let set = GainSet::fixed(GAINS);
         let flights = Flights::of(&certificate, &model, &set, terminal, None);
         let mut flights = flights.expect("enclosed").searching(1.0, || true);
-        let all = side_by_side(&mut flights, &[1, 2, 3], |_, job| Ok(*job));
+        // Another thread may have begun before this one asks: what it does then lasts until it is told.
+        let all = side_by_side(&mut flights, &[1, 2, 3], |flights, job| {
+            while !flights.is_stopped() {
+                thread::sleep(ASKS);
+            }
+            Ok(*job)
+        });
         assert_eq!(all, Err(Stop::Lost));
     }
 }
