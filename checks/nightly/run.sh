@@ -3,7 +3,8 @@
 #   run.sh                  every lane
 #   run.sh --list           their names and commands
 #   run.sh fuzz coverage    those alone, beside the answers of the others that are on the page
-#   run.sh --rest           those that are not on the page, or failed there: a night in parts
+#   run.sh --rest           those that are not on the page, or failed there: a night in parts; after a commit the program that
+#                           the others ask is built anew first
 # A lane that fails does not end the others; the script ends with 1 where one on the page has failed. What a lane printed is in
 # target/nightly; each line of the page names its commit.
 # Takes a night on two cores.
@@ -87,10 +88,13 @@ write_summary() {
 }
 has_failed() { grep -q '\*\*FAILED' "$rows/$1"; }
 
+# What lanes ask is the program of the commit that their lines name.
+is_old_program() { [[ "$1" == release-program ]] && ! grep -qF "$commit, " "$rows/$1"; }
+
 commit="$(git rev-parse --short=8 HEAD)$([[ -z "$(git status --porcelain)" ]] || echo ' and changes')"
 while IFS='|' read -r name what command; do
     if (($#)) && [[ " $* " != *" $name "* ]]; then continue; fi
-    if [[ "$rest" && -e "$rows/$name" ]] && ! has_failed "$name"; then continue; fi
+    if [[ "$rest" && -e "$rows/$name" ]] && ! has_failed "$name" && ! is_old_program "$name"; then continue; fi
     printf '== %s: %s\n' "$name" "$command"
     began=$SECONDS
     TIMEFORMAT='%U %S'

@@ -1,5 +1,7 @@
 //! The rules by name, and what each needs and gives.
 
+use Form::{P, Pi, Pid};
+
 /// A classical tuning rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rule {
@@ -122,7 +124,6 @@ impl Rule {
     }
 
     fn facts(self) -> Facts {
-        use Form::{P, Pi, Pid};
         let [zn, tl, simc, lambda, amigo, itae, place, lqr, relay] = Self::NAMES;
         let (name, about, source, forms): (_, _, _, &'static [Form]) = match self {
             Self::ZieglerNichols => (

@@ -1,12 +1,13 @@
 //! The form for the end of a step of gains that remember: where gains come to, what may be seen, and what lies in it.
 
-use fspid_core::{Change, InputScale, Law, ReferenceModel, SecondInput, SelfTuner, TunerSettings};
-use fspid_core::{Fspid, PidConfig};
+use fspid_core::{
+    Change, Fspid, InputScale, Law, PidConfig, ReferenceModel, SecondInput, SelfTuner,
+    TunerSettings,
+};
 use fspid_sim::Controller;
 
 use super::*;
-use crate::check::IntervalMatrix;
-use crate::check::decreases;
+use crate::check::{IntervalMatrix, decreases};
 use crate::solve::never;
 use crate::steps::terminal::tests::with_near;
 use crate::steps::tests::navion::GAINS;
@@ -124,7 +125,6 @@ fn in_the_form_no_limit_acts_and_no_more_is_seen_than_its_gains_are_bounded_by()
             }
             let [error, change] = wide.model.error_rows().map(|row| most(&terminal.form, &row));
             assert!(error <= ERROR_RAD * (1.0 + 1e-6), "{error}");
-            // It is wide: one of both is met.
             let divisor = wide.tuner.change_divisor();
             let of_change = divisor.map(|it| it * wide.second_per_rad * ERROR_RAD);
             assert!(of_change.is_none_or(|most| change <= most * (1.0 + 1e-6)), "{change}");
