@@ -12,6 +12,7 @@ import json
 import math
 import socket
 import struct
+import time
 
 MAGIC, PERIOD_S, FULL_DEG = 18458, 0.01, 20.0
 
@@ -42,7 +43,11 @@ def answer(link, count, pulse, lose):
         link.send(packet(count, pulse))
         try:
             line = json.loads(link.recv(65536))
-        except (TimeoutError, ConnectionRefusedError):
+        except TimeoutError:
+            continue
+        except ConnectionRefusedError:
+            # Nobody is there yet, which is known at once.
+            time.sleep(0.1)
             continue
         if lose and count % lose == 0:
             lose = 0

@@ -8,10 +8,11 @@
 //! - [`matrix`](mod@matrix): triangles, rotations and balancing of small matrices, over slices.
 //! - [`quadrature`]: integrals with bounds that are proved.
 //! - [`straight`]: elementary functions that a loop over lanes makes vectors of.
+//! - [`sums`]: weighted sums of long vectors.
 //!
 //! | feature | adds | needs |
 //! | --- | --- | --- |
-//! | `simd` | `Vector`, the lanes of the machine, and `InstructionSet` | `std` |
+//! | `simd` | `Vector`, the lanes of the machine, and `InstructionSet`; `sums` by its widest instructions | `std` |
 //!
 //! Not here: complex numbers and a type of matrix (`fspid-lti`), and balls of arbitrary precision.
 #![no_std]
@@ -32,6 +33,7 @@ pub mod quadrature;
 mod real;
 pub mod scalar;
 pub mod straight;
+pub mod sums;
 #[cfg(feature = "simd")]
 mod vector;
 

@@ -5,7 +5,7 @@
 //! beside the verdict that they leave it out.
 
 use fspid_sim::sensor::{Sensor, SensorModel};
-use fspid_sim::{LinearPlant, Plant, Scenario, Steady, Surroundings, Weather};
+use fspid_sim::{Autopilot, LinearPlant, Plant, Rest, Scenario, Steady, Surroundings, Weather};
 
 use crate::description::LoopDescription;
 use crate::scope::{Asked, LeftOut, Range};
@@ -18,8 +18,13 @@ impl Asked {
     pub fn of(scenario: &Scenario, plant: &LinearPlant, description: &LoopDescription) -> Self {
         // The bias of the actuator is the description's.
         let steady = Steady { bias_rad: 0.0, ..scenario.steady() };
+        // Of gains that move what outer loops command counts as well.
+        let commanded = scenario.autopilot.as_ref().and_then(Autopilot::pitch_rad);
+        let commanded_rad = commanded
+            .filter(|_| Rest::depends_on_what_is_held(scenario, &description.controller))
+            .map_or(0.0, |[least, most]| least.abs().max(most.abs()));
         let range = Range {
-            setpoint_rad: steady.largest_setpoint_rad(),
+            setpoint_rad: steady.largest_setpoint_rad().max(commanded_rad),
             load_rad: steady.load_with_offsets_rad(plant, description.controller.config()),
         };
         Self { range, left_out: left_out_of(scenario), commands: Commands::of(scenario) }

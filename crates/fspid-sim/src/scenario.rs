@@ -152,13 +152,21 @@ impl Scenario {
         })
     }
 
-    /// When disturbances begin to push the loop, s, ascending. Noise pushes nowhere.
+    /// When disturbances begin to push the loop, s, ascending. Noise pushes nowhere, and neither does what is of no size.
     #[must_use]
     pub fn pushes_s(&self) -> Vec<f64> {
-        let pushing = self.disturbances.iter().filter(|disturbance| !disturbance.is_noise());
+        let pushes = |it: &&Disturbance| !it.is_noise() && it.part().0 != 0.0;
+        let pushing = self.disturbances.iter().filter(pushes);
         let mut pushes_s: Vec<f64> = pushing.map(Disturbance::starts_s).collect();
         pushes_s.sort_by(f64::total_cmp);
         pushes_s
+    }
+
+    /// Whether the air around the aircraft moves: wind, gusts or turbulence.
+    #[must_use]
+    pub fn has_moving_air(&self) -> bool {
+        let weather = self.surroundings.weather.as_ref();
+        weather.is_some_and(|it| !it.winds.is_empty() || it.turbulence.is_some())
     }
 
     /// What disturbances add at a place at each sample, rad, noise left out; nothing where none enters there.

@@ -168,9 +168,17 @@ pub fn growth_at_rest(
     gains: Gains<f64>,
 ) -> Result<GrowthAtRest, SimError> {
     scenario.plant.require_equations()?;
-    let trimmed = scenario.plant.aircraft().map(AircraftPlant::linear).transpose()?;
-    let around_trim = trimmed.iter().map(|plant| (0.0, plant));
+    let aircraft = scenario.plant.aircraft();
+    let trimmed = aircraft.map(AircraftPlant::lasting).transpose()?.unwrap_or_default();
     let mut found = GrowthAtRest::default();
+    let of_change = |found: &mut GrowthAtRest| {
+        let (at, doubt) = (RestPoint::TRIM, Doubt::ChangedAircraft);
+        found.undecided.get_or_insert(Undecided { spectral_radius: f64::NAN, at, doubt });
+    };
+    if trimmed.iter().any(|(_, plant)| plant.is_none()) {
+        of_change(&mut found);
+    }
+    let around_trim = trimmed.iter().filter_map(|(from_s, plant)| Some((*from_s, plant.as_ref()?)));
     for (from_s, plant) in around_trim.chain(scenario.lasting_plants()) {
         let sampled = SampledPlant::of(scenario, plant)?;
         for rest in Rest::all(scenario, plant, controller, gains) {
@@ -189,8 +197,27 @@ pub fn growth_at_rest(
             }
         }
     }
-    if let Some(unstable) = growing_mode(scenario, controller, gains)? {
-        return Ok(GrowthAtRest { certain: Some(unstable), undecided: None });
+    if aircraft.is_some_and(|aircraft| aircraft.changing().fuel().is_some()) {
+        let empty = aircraft.and_then(AircraftPlant::without_fuel);
+        let holds = |plant: &LinearPlant| -> Result<bool, SimError> {
+            let sampled = SampledPlant::of(scenario, plant)?;
+            let rests = Rest::all(scenario, plant, controller, gains).into_iter();
+            let mut stands = rests.map(|rest| rest.stand(scenario, &sampled, controller));
+            stands.try_fold(true, |all, stand| Ok(all && stand? == Stand::Holds))
+        };
+        if !empty.as_ref().map(holds).transpose()?.unwrap_or(false) {
+            of_change(&mut found);
+        }
+    }
+    match growing_mode(scenario, controller, gains) {
+        Ok(None) => {}
+        Ok(certain) => return Ok(GrowthAtRest { certain, undecided: None }),
+        Err(SimError::LongWay { .. }) => {
+            let doubt = Doubt::LongMode;
+            let undecided = Undecided { spectral_radius: f64::NAN, at: RestPoint::TRIM, doubt };
+            found.undecided.get_or_insert(undecided);
+        }
+        Err(error) => return Err(error),
     }
     Ok(found)
 }

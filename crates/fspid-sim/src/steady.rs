@@ -30,11 +30,18 @@ impl Scenario {
         self.steady_where(|_| true)
     }
 
-    /// The same of what the loop can come to rest under: loads that stay from some time on, and set-points but for
-    /// sines. Around a pulse or a sine of a load no loop rests.
+    /// The same of what the loop can come to rest under: loads that stay from some time on to the end of the flight, and
+    /// set-points but for sines. Around a shorter pulse or a sine of a load no loop rests.
     #[must_use]
     pub fn resting(&self) -> Steady {
-        let stays = |shape: &Shape| matches!(shape, Shape::Step { .. } | Shape::Ramp { .. });
+        let end_s = self.timing.end_s();
+        let stays = |shape: &Shape| match *shape {
+            Shape::Step { .. } | Shape::Ramp { .. } => true,
+            Shape::Pulse { at_s, width_s } => at_s + width_s > end_s,
+            Shape::Doublet { at_s, width_s } => at_s + 2.0 * width_s > end_s,
+            Shape::Square { at_s, half_period_s, .. } => at_s + half_period_s > end_s,
+            Shape::Sine { .. } | Shape::Noise { .. } => false,
+        };
         let setpoint_rad =
             if self.setpoint.is_sine() { [0.0; 2] } else { self.setpoint.ends_rad() };
         Steady { setpoint_rad, ..self.steady_where(stays) }

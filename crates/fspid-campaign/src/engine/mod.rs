@@ -163,7 +163,16 @@ fn measure(
         let metrics = FlightMetrics::of(&trace, edges, scenario.timing, unstable, &pushes_s);
         let (name, range_rule) = (flyer.name().to_owned(), study.range_rule);
         let duration_s = scenario.timing.end_s();
-        Ok(ControllerResult { name, trace, metrics, at_rest, range_rule, duration_s })
+        let in_moving_air = scenario.has_moving_air();
+        Ok(ControllerResult {
+            name,
+            trace,
+            metrics,
+            at_rest,
+            range_rule,
+            duration_s,
+            in_moving_air,
+        })
     });
     let results: Vec<ControllerResult> = results.collect::<Result<_, SimError>>()?;
     let judgements = judge(study, &results);

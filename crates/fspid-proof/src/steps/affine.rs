@@ -9,6 +9,7 @@
 //! L. H. de Figueiredo and J. Stolfi, *Affine arithmetic: concepts and applications*, Numerical Algorithms 37 (2004) 147.
 
 use fspid_numeric::scalar::Interval;
+use fspid_numeric::sums::{combine, magnitudes};
 
 /// Twice the relative error of an operation.
 const ROUNDING: f64 = f64::EPSILON;
@@ -33,9 +34,6 @@ pub(super) struct Parts {
     spread: f64,
 }
 
-/// Magnitudes that are summed side by side: one sum would wait for each of its terms.
-const LANES: usize = 8;
-
 /// What is less belongs to the number alone, as rounding does. Bounds are raised by the smallest normal number, so that what
 /// is nothing at all is still more than zero; as an unknown it would be denormal a sample later, and a processor takes a
 /// hundred times as long to multiply that.
@@ -46,15 +44,7 @@ const NEWER: usize = 16;
 
 impl From<Vec<f64>> for Parts {
     fn from(by: Vec<f64>) -> Self {
-        let mut lanes = [0.0_f64; LANES];
-        let chunks = by.chunks_exact(LANES);
-        let rest: f64 = chunks.remainder().iter().map(|part| part.abs()).sum();
-        for chunk in chunks {
-            for (lane, part) in lanes.iter_mut().zip(chunk) {
-                *lane += part.abs();
-            }
-        }
-        let spread = raised(lanes.iter().sum::<f64>() + rest, by.len());
+        let spread = raised(magnitudes(&by), by.len());
         Self { by, spread }
     }
 }
@@ -77,18 +67,14 @@ impl Parts {
     }
 }
 
-/// Adds so many times the parts of a term.
-fn accumulate(sum: &mut Vec<f64>, factor: f64, parts: &[f64]) {
-    if sum.is_empty() {
-        // Other terms may have a few newer unknowns.
-        sum.reserve_exact(parts.len() + NEWER);
-    }
-    let shared = sum.len().min(parts.len());
-    let (both, beyond) = parts.split_at(shared);
-    for (part, of_term) in sum.iter_mut().zip(both) {
-        *part += factor * of_term;
-    }
-    sum.extend(beyond.iter().map(|of_term| factor * of_term));
+/// $\sum_i a_i p_i$ of the parts of terms.
+fn combined(terms: &[(f64, &[f64])]) -> Parts {
+    let size = terms.iter().map(|(_, parts)| parts.len()).max().unwrap_or(0);
+    // Unknowns that are new in this sample are told apart next.
+    let mut by = Vec::with_capacity(size + NEWER);
+    by.resize(size, 0.0);
+    let spread = raised(combine(terms, &mut by), size);
+    Parts { by, spread }
 }
 
 /// A sum of so many terms that are not negative, and then some: at least the true one. What is added at the end is more than
@@ -177,7 +163,7 @@ impl Affine {
     /// $\sum_j a_j x_j$.
     pub(super) fn sum<'a>(terms: impl IntoIterator<Item = (Interval, &'a Self)>) -> Self {
         let mut sum = Self::default();
-        let mut parts = Vec::new();
+        let mut parts: Vec<(f64, &[f64])> = Vec::new();
         // Of products and of what coefficients may be off.
         let (mut sizes, mut count) = (0.0, 0_usize);
         for (factor, term) in terms {
@@ -187,7 +173,7 @@ impl Affine {
                 continue;
             }
             sum.centre += middle * term.centre;
-            accumulate(&mut parts, middle, term.parts.each());
+            parts.push((middle, term.parts.each()));
             let known = raised(term.centre.abs() + term.spread(), 2);
             sum.off += middle.abs() * term.off + radius * raised(known + term.off, 2);
             sum.of_ball += (middle.abs() + radius) * term.of_ball;
@@ -195,7 +181,7 @@ impl Affine {
             count += 1;
         }
         let rounding = (count as f64 + 2.0) * ROUNDING * sizes;
-        sum.parts = parts.into();
+        sum.parts = combined(&parts);
         sum.off = raised(sum.off + raised(rounding, count), 2 * count + 4);
         sum.of_ball = if sum.of_ball > 0.0 { raised(sum.of_ball, 2 * count + 4) } else { 0.0 };
         sum
@@ -219,12 +205,10 @@ impl Affine {
     pub(super) fn product(&self, other: &Self) -> (Self, f64) {
         let [of_self, of_other] = [self.spread(), other.spread()];
         let mut linear = Self { centre: self.centre * other.centre, ..Self::default() };
-        let mut parts = Vec::new();
-        accumulate(&mut parts, self.centre, other.parts.each());
-        accumulate(&mut parts, other.centre, self.parts.each());
         let [own, theirs] = [self.centre.abs(), other.centre.abs()];
         let sizes = raised(own * theirs + own * of_other + theirs * of_self, 6);
-        linear.parts = parts.into();
+        linear.parts =
+            combined(&[(self.centre, other.parts.each()), (other.centre, self.parts.each())]);
         let off = raised(own + of_self + self.off, 3) * other.off
             + raised(theirs + of_other, 2) * self.off
             + 4.0 * ROUNDING * sizes;

@@ -119,6 +119,7 @@ impl Now {
             at_rest: AtRest::unknown(),
             range_rule,
             duration_s: timing.end_s(),
+            in_moving_air: scenario.has_moving_air(),
         };
         let simulation = Simulation {
             scenario: scenario.name.clone(),

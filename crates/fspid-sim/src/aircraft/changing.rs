@@ -155,6 +155,16 @@ impl Changing {
         self.fuel.is_none() && self.deployments.iter().all(|one| one.changes.is_empty())
     }
 
+    /// Times from which on configurations stand where a change has brought them, s, in rising order.
+    #[must_use]
+    pub(crate) fn ended_s(&self) -> Vec<f64> {
+        let changes = self.deployments.iter().flat_map(|one| &one.changes);
+        let mut all: Vec<f64> = changes.map(|change| change.at_s + change.takes_s).collect();
+        all.sort_by(f64::total_cmp);
+        all.dedup();
+        all
+    }
+
     /// Times at which something begins and ceases to move, s, in rising order.
     #[must_use]
     pub fn corners_s(&self) -> Vec<f64> {

@@ -129,6 +129,15 @@ impl AutopilotState {
         self.channels.iter_mut().chain(&mut self.energy).filter_map(Channel::memory_mut)
     }
 
+    /// What the sensors of its loops remember, each with the number of its loop, and those of its beam.
+    pub(crate) fn sensors_mut(
+        &mut self,
+    ) -> impl Iterator<Item = (Option<usize>, &mut SensorState)> {
+        let of_loops = self.sensors.iter_mut().enumerate();
+        let of_loops = of_loops.filter_map(|(at, sensor)| Some((Some(at), sensor.as_mut()?)));
+        of_loops.chain(self.beam.iter_mut().flatten().map(|sensor| (None, sensor)))
+    }
+
     /// Answers a sample; `pitch_cut` says whether pitch below is cut.
     pub(crate) fn answer(
         &mut self,

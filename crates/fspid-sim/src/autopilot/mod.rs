@@ -96,6 +96,30 @@ impl Autopilot {
         check::within(&self.modes, timing)
     }
 
+    /// Least and largest pitch set-point that its modes can command, rad from the trim, a right angle where nothing limits it;
+    /// none where no mode moves pitch.
+    #[must_use]
+    pub fn pitch_rad(&self) -> Option<[f64; 2]> {
+        let engaged = |number: &usize| self.modes.iter().any(|mode| mode.engaged.contains(number));
+        let by_loops = self
+            .loops
+            .iter()
+            .enumerate()
+            .filter(|(number, outer)| outer.moves == Moves::Pitch && engaged(number));
+        let by_loops = by_loops.map(|(_, outer)| (&outer.controller, outer.units.moved));
+        let total =
+            self.total_energy.iter().filter(|_| self.modes.iter().any(|it| it.total_energy));
+        let by_energy = total.map(|total| (&total.distribution, 1.0));
+        let ends = by_loops.chain(by_energy).map(|(controller, per_rad)| {
+            let most_rad = core::f64::consts::FRAC_PI_2;
+            controller.config().limits.map_or([-most_rad, most_rad], |limits| {
+                [limits.lower(), limits.upper()]
+                    .map(|end| (end / per_rad).clamp(-most_rad, most_rad))
+            })
+        });
+        ends.reduce(|[least, most], [lower, upper]| [least.min(lower), most.max(upper)])
+    }
+
     /// True where anything of it moves the throttle.
     #[must_use]
     pub fn moves_throttle(&self) -> bool {

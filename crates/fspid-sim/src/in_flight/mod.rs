@@ -425,6 +425,10 @@ impl Sensors {
         self.apparent_vertical_rad = aircraft.map_or(0.0, |sample| sample.apparent_vertical_rad);
     }
 
+    fn each_mut(&mut self) -> impl Iterator<Item = &mut SensorState> {
+        self.pitch.iter_mut().chain(&mut self.rate)
+    }
+
     fn pitch_rad(&mut self, k: usize, value: f64) -> f64 {
         let apparent_vertical_rad = self.apparent_vertical_rad;
         seen(self.pitch.as_mut(), k, Truth { value, apparent_vertical_rad })

@@ -1,8 +1,9 @@
 //! Small motions of an aircraft with everything around its pitch loop: what one sample makes of them.
 //!
 //! The flying code itself is asked: a flight stands at the trim with one mode engaged for good, each of its numbers is moved
-//! a little either way, and one sample is flown. Limits are left out, gains are those at rest, sensors show what there is, and
-//! the air stands still. Every target is what the trim has; a beam is level there.
+//! a little either way, and one sample is flown. Limits are left out, gains are those at rest, and the air stands still. Sensors
+//! show late what they show late, that of the pitch loop with their scale, and nothing else; of one with a clock of its own the
+//! largest age is taken. Every target is what the trim has; a beam is level there.
 
 use fspid_core::{Gains, Pid, PidConfig, State};
 use fspid_lti::{Complex, Matrix, eigenvalues, modulus};
@@ -12,14 +13,16 @@ use crate::autopilot::{Autopilot, Entry, GlideSlope, Mode, OuterLoop, Quantity, 
 use crate::controller::Controller;
 use crate::error::SimError;
 use crate::flown::Perturbation;
+use crate::loop_model::{MOST_AS_STATES, Sensing};
 use crate::scenario::{Prepared, Scenario};
+use crate::sensor::{Sensor, SensorState};
 use crate::surroundings::{Surroundings, Weather};
 use crate::timing::Timing;
 use crate::trace::Outcome;
 
 /// Smaller poles are gone within a sample: those of delays, and of what is remembered of the sample before.
 const GONE: f64 = 1e-6;
-/// Samples flown before anything is moved: all loops are engaged then.
+/// Samples flown before anything is moved, beside those that sensors remember: all loops are engaged then.
 const SETTLING_SAMPLES: usize = 3;
 /// How far the antenna of a level beam is, m: from there a height is seen as it is, to 10⁻¹⁰ m.
 const FAR_M: f64 = 1e7;
@@ -60,8 +63,13 @@ fn poles_of(
     mode: usize,
     controller: &Controller,
 ) -> Result<ModePoles, SimError> {
+    let samples = on_its_way(scenario);
+    if samples > MOST_AS_STATES {
+        return Err(SimError::LongWay { samples, most: MOST_AS_STATES });
+    }
     let still = still(scenario, autopilot, mode)?;
-    let matrix = one_sample(&still, autopilot.modes().get(mode), controller);
+    let settling = settling_samples(scenario)?;
+    let matrix = one_sample(&still, settling, autopilot.modes().get(mode), controller);
     let matrix = matrix.map_err(|ended| ended.of(mode))?;
     let dt_s = scenario.timing.dt_s();
     let found = eigenvalues(&matrix)?;
@@ -79,26 +87,38 @@ fn in_s(z: Complex, dt_s: f64) -> Complex {
 fn still(scenario: &Scenario, autopilot: &Autopilot, mode: usize) -> Result<Prepared, SimError> {
     let mut still = scenario.clone();
     still.disturbances.clear();
+    let dt_s = scenario.timing.dt_s();
     // Long enough to settle, however short the flight is.
-    still.timing = Timing::new(scenario.timing.dt_s(), 10.0 * scenario.timing.dt_s())?;
+    let samples = settling_samples(scenario)? + 10;
+    still.timing = Timing::new(dt_s, samples as f64 * dt_s)?;
     let course = scenario.surroundings.weather.as_ref().map(|weather| weather.course);
     let calm = |course| Weather { course, winds: Vec::new(), turbulence: None };
-    still.surroundings = Surroundings { weather: course.map(calm), ..Surroundings::default() };
+    let around_rest = |sensor: Option<Sensor>| sensor.map(|it| it.around_rest(dt_s)).transpose();
+    // A scale would move the trim of what is not counted from it.
+    let late = |sensor: Option<Sensor>| -> Result<Option<Sensor>, SimError> {
+        around_rest(sensor)?.map(Sensor::without_scale).transpose()
+    };
+    let Surroundings { pitch_sensor, rate_sensor, .. } = scenario.surroundings;
+    still.surroundings = Surroundings {
+        weather: course.map(calm),
+        pitch_sensor: around_rest(pitch_sensor)?,
+        rate_sensor: around_rest(rate_sensor)?,
+    };
     let beam = autopilot.glide_slope().zip(scenario.plant.aircraft()).map(|(beam, plant)| {
         let (sine, cosine) = crate::math::sin_cos(beam.course_rad);
-        GlideSlope {
+        Ok::<_, SimError>(GlideSlope {
             angle_rad: 0.0,
             antenna_m: [FAR_M * cosine, FAR_M * sine],
             altitude_m: plant.trim().target.altitude_m,
-            angle_sensor: None,
-            range_sensor: None,
+            angle_sensor: late(beam.angle_sensor)?,
+            range_sensor: late(beam.range_sensor)?,
             ..*beam
-        }
+        })
     });
     let loops = autopilot.loops().iter().map(|outer| {
         let gains = at_rest(&outer.controller);
         let controller = unlimited(&outer.controller, gains)?;
-        Ok(OuterLoop { controller, sensor: None, ..outer.clone() })
+        Ok(OuterLoop { controller, sensor: late(outer.sensor)?, ..outer.clone() })
     });
     let loops = loops.collect::<Result<Vec<_>, SimError>>()?;
     let energy = autopilot.total_energy().map(|total| {
@@ -115,8 +135,35 @@ fn still(scenario: &Scenario, autopilot: &Autopilot, mode: usize) -> Result<Prep
         ..mode.clone()
     });
     let modes = alone.into_iter().collect();
-    still.autopilot = Some(Autopilot::new(loops, energy.transpose()?, beam, modes)?);
+    still.autopilot = Some(Autopilot::new(loops, energy.transpose()?, beam.transpose()?, modes)?);
     still.prepare()
+}
+
+/// Samples of commands on their way, and of what sensors show later.
+fn on_its_way(scenario: &Scenario) -> usize {
+    let dt_s = scenario.timing.dt_s();
+    let late = |sensor| Sensing::through(Some(sensor), dt_s).remembered();
+    let samples = sensors(scenario).map(late);
+    samples.fold(scenario.actuator.delay_samples(), usize::saturating_add)
+}
+
+/// Samples after which every sensor looks at what was after the start.
+fn settling_samples(scenario: &Scenario) -> Result<usize, SimError> {
+    let dt_s = scenario.timing.dt_s();
+    let mut samples = sensors(scenario).map(|sensor| sensor.memory_samples(dt_s));
+    let longest = samples.try_fold(0, |longest, found| found.map(|found| longest.max(found)))?;
+    Ok(SETTLING_SAMPLES + longest)
+}
+
+/// Every sensor of a scenario with an autopilot.
+fn sensors(scenario: &Scenario) -> impl Iterator<Item = &Sensor> {
+    let Surroundings { pitch_sensor, rate_sensor, .. } = &scenario.surroundings;
+    let autopilot = scenario.autopilot.as_ref();
+    let loops = autopilot.map(Autopilot::loops).unwrap_or_default();
+    let beam = autopilot.and_then(Autopilot::glide_slope).into_iter();
+    let of_beam = beam.flat_map(|beam| [&beam.angle_sensor, &beam.range_sensor]);
+    let of_loops = loops.iter().map(|outer| &outer.sensor);
+    [pitch_sensor, rate_sensor].into_iter().chain(of_loops).chain(of_beam).flatten()
 }
 
 /// The gains that a controller has with everything at zero.
@@ -194,10 +241,13 @@ enum Place {
     OnItsWay(usize),
     /// Of what a controller remembers: the pitch controller's, then those of engaged loops.
     Remembered(usize, usize),
+    /// What a sensor looks at later, and how many samples before.
+    Seen(usize, usize),
 }
 
 /// All numbers of a flight that count: what nothing pulls on is left out.
-fn places(flying: &Flying<'_>, mode: Option<&Mode>, controller: &Controller) -> Vec<Place> {
+fn places(flying: &mut Flying<'_>, mode: Option<&Mode>, controller: &Controller) -> Vec<Place> {
+    let seen = seen_places(flying, mode);
     let course = &flying.course;
     let autopilot = course.prepared().autopilot.as_ref();
     let loops = autopilot.map(Autopilot::loops).unwrap_or_default();
@@ -232,11 +282,40 @@ fn places(flying: &Flying<'_>, mode: Option<&Mode>, controller: &Controller) -> 
         .chain((0..BEYOND).filter(counts).map(Place::Beyond))
         .chain((0..course.delayed.commands_rad.len()).map(Place::OnItsWay))
         .chain(remembered)
+        .chain(seen)
         .collect()
 }
 
+/// What the sensors that a mode sees by look at later.
+fn seen_places(flying: &mut Flying<'_>, mode: Option<&Mode>) -> Vec<Place> {
+    let engaged = |number: usize| mode.is_some_and(|mode| mode.engaged.contains(&number));
+    let sensors = flying.sensors_mut().enumerate();
+    let counted = sensors.filter(|(_, (number, _))| number.is_none_or(engaged));
+    let each = counted.flat_map(|(place, (_, sensor))| {
+        (1..=sensor.depends_on()).map(move |samples| Place::Seen(place, samples))
+    });
+    each.collect()
+}
+
 impl Flying<'_> {
-    fn read(&self, places: &[Place]) -> Vec<f64> {
+    /// Every sensor, with the number of the loop that sees by it alone.
+    fn sensors_mut(&mut self) -> impl Iterator<Item = (Option<usize>, &mut SensorState)> {
+        let Course { sensors, around, .. } = &mut self.course;
+        let around = around.iter_mut().flat_map(|around| around.state.sensors_mut());
+        sensors.each_mut().map(|sensor| (None, sensor)).chain(around)
+    }
+
+    fn seen(&mut self, sensor: usize, samples: usize) -> Option<&mut f64> {
+        let k = self.course.k;
+        self.sensors_mut().nth(sensor)?.1.past(k, samples)
+    }
+
+    fn read(&mut self, places: &[Place]) -> Vec<f64> {
+        let seen = places.iter().map(|place| match *place {
+            Place::Seen(sensor, samples) => self.seen(sensor, samples).copied(),
+            _ => None,
+        });
+        let seen: Vec<Option<f64>> = seen.collect();
         let course = &self.course;
         let pitching = course.propagation().values(course.plant());
         let beyond = course.propagation().beyond(course.plant());
@@ -251,11 +330,16 @@ impl Flying<'_> {
             Place::Remembered(number, at) => {
                 memories.get(number).and_then(|it| it.get(at)).copied()
             }
+            Place::Seen(..) => None,
         };
-        places.iter().map(|place| read(place).unwrap_or(0.0)).collect()
+        places.iter().zip(seen).map(|(place, seen)| seen.or(read(place)).unwrap_or(0.0)).collect()
     }
 
     fn nudge(&mut self, place: Place, by: f64) {
+        if let Place::Seen(sensor, samples) = place {
+            self.seen(sensor, samples).into_iter().for_each(|value| *value += by);
+            return;
+        }
         let course = &mut self.course;
         let stage = &course.prepared.stages[course.stage].propagation;
         match place {
@@ -270,6 +354,7 @@ impl Flying<'_> {
                     nudge_memory(memory, at, by);
                 }
             }
+            Place::Seen(..) => {}
         }
     }
 }
@@ -306,15 +391,16 @@ const DIFFERENCE: f64 = 1e-5;
 /// What one sample makes of each number, by central differences.
 fn one_sample(
     prepared: &Prepared,
+    settling_samples: usize,
     mode: Option<&Mode>,
     controller: &Controller,
 ) -> Result<Matrix, Ended> {
     let course = Course::start(prepared, &Perturbation::NONE)?;
     let mut at = Flying { course, memory: State::new() };
-    for _ in 0..SETTLING_SAMPLES {
+    for _ in 0..settling_samples {
         at.fly(controller)?;
     }
-    let places = places(&at, mode, controller);
+    let places = places(&mut at, mode, controller);
     let from = at.read(&places);
     let mut matrix = Matrix::zeros(from.len(), from.len());
     for (column, (place, value)) in places.iter().zip(&from).enumerate() {

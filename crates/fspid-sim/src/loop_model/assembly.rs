@@ -5,7 +5,7 @@ use fspid_core::{AntiWindup, Gains, PidConfig, Sample};
 use fspid_numeric::Scalar;
 use fspid_numeric::scalar::{Base, Dual};
 
-use super::{BreakPoint, Followers, LoopModel, LoopSettings, Sensing};
+use super::{BreakPoint, Followers, Gathered, LoopModel, LoopSettings, Sensing};
 
 /// Where the parts of the state stand; a part that is not there has no place.
 #[derive(Clone, Debug)]
@@ -17,6 +17,7 @@ pub(super) struct Layout {
     pub(super) integral: Option<usize>,
     pub(super) derivative: Option<usize>,
     pub(super) previous: Option<usize>,
+    gathered: Option<usize>,
     size: usize,
 }
 
@@ -44,6 +45,7 @@ impl Layout {
         names.extend(self.integral.map(|_| "integral".to_owned()));
         names.extend(self.derivative.map(|_| "derivative".to_owned()));
         names.extend(self.previous.map(|_| "last sample".to_owned()));
+        names.extend(self.gathered.map(|_| "gains".to_owned()));
         names
     }
 }
@@ -56,8 +58,9 @@ pub(super) struct Assembly<T> {
     free: Vec<Vec<T>>,
     /// Next state by command.
     by_command: Vec<T>,
-    /// Next memory of the controller by seen pitch.
+    /// Next memory of the controller by seen pitch, and by seen rate.
     memory_by_pitch: Vec<T>,
+    memory_by_rate: Vec<T>,
     /// Seen pitch and seen rate by state.
     pitch: Vec<T>,
     rate: Vec<T>,
@@ -89,7 +92,7 @@ pub(super) struct OpenPlant<T> {
 }
 
 /// The controller at one sample: its command and next memory, by memory (over the state) and by seen
-/// pitch; the rate only enters the command.
+/// pitch; the rate only enters the command and what is gathered.
 struct ControllerRows<T> {
     command: Vec<T>,
     command_by_pitch: T,
@@ -98,6 +101,8 @@ struct ControllerRows<T> {
     term_by_integral: T,
     /// Place in the state, next value by state, by seen pitch.
     memory: Vec<(usize, Vec<T>, T)>,
+    /// What is gathered, by seen rate.
+    gathered_by_rate: T,
 }
 
 impl<T: Base> LoopModel<T> {
@@ -106,7 +111,7 @@ impl<T: Base> LoopModel<T> {
         let plant = self.plant.states;
         let queue = settings.delay_samples;
         let pitch = settings.pitch.remembered();
-        let rate = if settings.uses_rate() { settings.rate.remembered() } else { 0 };
+        let rate = if self.uses_rate() { settings.rate.remembered() } else { 0 };
         let mut size = plant + queue + pitch + rate;
         let mut place = |there: bool| {
             there.then(|| {
@@ -118,7 +123,8 @@ impl<T: Base> LoopModel<T> {
         let integral = place(memory.integral);
         let derivative = place(memory.derivative);
         let previous = place(memory.previous);
-        Layout { plant, queue, pitch, rate, integral, derivative, previous, size }
+        let gathered = place(self.gathered.is_some());
+        Layout { plant, queue, pitch, rate, integral, derivative, previous, gathered, size }
     }
 
     pub(super) fn assembly(&self, gains: Gains<T>) -> Assembly<T> {
@@ -127,7 +133,7 @@ impl<T: Base> LoopModel<T> {
         let zeros = || vec![T::zero(); size];
         let pitch = seen(&self.settings.pitch, &unit(0, size), layout.pitch_from());
         let mut rate = zeros();
-        if self.settings.uses_rate() {
+        if self.uses_rate() {
             let mut now = zeros();
             now[..layout.plant].copy_from_slice(&self.plant.rate);
             rate = seen(&self.settings.rate, &now, layout.rate_from());
@@ -138,7 +144,10 @@ impl<T: Base> LoopModel<T> {
         self.place_queues(&layout, &mut free, &mut by_command);
 
         let controller = self.controller(gains, &layout);
-        let mut memory_by_pitch = zeros();
+        let (mut memory_by_pitch, mut memory_by_rate) = (zeros(), zeros());
+        if let Some(place) = layout.gathered {
+            memory_by_rate[place] = controller.gathered_by_rate;
+        }
         for (place, by_state, by_seen_pitch) in controller.memory {
             free[place] = by_state;
             memory_by_pitch[place] = by_seen_pitch;
@@ -148,6 +157,7 @@ impl<T: Base> LoopModel<T> {
             free,
             by_command,
             memory_by_pitch,
+            memory_by_rate,
             pitch,
             rate,
             own_command: controller.command,
@@ -219,6 +229,7 @@ impl<T: Base> LoopModel<T> {
             command_by_rate: command.derivative[RATE],
             term_by_integral,
             memory: Vec::new(),
+            gathered_by_rate: T::zero(),
         };
         for (place, next) in places.into_iter().zip(&memory) {
             rows.memory.extend(place.map(|place| (place, row(next), next.derivative[PITCH])));
@@ -227,7 +238,32 @@ impl<T: Base> LoopModel<T> {
             rows.command[previous] = rows.command[previous] - self.change_gain;
             rows.command_by_pitch = rows.command_by_pitch - self.change_gain;
         }
+        if let (Some(place), Some(gathered)) = (layout.gathered, &self.gathered) {
+            rows.gather(gathered, place, layout);
+        }
         rows
+    }
+}
+
+impl<T: Base> ControllerRows<T> {
+    /// What gains that remember make of a constant part of the command, as a state and in the command.
+    fn gather(&mut self, gathered: &Gathered<T>, place: usize, layout: &Layout) {
+        let Gathered { keeps, by_error, by_change, by_rate } = *gathered;
+        let mut row = vec![T::zero(); layout.size];
+        row[place] = keeps;
+        // The error is the seen pitch with its sign turned.
+        let mut by_pitch = -by_error;
+        if let Some(previous) = layout.previous {
+            row[previous] = -by_change;
+            by_pitch = by_pitch - by_change;
+        }
+        for (command, by_state) in self.command.iter_mut().zip(&row) {
+            *command = *command + *by_state;
+        }
+        self.command_by_pitch = self.command_by_pitch + by_pitch;
+        self.command_by_rate = self.command_by_rate - by_rate;
+        self.gathered_by_rate = -by_rate;
+        self.memory.push((place, row, by_pitch));
     }
 }
 
@@ -292,32 +328,49 @@ impl<T: Base> Assembly<T> {
         self.command_through(true, true)
     }
 
+    /// Next state by state with the command at zero, the memory of what is seen where these loops are closed.
+    fn remembering(&self, pitch: bool, rate: bool) -> Vec<Vec<T>> {
+        let zeros = vec![T::zero(); self.layout.size];
+        let by_pitch = if pitch { &self.memory_by_pitch } else { &zeros };
+        let by_rate = if rate { &self.memory_by_rate } else { &zeros };
+        with(&with(&self.free, by_pitch, &self.pitch), by_rate, &self.rate)
+    }
+
     pub(super) fn closed(&self) -> Vec<Vec<T>> {
-        let remembering = with(&self.free, &self.memory_by_pitch, &self.pitch);
-        with(&remembering, &self.by_command, &self.command())
+        with(&self.remembering(true, true), &self.by_command, &self.command())
     }
 
     pub(super) fn broken(&self, point: BreakPoint) -> OpenLoop<T> {
-        let remembering = || with(&self.free, &self.memory_by_pitch, &self.pitch);
         match point {
             BreakPoint::Command => OpenLoop {
-                matrix: remembering(),
+                matrix: self.remembering(true, true),
                 entry: self.by_command.clone(),
                 exit: self.command(),
             },
             BreakPoint::Pitch => {
                 let own = self.memory_by_pitch.iter().zip(&self.by_command);
                 OpenLoop {
-                    matrix: with(&self.free, &self.by_command, &self.command_through(false, true)),
+                    matrix: with(
+                        &self.remembering(false, true),
+                        &self.by_command,
+                        &self.command_through(false, true),
+                    ),
                     entry: own.map(|(own, by)| *own + self.command_by_pitch * *by).collect(),
                     exit: self.pitch.clone(),
                 }
             }
-            BreakPoint::Rate => OpenLoop {
-                matrix: with(&remembering(), &self.by_command, &self.command_through(true, false)),
-                entry: self.by_command.iter().map(|by| self.command_by_rate * *by).collect(),
-                exit: self.rate.clone(),
-            },
+            BreakPoint::Rate => {
+                let own = self.memory_by_rate.iter().zip(&self.by_command);
+                OpenLoop {
+                    matrix: with(
+                        &self.remembering(true, false),
+                        &self.by_command,
+                        &self.command_through(true, false),
+                    ),
+                    entry: own.map(|(own, by)| *own + self.command_by_rate * *by).collect(),
+                    exit: self.rate.clone(),
+                }
+            }
         }
     }
 

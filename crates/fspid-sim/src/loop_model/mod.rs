@@ -4,7 +4,7 @@
 //! back, and the controller as it is implemented:
 //!
 //! $$ z_{k+1} = M(k_p, k_i, k_d) z_k, \qquad
-//! z = (x, \delta, \text{commands}, \text{pitch}, \text{rate}, I, d, c_{k-1}) $$
+//! z = (x, \delta, \text{commands}, \text{pitch}, \text{rate}, I, d, c_{k-1}, w) $$
 //!
 //! with the set-point at zero and no limit at work. The bumpless integral, the literal one, a filtered
 //! or plain derivative and whole-sample delays all leave M affine in the three gains, which is what
@@ -139,6 +139,23 @@ impl SampledPlant<f64> {
     }
 }
 
+/// What gains that remember make of a constant part of the command, a state of the loop:
+///
+/// $$ w_k = \phi w_{k-1} + a e_k + b (e_k - c_{k-1}) - r q_k, \qquad u_k = \dots + w_k $$
+///
+/// with the seen error e, the last one c and the seen rate q.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gathered<T> {
+    /// What stays of it from one sample to the next, φ.
+    pub keeps: T,
+    /// By the error, a, rad per rad.
+    pub by_error: T,
+    /// By the change of the error in a sample, b, rad per rad. It acts only in a loop that remembers the last sample.
+    pub by_change: T,
+    /// By the rate, r, s.
+    pub by_rate: T,
+}
+
 /// A sampled loop around rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoopModel<T> {
@@ -148,13 +165,14 @@ pub struct LoopModel<T> {
     change: Option<[Vec<T>; 2]>,
     /// Rad of command per rad by which the error changes in a sample, beside the derivative.
     change_gain: T,
+    gathered: Option<Gathered<T>>,
 }
 
 impl<T: Base> LoopModel<T> {
     /// A loop of a sampled plant.
     #[must_use]
     pub fn new(plant: SampledPlant<T>, settings: LoopSettings) -> Self {
-        Self { plant, settings, change: None, change_gain: T::zero() }
+        Self { plant, settings, change: None, change_gain: T::zero(), gathered: None }
     }
 
     /// The loop with a command of so many rad for each rad by which the error changes in a sample, beside the
@@ -163,6 +181,17 @@ impl<T: Base> LoopModel<T> {
     #[must_use]
     pub fn with_change_gain(&self, change_gain: T) -> Self {
         Self { change_gain, ..self.clone() }
+    }
+
+    /// The loop with what gains that remember make of a constant part of the command.
+    #[must_use]
+    pub fn with_gathered(&self, gathered: Option<Gathered<T>>) -> Self {
+        Self { gathered, ..self.clone() }
+    }
+
+    /// True if the seen rate is part of the loop; what is gathered may see it.
+    fn uses_rate(&self) -> bool {
+        self.settings.uses_rate() || self.gathered.is_some()
     }
 
     /// Everything but gains and plant.
@@ -316,7 +345,13 @@ impl LoopModel<Interval> {
             rate: middles(&self.plant.rate),
         };
         let change_gain = self.change_gain.midpoint();
-        LoopModel { plant, settings: self.settings.clone(), change: None, change_gain }
+        let gathered = self.gathered.map(|it| Gathered {
+            keeps: it.keeps.midpoint(),
+            by_error: it.by_error.midpoint(),
+            by_change: it.by_change.midpoint(),
+            by_rate: it.by_rate.midpoint(),
+        });
+        LoopModel { plant, settings: self.settings.clone(), change: None, change_gain, gathered }
     }
 }
 

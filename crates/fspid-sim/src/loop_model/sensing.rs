@@ -53,7 +53,7 @@ impl Sensing {
     }
 
     /// How many samples of the quantity the loop has to remember.
-    pub(super) fn remembered(&self) -> usize {
+    pub(crate) fn remembered(&self) -> usize {
         self.samples + usize::from(self.part > 0.0)
     }
 }

@@ -16,8 +16,16 @@
 //!
 //! The surfaces of rules have kinks, often right at rest: there the loop is another one on each side, see [`Stand`].
 //!
-//! Not here: accumulating laws, whose gains do not follow the inputs of the moment, and the size of a motion
-//! for which this is a good approximation.
+//! Gains of an accumulating law with leakage λ follow the inputs late. What they add to such a part of the command is a
+//! state of the loop, in place of the sum above:
+//!
+//! $$ w_k = (1 - \lambda T) w_{k-1} + \lambda T \left( A \frac{\partial k_p}{\partial x} +
+//!  C \frac{\partial k_i}{\partial x} \right) \cdot \delta x_k $$
+//!
+//! with the gains k(x) that inputs x would bring about if they stayed, $k' + s \Delta k(x) / \lambda$ within the limits.
+//!
+//! Not here: accumulating laws without leakage, which have no gains at rest, and the size of a motion for which this is a
+//! good approximation.
 
 mod slopes;
 mod stand;
@@ -26,9 +34,10 @@ mod tests;
 
 use fspid_core::{ErrorSign, Fspid, GainLimits, Gains, IntegralForm, Law, PidConfig, SecondInput};
 
+use crate::autopilot::Autopilot;
 use crate::controller::Controller;
 use crate::error::SimError;
-use crate::loop_model::{LoopModel, LoopSettings, Memory, SampledPlant};
+use crate::loop_model::{Gathered, LoopModel, LoopSettings, Memory, SampledPlant};
 use crate::plant::LinearPlant;
 use crate::scenario::Scenario;
 use crate::sensor::Sensor;
@@ -64,6 +73,8 @@ impl RestPoint {
 pub struct Rest {
     /// What is held; of several points with the same loop the first that was looked at, the trim before all others.
     pub at: RestPoint,
+    /// It is a set-point that loops around the pitch loop may command, and the scenario does not.
+    pub is_only_commanded: bool,
     /// The loops there: one, or one for each side of the kinks that the rules have there.
     pub sides: Vec<Side>,
     /// Which of them a motion in each direction is on.
@@ -83,12 +94,14 @@ pub struct Side {
     pub change_gain: f64,
     /// What it adds to the gain of the rate loop, s.
     pub rate_gain_s: f64,
+    /// What it adds in place of all these where the gains remember.
+    pub gathered: Option<Gathered<f64>>,
 }
 
 impl Side {
     /// For gains that do not move.
     const fn still(gains: Gains<f64>) -> Self {
-        Self { gains, change_gain: 0.0, rate_gain_s: 0.0 }
+        Self { gains, change_gain: 0.0, rate_gain_s: 0.0, gathered: None }
     }
 
     /// The loop of one of a scenario's plants at rest on this side.
@@ -111,7 +124,9 @@ impl Side {
 
     fn memory(&self, controller: &Controller) -> Memory {
         let memory = Memory::of_gains(self.gains, &self.config(controller));
-        if self.change_gain == 0.0 { memory } else { memory.with_previous() }
+        let sees_change =
+            self.change_gain != 0.0 || self.gathered.is_some_and(|it| it.by_change != 0.0);
+        if sees_change { memory.with_previous() } else { memory }
     }
 
     /// The same with a plant that is sampled already; beside other sides it remembers the last sample, as they do.
@@ -125,7 +140,8 @@ impl Side {
         let memory = self.memory(controller);
         let memory = if beside_others { memory.with_previous() } else { memory };
         let settings = LoopSettings::of(scenario, &self.config(controller), memory);
-        LoopModel::new(plant.clone(), settings).with_change_gain(self.change_gain)
+        let model = LoopModel::new(plant.clone(), settings).with_change_gain(self.change_gain);
+        model.with_gathered(self.gathered)
     }
 }
 
@@ -135,6 +151,7 @@ impl Rest {
     pub fn still(gains: Gains<f64>) -> Self {
         Self {
             at: RestPoint::TRIM,
+            is_only_commanded: false,
             sides: vec![Side::still(gains)],
             of_direction: [0; DIRECTIONS],
             seen_per_unit: [1.0; 2],
@@ -142,9 +159,9 @@ impl Rest {
         }
     }
 
-    /// All ways in which a controller with `gains` at rest holds one of a scenario's plants at the trim and at
-    /// the furthest set-points of the scenario, without a load and under the largest ones; one where they do not
-    /// differ.
+    /// All ways in which a controller with `gains` at rest holds one of a scenario's plants at the trim, at the set-points that
+    /// the scenario holds, and at the furthest ones of it and of the loops around the pitch loop, without a load and under the
+    /// largest ones; one where they do not differ.
     #[must_use]
     pub fn all(
         scenario: &Scenario,
@@ -158,7 +175,11 @@ impl Rest {
         // A bias is drawn once: with its sign.
         let rate_rad_s = scenario.surroundings.rate_sensor.as_ref().map_or(0.0, Sensor::bias);
         let is_same = is_the_same_everywhere(fspid, rate_rad_s);
-        if fspid.tuner().settings().law != Law::Memoryless || is_same {
+        let leakage_per_s = match fspid.tuner().settings().law {
+            Law::Memoryless => None,
+            Law::Accumulating { leakage_per_s } => Some(leakage_per_s),
+        };
+        if leakage_per_s == Some(0.0) || is_same {
             return still;
         }
         let scale = scenario.surroundings.pitch_sensor.map_or(1.0, |s| 1.0 + s.model().scale_error);
@@ -167,21 +188,36 @@ impl Rest {
             // What the command has to be per rad of seen pitch.
             command_per_pitch: 1.0 / (scale * plant.steady_gain()),
             gains,
+            leakage_per_s,
         };
         // A seen rate is no load here: it has its own place in the controller.
         let config = PidConfig { rate_gain_s: 0.0, ..*fspid.config() };
         let loads = either_way(steady.load_with_offsets_rad(plant, &config));
+        let own = held.setpoints(&steady).into_iter().chain(scenario.setpoint.held_rad());
+        let own = own.map(|setpoint_rad| (setpoint_rad, false));
+        let commanded = scenario.autopilot.as_ref().and_then(Autopilot::pitch_rad);
+        let commanded = commanded.into_iter().flatten().map(|setpoint_rad| (setpoint_rad, true));
         let mut found: Vec<Self> = Vec::new();
-        for setpoint_rad in held.setpoints(&steady) {
+        for (setpoint_rad, is_only_commanded) in own.chain(commanded) {
             for &load_rad in &loads {
                 for rest in held.at(RestPoint { setpoint_rad, load_rad }, rate_rad_s) {
                     if !found.iter().any(|known| known.is_the_same_loop_as(&rest)) {
-                        found.push(rest);
+                        found.push(Self { is_only_commanded, ..rest });
                     }
                 }
             }
         }
         found
+    }
+
+    /// True where what is held changes the loop at rest.
+    #[must_use]
+    pub fn depends_on_what_is_held(scenario: &Scenario, controller: &Controller) -> bool {
+        let rate_rad_s = scenario.surroundings.rate_sensor.as_ref().map_or(0.0, Sensor::bias);
+        match controller {
+            Controller::Fixed(_) => false,
+            Controller::SelfTuning(fspid) => !is_the_same_everywhere(fspid, rate_rad_s),
+        }
     }
 
     /// Of the same controller.
@@ -221,6 +257,8 @@ struct Holding<'a> {
     command_per_pitch: f64,
     /// At rest with everything at zero.
     gains: Gains<f64>,
+    /// Of an accumulating law, 1/s.
+    leakage_per_s: Option<f64>,
 }
 
 /// Constants that gains multiply at rest: derivatives of the command by kp, ki, kd.
@@ -288,7 +326,9 @@ impl Holding<'_> {
         });
         let second_input = self.fspid.tuner().settings().second_input;
         let seen_per_unit = self.seen_per_unit();
-        let mut rest = Rest { at, sides, of_direction, seen_per_unit, second_input };
+        let is_only_commanded = false;
+        let mut rest =
+            Rest { at, is_only_commanded, sides, of_direction, seen_per_unit, second_input };
         rest.join_equal_sides();
         rest
     }
@@ -301,6 +341,10 @@ impl Holding<'_> {
         };
         let (of_error, beside) = (along(0), along(1));
         let mut side = Side::still(gains);
+        if let Some(leakage_per_s) = self.leakage_per_s {
+            side.gathered = Some(self.gathered(leakage_per_s, [of_error, beside]));
+            return side;
+        }
         side.gains.kp += of_error;
         match self.fspid.tuner().settings().second_input {
             SecondInput::Change => side.change_gain = beside,
@@ -310,6 +354,19 @@ impl Holding<'_> {
             SecondInput::ModelError(_) => side.gains.kp += beside,
         }
         side
+    }
+
+    /// The same where gains come to it late.
+    fn gathered(&self, leakage_per_s: f64, [of_error, beside]: [f64; 2]) -> Gathered<f64> {
+        let leaks = leakage_per_s * self.fspid.config().dt_s;
+        let [of_error, beside] = [leaks * of_error, leaks * beside];
+        let still =
+            Gathered { keeps: 1.0 - leaks, by_error: of_error, by_change: 0.0, by_rate: 0.0 };
+        match self.fspid.tuner().settings().second_input {
+            SecondInput::Change => Gathered { by_change: beside, ..still },
+            SecondInput::Rate => Gathered { by_rate: beside, ..still },
+            SecondInput::ModelError(_) => Gathered { by_error: of_error + beside, ..still },
+        }
     }
 
     /// The errors at rest without an integral: where rules weaken the gain as the error grows there may be several.
@@ -377,10 +434,12 @@ impl Holding<'_> {
         let tuner = self.fspid.tuner();
         let nominal = tuner.nominal();
         let Some(added) = tuner.increments_where_seen(error, beside) else { return nominal };
+        // Where gains remember, what they come to if the inputs stay.
+        let lasting = self.leakage_per_s.map_or(1.0, |leakage_per_s| 1.0 / leakage_per_s);
         let free = Gains {
-            kp: nominal.kp + added.kp,
-            ki: nominal.ki + added.ki,
-            kd: nominal.kd + added.kd,
+            kp: nominal.kp + lasting * added.kp,
+            ki: nominal.ki + lasting * added.ki,
+            kd: nominal.kd + lasting * added.kd,
         };
         tuner.settings().gain_limits.map_or(free, |limits| Gains {
             kp: limits.kp.clamp(free.kp),

@@ -61,6 +61,13 @@ pub enum Doubt {
     LongWay,
     /// A sensor shows values of changing age, and the loop is stable with one of them and not with another.
     ChangingAge,
+    /// So much is on its way in a mode of the autopilot that it is not asked for its poles.
+    LongMode,
+    /// It grows at a set-point that the loops around the pitch loop may command.
+    Commanded,
+    /// With a configuration of later there is no trim at the speed and altitude of the start; or with an empty tank none, or one
+    /// that is not shown to hold.
+    ChangedAircraft,
 }
 
 /// The loop of one side: stable, unstable, or neither for all that is known.
@@ -92,6 +99,20 @@ impl Rest {
     /// # Errors
     /// Eigenvalues that are not found.
     pub fn stand(
+        &self,
+        scenario: &Scenario,
+        plant: &SampledPlant<f64>,
+        controller: &Controller,
+    ) -> Result<Stand, SimError> {
+        Ok(match self.stand_as_it_is(scenario, plant, controller)? {
+            Stand::Grows { spectral_radius } if self.is_only_commanded => {
+                Stand::Undecided { spectral_radius, doubt: Doubt::Commanded }
+            }
+            stand => stand,
+        })
+    }
+
+    fn stand_as_it_is(
         &self,
         scenario: &Scenario,
         plant: &SampledPlant<f64>,

@@ -3,7 +3,7 @@
 use core::f64::consts::PI;
 
 use fspid_core::{
-    Change, ErrorSign, Fspid, GainCoupling, Gains, InputScale, IntegralForm, PidConfig,
+    Change, ErrorSign, Fspid, GainCoupling, Gains, InputScale, IntegralForm, Law, PidConfig,
     ReferenceModel, Sample, SecondInput, SelfTuner, State, TunerSettings, paper,
 };
 use fspid_fuzzy::{Defuzzifier, OutOfRange, Supervisor};
@@ -12,6 +12,7 @@ use super::{Holding, RestPoint, slopes};
 
 const DT_S: f64 = 0.02;
 const RANGE: f64 = 5.0;
+const LEAKAGE_PER_S: f64 = 4.0;
 /// Beside rest by so much, in the supervisor's units.
 const BESIDE: f64 = 1e-6;
 
@@ -39,6 +40,7 @@ fn controller(dice: &mut Dice) -> Fspid<f64> {
     let settings = TunerSettings {
         error_sign: dice
             .one_of(&[ErrorSign::SetpointMinusMeasurement, ErrorSign::MeasurementMinusSetpoint]),
+        law: dice.one_of(&[Law::Memoryless, Law::Accumulating { leakage_per_s: LEAKAGE_PER_S }]),
         second_input: dice.one_of(&[
             SecondInput::Change,
             SecondInput::Rate,
@@ -90,8 +92,11 @@ fn a_held_command_adds_what_the_flown_controller_answers_beside_rest() {
             IntegralForm::Literal => dice.between(-20.0, 20.0),
         };
         let held_rad = fspid.step(&mut { state }, at_rest).command_rad;
-        let gains = fspid.tuner().gains_at_rest();
-        let holding = Holding { fspid: &fspid, command_per_pitch: 0.0, gains };
+        let remembers = fspid.tuner().settings().law != Law::Memoryless;
+        let leakage_per_s = remembers.then_some(LEAKAGE_PER_S);
+        let holding =
+            Holding { fspid: &fspid, command_per_pitch: 0.0, gains: Gains::ZERO, leakage_per_s };
+        let holding = Holding { gains: holding.gains_at([0.0; 2]), ..holding };
         let at = RestPoint { setpoint_rad, load_rad: held_rad };
         let rest = holding.with_error(at, rate_rad_s, 0.0);
         kinks += usize::from(rest.sides.len() > 1);
@@ -123,7 +128,12 @@ fn a_held_command_adds_what_the_flown_controller_answers_beside_rest() {
         let by_derivative = side.gains.kd / (config.derivative.filter_s + DT_S);
         let expected = (side.gains.kp + side.gains.ki * DT_S + by_derivative) * error_rad
             + side.change_gain * (error_rad - last_error_rad)
-            - (config.rate_gain_s + side.rate_gain_s) * rate_off_rad_s;
+            - (config.rate_gain_s + side.rate_gain_s) * rate_off_rad_s
+            + side.gathered.map_or(0.0, |it| {
+                it.by_error * error_rad + it.by_change * (error_rad - last_error_rad)
+                    - it.by_rate * rate_off_rad_s
+            });
+        assert_eq!(side.gathered.map(|it| it.keeps), leakage_per_s.map(|by| 1.0 - by * DT_S));
         let found = flown.command_rad - held_rad;
         // Values near 1 are known to 10⁻¹⁶, and sides whose slopes differ by 10⁻⁴ are one.
         let allowed = 2e-4 * (side.gains.kp.abs() * error_rad.abs() + expected.abs()) + 2e-13;

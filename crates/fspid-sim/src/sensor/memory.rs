@@ -2,6 +2,7 @@
 
 use super::Sensor;
 use crate::error::SimError;
+use crate::loop_model::Sensing;
 use crate::math::exp;
 use crate::signal::noise::standard_normal;
 
@@ -145,6 +146,17 @@ impl SensorState {
             self.look(k, next, next == sample);
         }
         self.value
+    }
+
+    /// What there was so many samples before sample `k` of the loop, which is not looked at yet; none before the first.
+    pub(crate) fn past(&mut self, k: usize, samples: usize) -> Option<&mut f64> {
+        let place = k.checked_sub(samples)? % self.history.len();
+        self.history.get_mut(place)
+    }
+
+    /// How many of them what is shown at a sample depends on.
+    pub(crate) fn depends_on(&self) -> usize {
+        Sensing::through(Some(&self.sensor), self.dt_s).remembered()
     }
 
     /// The gyro's axis follows the apparent vertical at its erection rate, so that a long forward

@@ -34,6 +34,7 @@ pub use memory::{SensorState, Truth};
 pub use preset::SensorPreset;
 
 use crate::error::{SimError, finite, not_negative, positive};
+use crate::loop_model::Sensing;
 use crate::signal::noise::standard_normal;
 
 /// Number of the first random stream of sensors; turbulence and disturbances have others.
@@ -108,6 +109,19 @@ impl Sensor {
     #[must_use]
     pub fn model(&self) -> &SensorModel {
         &self.model
+    }
+
+    /// What small motions around rest see of it: scale and age, the largest where that changes.
+    pub(crate) fn around_rest(&self, dt_s: f64) -> Result<Self, SimError> {
+        let Sensing { samples, part, .. } = Sensing::through(Some(self), dt_s);
+        let delay_s = (samples as f64 + part) * dt_s;
+        let SensorModel { scale_error, .. } = self.model;
+        Self::new(SensorModel { scale_error, delay_s, ..SensorModel::default() }, 0, self.channel)
+    }
+
+    /// The same without an error of its scale.
+    pub(crate) fn without_scale(self) -> Result<Self, SimError> {
+        Self::new(SensorModel { scale_error: 0.0, ..self.model }, self.seed, self.channel)
     }
 
     /// The bias of this sensor, drawn from its seed, unit.

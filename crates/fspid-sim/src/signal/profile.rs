@@ -92,6 +92,19 @@ impl Profile {
         }
     }
 
+    /// Set-points of a table that holds each of them, rad; of a shape they are its ends.
+    pub(crate) fn held_rad(&self) -> Vec<f64> {
+        match &self.0 {
+            Kind::Table { setpoint_rad, interpolation: Interpolation::Hold, .. } => {
+                let mut held = setpoint_rad.clone();
+                held.sort_by(f64::total_cmp);
+                held.dedup();
+                held
+            }
+            Kind::Table { .. } | Kind::Shape { .. } => Vec::new(),
+        }
+    }
+
     /// Set-point at each sample, rad, and the steps in it.
     #[must_use]
     pub fn sampled(&self, timing: Timing) -> (Vec<f64>, Vec<Edge>) {

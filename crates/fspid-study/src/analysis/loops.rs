@@ -329,8 +329,8 @@ fn verdict_of(
 /// The plants that last, an aircraft's linear model at its trim in its place.
 pub(crate) fn lasting_plants(scenario: &Scenario) -> Result<Vec<(f64, LinearPlant)>, SimError> {
     scenario.plant.require_equations()?;
-    let trimmed = scenario.plant.aircraft().map(AircraftPlant::linear).transpose()?;
-    let around_trim = trimmed.into_iter().map(|plant| (0.0, plant));
+    let trimmed = scenario.plant.aircraft().map(AircraftPlant::lasting).transpose()?;
+    let around_trim = trimmed.into_iter().flatten().filter_map(|(at, plant)| Some((at, plant?)));
     let linear = scenario.lasting_plants();
     Ok(around_trim.chain(linear.into_iter().map(|(at, plant)| (at, plant.clone()))).collect())
 }

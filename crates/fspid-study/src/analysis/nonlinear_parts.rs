@@ -32,7 +32,7 @@ fn of_what_flies(scenario: &Scenario) -> [LeftOut; 7] {
         ),
         (
             scenario.autopilot.is_some(),
-            "Margins are those of the pitch loop alone; of the loops around it the poles of each mode are told, around the trim and without limits and sensors, those of pitch among them.",
+            "Margins are those of the pitch loop alone; of the loops around it the poles of each mode are told, around the trim, with sensors as late as they are and without limits.",
         ),
         (is_limited, "Limits of the actuator are left out; they act beyond small motions."),
         (

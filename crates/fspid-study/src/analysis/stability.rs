@@ -82,5 +82,8 @@ fn undecided(spectral_radius: f64, doubt: Doubt) -> Absent {
         Doubt::OneSide => Absent::OneSide { spectral_radius },
         Doubt::LongWay => Absent::LongWay { spectral_radius },
         Doubt::ChangingAge => Absent::ChangingAge { spectral_radius },
+        Doubt::LongMode => Absent::LongMode,
+        Doubt::Commanded => Absent::Commanded { spectral_radius },
+        Doubt::ChangedAircraft => Absent::ChangedAircraft,
     }
 }

@@ -37,6 +37,20 @@ pub enum NotEvaluated {
         /// The step that it was asked of.
         place: Box<CasePlace>,
     },
+    /// It settled just before the end.
+    #[error(
+        "settled only {} s before the end of the {} s that are flown after it: fly on, to see that it stays",
+        to_digits(*window_s - *settled_s, 3),
+        to_digits(*window_s, 6)
+    )]
+    TooShort {
+        /// When it settled, s.
+        settled_s: f64,
+        /// How long there was time, s.
+        window_s: f64,
+        /// The step that it was asked of.
+        place: Box<CasePlace>,
+    },
     /// The time that counts is not part of the flight.
     #[error(
         "nothing was flown from {} s to {} s: the flight ends at {} s",
@@ -151,7 +165,9 @@ impl NotEvaluated {
     #[must_use]
     pub fn place(&self) -> CasePlace {
         match self {
-            Self::Unstable { place, .. } | Self::NotRecovered { place, .. } => **place,
+            Self::Unstable { place, .. }
+            | Self::NotRecovered { place, .. }
+            | Self::TooShort { place, .. } => **place,
             _ => CasePlace::default(),
         }
     }

@@ -12,6 +12,7 @@ pub use flight::{EdgeMetrics, FlightMetrics, Verdict};
 pub use step::{StepMetrics, StepWindow};
 
 use fspid_diagnostics::digits::without_zeros;
+use fspid_sim::loop_model::MOST_AS_STATES;
 use fspid_sim::{ControllerLoss, PlantLoss};
 
 /// Why a measure has no value.
@@ -104,6 +105,24 @@ pub enum Absent {
         /// Spectral radius of the sampled closed loop with the age at which it is unstable.
         spectral_radius: f64,
     },
+    /// Sensors or commands of a mode of the autopilot are so late that it is not asked for its poles.
+    #[error(
+        "undecided: more than {MOST_AS_STATES} samples are on their way in a mode of the autopilot"
+    )]
+    LongMode,
+    /// The loop grows at a set-point that the loops around the pitch loop may command.
+    #[error(
+        "undecided: at a set-point that the loops around the pitch loop may command the loop is unstable (spectral radius {spectral_radius:.6})"
+    )]
+    Commanded {
+        /// Spectral radius of the sampled closed loop there.
+        spectral_radius: f64,
+    },
+    /// The aircraft of later in the flight is not shown to hold.
+    #[error(
+        "undecided: with its configuration or its fuel of later in the flight the aircraft has no trim at the speed and altitude of the start, or none that is shown to be stable"
+    )]
+    ChangedAircraft,
     /// The loop has so many states that nothing bounds its peaks from above.
     #[error("no bound of its peaks is proved: {order} states, samples of dead time included")]
     NotProved {

@@ -38,6 +38,8 @@ pub struct ControllerResult {
     pub range_rule: RangeRule,
     /// How long the flight should have been, s.
     pub duration_s: f64,
+    /// The air moves around the aircraft.
+    pub in_moving_air: bool,
 }
 
 impl ControllerResult {
@@ -124,7 +126,16 @@ impl Simulation {
                 let metrics = FlightMetrics::of(&trace, edges, timing, unstable, &pushes_s);
                 let (name, range_rule) = (flyer.name().to_owned(), study.range_rule);
                 let duration_s = scenario.timing.end_s();
-                Ok(ControllerResult { name, trace, metrics, at_rest, range_rule, duration_s })
+                let in_moving_air = scenario.has_moving_air();
+                Ok(ControllerResult {
+                    name,
+                    trace,
+                    metrics,
+                    at_rest,
+                    range_rule,
+                    duration_s,
+                    in_moving_air,
+                })
             })
             .collect::<Result<Vec<_>, SimError>>()?;
         let judgements = judge(study, &results);

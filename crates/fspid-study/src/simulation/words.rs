@@ -14,6 +14,10 @@ use fspid_scenario::file::RangeRule;
 /// What is asked where the first movement is steadily away from the set-point.
 pub const WRONG_WAY: &str = "moves the wrong way: is elevator_sign right?";
 
+/// What is said of the measures of steps where the air moves.
+const IN_MOVING_AIR: &str =
+    "the air moves: the measures of a step are those of the step and of the air";
+
 /// Gains to five digits.
 fn gains(gains: Gains<f64>) -> String {
     let [kp, ki, kd] = [gains.kp, gains.ki, gains.kd].map(|gain| to_digits(gain, 5));
@@ -103,10 +107,18 @@ impl EdgeMetrics {
     /// What is added to the measures of a step where a disturbance begins before they end; they are those of both.
     #[must_use]
     pub fn disturbed_in_words(&self) -> String {
-        let of_both = self.disturbed_from_s.filter(|_| self.step.overshoot_pct.is_ok());
-        of_both.map_or(String::new(), |from_s| {
-            format!("; of the step and of what disturbs from {} s on", short(from_s))
-        })
+        self.of_both_in_words().map_or(String::new(), |of_both| format!("; {of_both}"))
+    }
+
+    /// The same as a sentence of its own.
+    pub(crate) fn disturbed_within_in_words(&self) -> Option<String> {
+        let of_both = self.of_both_in_words()?;
+        Some(format!("the measures of the step at {} s are those {of_both}", short(self.at_s)))
+    }
+
+    fn of_both_in_words(&self) -> Option<String> {
+        let from_s = self.disturbed_from_s.filter(|_| self.step.overshoot_pct.is_ok())?;
+        Some(format!("of the step and of what disturbs from {} s on", short(from_s)))
     }
 }
 
@@ -125,6 +137,9 @@ impl ControllerResult {
             .unstable_where_in_words()
             .into_iter()
             .chain(self.at_rest.undecided_in_words());
-        question.into_iter().chain(held).chain(load).chain(left).chain(not_asked).collect()
+        let has_steps = self.metrics.edges.iter().any(|edge| edge.step.overshoot_pct.is_ok());
+        let air = (self.in_moving_air && has_steps).then(|| IN_MOVING_AIR.to_owned());
+        let of_flight = load.into_iter().chain(air).chain(left).chain(not_asked);
+        question.into_iter().chain(held).chain(of_flight).collect()
     }
 }

@@ -13,6 +13,7 @@ use std::path::Path;
 use fspid_sim::SimError;
 
 use crate::judgement::Judgement;
+use crate::metrics::EdgeMetrics;
 use crate::simulation::{ControllerResult, FailedFlight, Simulation};
 use fspid_page::number::sentence;
 use fspid_scenario::file::{self, Extra, LoadError, Problems, Study};
@@ -124,7 +125,9 @@ pub fn verify_text(
 
 /// The gains of a controller at rest beside the nominal ones, and what else is to be known of its flight.
 fn at_rest(result: &ControllerResult) -> Vec<String> {
-    let words = result.at_rest.gains_in_words().into_iter().chain(result.notes());
+    let gains = result.at_rest.gains_in_words().into_iter();
+    let steps = result.metrics.edges.iter().filter_map(EdgeMetrics::disturbed_within_in_words);
+    let words = gains.chain(steps).chain(result.notes());
     words.map(|words| sentence(&format!("{}: {words}", result.name))).collect()
 }
 

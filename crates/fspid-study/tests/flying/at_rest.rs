@@ -86,6 +86,8 @@ fn measures_of_a_step_say_from_when_on_a_disturbance_is_in_them() {
     assert_eq!(words(&[&load("3.0")]), "; of the step and of what disturbs from 3 s on");
     // Also where it begins with the step.
     assert_eq!(words(&[&load("0.0")]), "; of the step and of what disturbs from 0 s on");
+    // What is of no size disturbs nothing.
+    assert_eq!(words(&[&load("3.0"), "disturbance[0].amplitude_deg=0.0"]), "");
 }
 
 /// A load just after the step used to be taken for a turned sign, and to fail the flight.

@@ -18,6 +18,7 @@ mod one_verdict;
 mod outer_loops;
 mod requirements;
 mod six_dof;
+mod what_is_held;
 mod wind_table;
 
 use fspid_scenario::file::{self, Study};

@@ -49,9 +49,14 @@ fn told_by<T>(
 }
 
 fn line(progress: &Progress, runs: u64, elapsed: Duration) -> String {
+    let line = runs_line(progress, runs, elapsed);
+    if progress.flown() == 0 {
+        return line;
+    }
+    // Of runs that were there already nobody has counted.
+    let now = if progress.found() > 0 { "of those flown now " } else { "" };
     let failed = progress.failed();
-    let failed = format!("{} flight{} failed", grouped(failed), if failed == 1 { "" } else { "s" });
-    format!("{}, {failed}", runs_line(progress, runs, elapsed))
+    format!("{line}, {now}{} flight{} failed", grouped(failed), if failed == 1 { "" } else { "s" })
 }
 
 fn runs_line(progress: &Progress, runs: u64, elapsed: Duration) -> String {
@@ -67,7 +72,7 @@ fn runs_line(progress: &Progress, runs: u64, elapsed: Duration) -> String {
         }
     }
     if found > 0 {
-        parts.push(format!("{} found", grouped(found)));
+        parts.push(format!("{} flown before", grouped(found)));
     }
     parts.join(", ")
 }

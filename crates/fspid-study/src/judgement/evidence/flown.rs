@@ -14,6 +14,9 @@ use fspid_scenario::measure::{Family, Measure};
 use fspid_scenario::requirement::{Air, Conditions, Requirement};
 use fspid_scenario::units::degrees;
 
+/// Of the time that it took to settle so much has to be flown after it, to call it settled.
+const STAYS: f64 = 0.1;
+
 /// Cases of a measure of a flight.
 pub(super) fn cases(
     study: &Study,
@@ -28,7 +31,7 @@ pub(super) fn cases(
             let time = flown.time(&requirement.conditions)?;
             aircraft::case(study, &result.trace, requirement, time).map(|case| vec![case])
         }
-        Measure::RecoveryTime => flown.recovery(&requirement.conditions),
+        Measure::RecoveryTime => flown.recovery(&requirement.conditions, requirement.most),
         Measure::FinalErrorAngle => flown.final_errors(&requirement.conditions),
         Measure::Overshoot | Measure::RiseTime | Measure::SettlingTime | Measure::FinalError => {
             flown.steps(requirement)
@@ -131,9 +134,37 @@ impl Flown<'_> {
         let steps = self.counted(&requirement.conditions)?;
         let case = |(step, edge): &(StepAt, &EdgeMetrics)| {
             let value = edge.step.measured(requirement.measure)?;
-            Ok(Case { value, place: at_step(*step) })
+            let case = Case { value, place: at_step(*step) };
+            match requirement.measure {
+                // What has not come there has not gone beyond it either.
+                Measure::Overshoot => edge.step.rise_time_s.map(|_| case).map_err(Into::into),
+                Measure::SettlingTime => self.lasting(case, self.window_s(edge), requirement.most),
+                _ => Ok(case),
+            }
         };
         steps.iter().map(case).collect()
+    }
+
+    /// A time after which a flight stays where it is, if that is flown: up to the longest time that is allowed, or for a
+    /// tenth of that time after it.
+    fn lasting(
+        &self,
+        case: Case,
+        window_s: f64,
+        most_s: Option<f64>,
+    ) -> Result<Case, NotEvaluated> {
+        let allowance_s = 1e-6 * self.timing.dt_s();
+        let asked = most_s.is_some_and(|most_s| window_s + allowance_s >= most_s);
+        let stays = window_s - case.value >= STAYS * case.value;
+        if asked || stays {
+            return Ok(case);
+        }
+        Err(NotEvaluated::TooShort { settled_s: case.value, window_s, place: Box::new(case.place) })
+    }
+
+    fn window_s(&self, edge: &EdgeMetrics) -> f64 {
+        let window = self.window(edge);
+        self.timing.time_s(*window.end()) - self.timing.time_s(*window.start())
     }
 
     /// Samples from a step to the last one before the next.
@@ -171,18 +202,22 @@ impl Flown<'_> {
         time_that_counts(self.timing, self.trace.rows(), conditions)
     }
 
-    fn recovery(&self, conditions: &Conditions) -> Result<Vec<Case>, NotEvaluated> {
+    fn recovery(
+        &self,
+        conditions: &Conditions,
+        most_s: Option<f64>,
+    ) -> Result<Vec<Case>, NotEvaluated> {
         let within_deg = conditions.within_deg.unwrap_or(0.0);
         if let Some(from_s) = conditions.from_s {
             let place = CasePlace { at_s: Some(from_s), ..CasePlace::default() };
             let errors = self.errors_rad(self.time(conditions)?).into_iter().map(degrees);
             let errors: Vec<f64> = errors.collect();
-            return Ok(vec![self.recovered(&errors, within_deg, place)?]);
+            return Ok(vec![self.recovered(&errors, within_deg, most_s, place)?]);
         }
         let case = |(step, edge): &(StepAt, &EdgeMetrics)| {
             let theta = self.trace.theta_rad.get(self.window(edge)).unwrap_or_default();
             let errors: Vec<f64> = theta.iter().map(|theta| degrees(edge.to_rad - theta)).collect();
-            self.recovered(&errors, within_deg, at_step(*step))
+            self.recovered(&errors, within_deg, most_s, at_step(*step))
         };
         self.counted(conditions)?.iter().map(case).collect()
     }
@@ -192,8 +227,10 @@ impl Flown<'_> {
         &self,
         errors_deg: &[f64],
         within_deg: f64,
+        most_s: Option<f64>,
         place: CasePlace,
     ) -> Result<Case, NotEvaluated> {
+        let window_s = errors_deg.len().saturating_sub(1) as f64 * self.timing.dt_s();
         // Written so that NaN is outside.
         let is_outside = |error: &f64| !(error.abs() <= within_deg);
         let Some(outside) = errors_deg.iter().rposition(is_outside) else {
@@ -204,10 +241,9 @@ impl Flown<'_> {
                 let edge = within_deg.copysign(*before);
                 let share = (before - edge) / (before - after);
                 let value = (outside as f64 + share) * self.timing.dt_s();
-                Ok(Case { value, place })
+                self.lasting(Case { value, place }, window_s, most_s)
             }
             _ => {
-                let window_s = errors_deg.len().saturating_sub(1) as f64 * self.timing.dt_s();
                 let place = Box::new(place);
                 Err(NotEvaluated::NotRecovered { within_deg, window_s, place })
             }

@@ -1,9 +1,11 @@
 //! The linear loops of a controller: one for each plant that lasts.
 
 use fspid_lti::Mode;
-use fspid_sim::{NamedController, RestPoint, Scenario, SimError};
+use fspid_sim::{Doubt, NamedController, RestPoint, Scenario, SimError};
 
-use crate::analysis::{Analysis, Margins, PlantLoop, Question, RestLoop, decibels, held_at_rest};
+use crate::analysis::{
+    Analysis, Margins, PlantLoop, Question, RestLoop, decibels, held_at_rest, why_undecided,
+};
 use crate::judgement::{Case, CasePlace, NotEvaluated, PlantAt};
 use crate::metrics::Absent;
 use crate::simulation::ControllerResult;
@@ -97,8 +99,17 @@ pub(super) fn cases(
     result: &ControllerResult,
     requirement: &Requirement,
 ) -> Result<Vec<Case>, NotEvaluated> {
-    let of_flight = diverged(result).filter(|_| requirement.measure == Measure::Stable);
-    let mut cases: Vec<Case> = of_flight.into_iter().collect();
+    let mut cases = Vec::new();
+    if requirement.measure == Measure::Stable {
+        cases.extend(diverged(result).into_iter().chain(growing_mode(result)));
+        let beyond_loops = result
+            .at_rest
+            .undecided
+            .filter(|it| matches!(it.doubt, Doubt::LongMode | Doubt::ChangedAircraft));
+        if let Some(undecided) = beyond_loops.filter(|_| cases.is_empty()) {
+            return Err(NotEvaluated::Absent(why_undecided(&undecided)));
+        }
+    }
     cases.extend(rest_cases(loops, requirement)?);
     Ok(cases)
 }
@@ -125,6 +136,13 @@ fn diverged(result: &ControllerResult) -> Option<Case> {
         | fspid_sim::Outcome::ControllerLost { .. }
         | fspid_sim::Outcome::PlantLost { .. } => None,
     }
+}
+
+/// An autopilot's mode that grows is part of no loop with a plant.
+fn growing_mode(result: &ControllerResult) -> Option<Case> {
+    let unstable = result.at_rest.unstable.filter(|unstable| unstable.mode.is_some())?;
+    let spectral_radius = Some(unstable.spectral_radius);
+    Some(Case { value: 0.0, place: CasePlace { spectral_radius, ..CasePlace::default() } })
 }
 
 fn of_rest(
