@@ -304,7 +304,7 @@ pub(crate) fn gain_map(
         required: Some((required.0, required.1.to_owned())),
         worst: Some(MapPoint {
             at: (map.worst.input[1], map.worst.input[0]),
-            name: format!("worst: {}", super::text::triple(map.worst.gains)),
+            name: super::text::triple(map.worst.gains),
         }),
         equilibrium: Some(MapPoint { at: (0.0, 0.0), name: "at rest".to_owned() }),
         flown: flown.into_iter().map(|(error, change)| (change, error)).collect(),

@@ -8,6 +8,7 @@ mod judging;
 mod loops;
 mod replays;
 mod sets;
+mod short_flights;
 
 use std::path::{Path, PathBuf};
 

@@ -231,7 +231,10 @@ supervisor.numbers.delta_kd = GRID
 
 #[test]
 fn slopes_of_what_the_linear_loop_breaks_are_those_of_differences() {
-    let problem = problem(OF_THE_LOOP, &[]).expect("a tuning");
+    // With another weight gains move what is held, to either side by as much: where the worse side changes there is no slope.
+    let weight = "{ proportional = { tune = [0.0, 1.3], start = 0.9 } }";
+    let problem =
+        problem_of(&[(weight, "{ proportional = 1.0 }")], OF_THE_LOOP, &[]).expect("a tuning");
     let coordinates = problem.space().dimension();
     assert_eq!(compare(&problem, 1e-4, 1e-2), 3 * (coordinates + 1), "three loops are asked");
 }

@@ -127,7 +127,7 @@ fn a_time_that_was_not_flown_is_told_and_not_judged() {
 fn a_recovery_ends_where_the_error_comes_into_its_band_for_good_by_a_straight_line() {
     let flight = Whole::with_errors([0.0; 11]);
     let place = CasePlace { at_s: Some(0.5), ..CasePlace::default() };
-    let recovered = |errors: &[f64]| flight.flown().recovered(errors, 0.6, place);
+    let recovered = |errors: &[f64]| flight.flown().recovered(errors, 0.6, None, place);
     let time = |errors: &[f64]| {
         let case = recovered(errors).expect("recovered");
         assert_eq!(case.place, place);
@@ -152,7 +152,7 @@ fn a_recovery_ends_where_the_error_comes_into_its_band_for_good_by_a_straight_li
 fn a_recovery_is_asked_of_each_step_or_from_a_time_on() {
     let flight = two_steps();
     let recovery = |conditions: Conditions| {
-        let cases = flight.flown().recovery(&conditions).expect("recovered");
+        let cases = flight.flown().recovery(&conditions, None).expect("recovered");
         cases.into_iter().map(|case| (case.value, case.place)).collect::<Vec<_>>()
     };
     let found = recovery(Conditions { within_deg: Some(0.4), ..Conditions::default() });
@@ -167,7 +167,7 @@ fn a_recovery_is_asked_of_each_step_or_from_a_time_on() {
     let found = recovery(later);
     assert_eq!((found.len(), found[0].1.at_s, found[0].1.step), (1, Some(0.9), None));
     near(found[0].0, 0.04);
-    let band_of_nothing = flight.flown().recovery(&Conditions::default());
+    let band_of_nothing = flight.flown().recovery(&Conditions::default(), None);
     assert!(matches!(band_of_nothing, Err(NotEvaluated::NotRecovered { .. })));
 }
 
@@ -200,7 +200,7 @@ fn what_is_left_of_a_command_that_never_moves_is_left_at_the_end() {
     let asked = Conditions { step_deg: Some(2.0), ..Conditions::default() };
     let none = NotEvaluated::NoStepOf { asked_deg: 2.0, found_deg: Vec::new() };
     assert_eq!(flight.flown().final_errors(&asked), Err(none));
-    let recovery = flight.flown().recovery(&Conditions::default());
+    let recovery = flight.flown().recovery(&Conditions::default(), None);
     assert_eq!(recovery, Err(NotEvaluated::Absent(Absent::NoStep)));
 }
 

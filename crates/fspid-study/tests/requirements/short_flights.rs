@@ -1,0 +1,80 @@
+//! What a flight that ends too early cannot show.
+
+use fspid_scenario::file::{self, Study};
+use fspid_study::judgement::NotEvaluated;
+use fspid_study::metrics::Absent;
+use fspid_study::simulation::Simulation;
+
+/// A lag that comes to its set-point without overshoot, and settles some 3.9 s after the step.
+const SLOW: &str = r#"
+schema = 1
+name = "a slow step"
+[plant]
+numerator = [1.0]
+denominator = [1.0, 0.0]
+elevator_sign = "nose-up-positive"
+[loop]
+sample_period_s = 0.01
+duration_s = 10.0
+[setpoint]
+kind = "step"
+amplitude_deg = 1.0
+at_s = 0.0
+[[controller]]
+name = "P"
+kind = "p"
+kp = 1.0
+[[requirement]]
+measure = "overshoot_pct"
+most = 5.0
+[[requirement]]
+measure = "settling_time_s"
+most = 8.0
+[[requirement]]
+measure = "recovery_time_s"
+within_deg = 0.02
+most = 8.0
+"#;
+
+fn judged(set: &[&str]) -> Simulation {
+    let set: Vec<String> = set.iter().map(|&change| change.to_owned()).collect();
+    let study: Study =
+        file::parse(SLOW, "test.toml", None, &set).unwrap_or_else(|problems| panic!("{problems}"));
+    Simulation::of(&study).expect("it flies")
+}
+
+#[test]
+fn a_step_that_has_not_risen_has_no_overshoot_to_judge() {
+    let found = judged(&["loop.duration_s=2.0"]);
+    let overshoot = &found.judgements[0];
+    assert!(!overshoot.met);
+    assert!(
+        matches!(overshoot.found, Err(NotEvaluated::Absent(Absent::NotRisen { .. }))),
+        "{:?}",
+        overshoot.found
+    );
+    assert!(judged(&["loop.duration_s=2.5"]).judgements[0].met);
+}
+
+/// Within the longest time that is allowed, or for a tenth of its own time after it.
+#[test]
+fn a_time_to_settle_counts_where_the_flight_goes_on() {
+    for (duration_s, most_s, met) in [
+        (10.0, 8.0, true),
+        (4.0, 8.0, false),
+        (4.0, 4.0, true),
+        (4.25, 8.0, false),
+        (4.4, 8.0, true),
+    ] {
+        let found = judged(&[
+            &format!("loop.duration_s={duration_s}"),
+            &format!("requirement[1].most={most_s}"),
+            &format!("requirement[2].most={most_s}"),
+        ]);
+        for judgement in &found.judgements[1..] {
+            assert_eq!(judgement.met, met, "{duration_s} {most_s}: {:?}", judgement.found);
+            let is_short = matches!(judgement.found, Err(NotEvaluated::TooShort { .. }));
+            assert_eq!(is_short, !met, "{duration_s} {most_s}: {:?}", judgement.found);
+        }
+    }
+}
