@@ -58,11 +58,17 @@ impl LoopModel<f64> {
     /// times may stand anywhere, as long as gains stand still.
     ///
     /// # Errors
-    /// A plant of more states than that is asked of, gains so large that an entry overflows.
+    /// A plant of more states than that is asked of, gains so large that an entry overflows, and a long way of gains that
+    /// gather a seen rate of another age than the pitch angle.
     pub fn delayed(&self, gains: Gains<f64>) -> Result<DelayedLoop, SimError> {
-        let prompt = Self { settings: self.settings.prompt(), change: None, ..self.clone() };
-        let (open, [by_pitch, by_rate]) = prompt.assembly(gains).ways();
         let settings = &self.settings;
+        let sees_both = self.gathered.is_some_and(|it| it.by_rate != 0.0);
+        if sees_both && ages(&settings.pitch) != ages(&settings.rate) {
+            // What is gathered of both goes one way.
+            settings.require_matrix()?;
+        }
+        let prompt = Self { settings: settings.prompt(), change: None, ..self.clone() };
+        let (open, [by_pitch, by_rate]) = prompt.assembly(gains).ways();
         let mut paths: Vec<DelayedPath> = Vec::new();
         for (row, sensing) in [(by_pitch, settings.pitch), (by_rate, settings.rate)] {
             for (age, share) in ages(&sensing) {

@@ -3,7 +3,7 @@
 use fspid_core::{Derivative, Gains, IntegralForm, Pid, PidConfig, SetpointWeights};
 use fspid_lti::{Matrix, spectral_radius};
 
-use super::{BreakPoint, LoopModel, Memory};
+use super::{BreakPoint, Gathered, LoopModel, Memory};
 use crate::actuator::{Actuator, Lag};
 use crate::sensor::{PITCH, RATE, Sensor, SensorModel};
 use crate::signal::{Disturbance, Entry, Profile, Shape};
@@ -22,6 +22,10 @@ const PLANTS: [(&[f64], &[f64], ElevatorSign); 2] = [
     ),
     (&[11.7304, 22.578], &[1.0, 4.9676, 12.941, 0.0], ElevatorSign::NoseUpPositive),
 ];
+
+/// What gains that remember make of a held command.
+const GATHERED: Gathered<f64> =
+    Gathered { keeps: 0.95, by_error: 0.02, by_change: 0.1, by_rate: 0.0 };
 
 struct Case {
     plant: usize,
@@ -232,11 +236,14 @@ fn late_cases() -> Vec<Case> {
 #[test]
 fn a_loop_whose_dead_times_are_no_states_has_the_verdict_of_its_matrix() {
     let (mut held, mut lost) = (0, 0);
-    for (number, case) in late_cases().iter().enumerate() {
+    let each = late_cases().into_iter().flat_map(|case| {
         let model = case.model();
-        let by_matrix =
-            model.open(case.gains, BreakPoint::Command).expect("finite").unstable_radius();
-        let found = model.delayed(case.gains).expect("a loop").unstable_radius();
+        let gathering = model.with_gathered(Some(GATHERED));
+        [(model, case.gains), (gathering, case.gains)]
+    });
+    for (number, (model, gains)) in each.enumerate() {
+        let by_matrix = model.open(gains, BreakPoint::Command).expect("finite").unstable_radius();
+        let found = model.delayed(gains).expect("a loop").unstable_radius();
         match (by_matrix, found) {
             (Ok(None), Ok(None)) => held += 1,
             (Ok(Some(one)), Ok(Some(other))) => {
@@ -247,6 +254,50 @@ fn a_loop_whose_dead_times_are_no_states_has_the_verdict_of_its_matrix() {
         }
     }
     assert!(held > 2 && lost > 2, "{held} {lost}");
+}
+
+#[test]
+fn what_gains_gather_goes_around_wherever_the_loop_is_broken() {
+    let (mut held, mut lost) = (0, 0);
+    for case in late_cases() {
+        let gathered = Gathered { by_rate: 0.2, ..GATHERED };
+        let model = case.model().with_gathered(Some(gathered));
+        let radius = spectral_radius(&model.closed_matrix(case.gains).expect("finite"));
+        let radius = radius.expect("found");
+        for point in [BreakPoint::Command, BreakPoint::Pitch, BreakPoint::Rate] {
+            let open = model.open(case.gains, point).expect("finite");
+            match open.unstable_radius() {
+                Ok(None) => assert!(radius < 1.0, "{point:?}: {radius}"),
+                Ok(Some(found)) => assert!((found - radius).abs() < 1e-8, "{point:?}: {found}"),
+                Err(error) => panic!("{point:?}: {error}"),
+            }
+        }
+        if radius < 1.0 { held += 1 } else { lost += 1 }
+    }
+    assert!(held > 2 && lost > 2, "{held} {lost}");
+}
+
+/// One sample of the closed loop has what the equations say of it.
+#[test]
+fn what_gains_gather_follows_its_equation() {
+    let case = cases().remove(0);
+    let gathered = Gathered { by_rate: 0.2, ..GATHERED };
+    let [plain, model] = [None, Some(gathered)].map(|it| case.model().with_gathered(it));
+    let size = model.size();
+    assert_eq!((size, model.state_names().pop().as_deref()), (plain.size() + 1, Some("gains")));
+    let [error, change] = model.error_rows();
+    let [_, rate] = model.seen_rows();
+    let last = &model.closed(case.gains)[size - 1];
+    for place in 0..size {
+        let of_itself = if place + 1 == size { gathered.keeps } else { 0.0 };
+        let expected =
+            of_itself + gathered.by_error * error[place] + gathered.by_change * change[place]
+                - gathered.by_rate * rate[place];
+        assert!((last[place] - expected).abs() < 1e-14, "{place}");
+        // And it is added to the command at once.
+        let own = plain.command_row(case.gains).get(place).copied().unwrap_or(0.0);
+        assert!((model.command_row(case.gains)[place] - own - expected).abs() < 1e-14, "{place}");
+    }
 }
 
 /// 10 000 samples used to be a matrix of 800 MB, whose eigenvalues nobody waits for.
