@@ -74,12 +74,11 @@ impl Cluster {
 
 /// Refuses a Python that has no package fspid.
 pub(super) fn check_package(python: &str, engine: &str) -> Result<(), Failure> {
-    let install = format!("pip install 'fspid[{engine}]'");
     let mut asked = Command::new(python);
     match asked.args(["-c", "import fspid.engines"]).stderr(Stdio::null()).status() {
         Ok(status) if status.success() => Ok(()),
         Ok(_) => Err(Failure::input(format_args!(
-            "{python} has no package fspid: {install}, or name a Python that has it with --python"
+            "{python} has no package fspid: no registry has it yet; build its wheel as the guide says and install it with what `{engine}` needs (`pip install 'target/wheels/FILE.whl[{engine}]'`), or name a Python that has it with --python"
         ))),
         Err(error) => Err(Failure::input(format_args!("--python {python}: {error}"))),
     }
