@@ -27,6 +27,22 @@ const LONG: [&str; 1] = ["campaign search"];
 const CODES: [(&str, i32); 2] =
     [("aircraft trim navion --speed 60kt", 2), ("verify pitch.toml --library mine.so", 1)];
 
+/// The list that a reader of the repository sees had half of the pages.
+#[test]
+fn the_guide_lists_every_page_that_it_has_as_a_book() {
+    let page = |name: &str| {
+        let path = repository().join("docs/guide").join(name);
+        std::fs::read_to_string(path).expect("a page")
+    };
+    let (summary, readme) = (page("SUMMARY.md"), page("README.md"));
+    let entries = |text: &str| -> Vec<String> {
+        let lines = text.lines().filter(|line| line.trim_start().starts_with("- ["));
+        lines.map(str::to_owned).collect()
+    };
+    let (of_book, of_readme) = (entries(&summary), entries(&readme));
+    assert!(of_book.len() > 30 && of_readme.starts_with(&of_book), "{of_readme:#?}");
+}
+
 fn is_skipped(command: &str) -> bool {
     let is_one_of = |start: &str| command.starts_with(start);
     let is_long = LONG.into_iter().any(is_one_of);

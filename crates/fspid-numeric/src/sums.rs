@@ -1,6 +1,6 @@
 //! Weighted sums of long vectors, with the widest instructions of the machine.
 //!
-//! Every number of a sum is added up in the order of its terms, and magnitudes in [`LANES`] sums side by side: the same bits
+//! Every number of a sum is added up in the order of its terms, and magnitudes in eight sums side by side: the same bits
 //! whatever the instructions.
 
 #[cfg(feature = "simd")]
@@ -10,7 +10,7 @@ use fearless_simd::dispatch;
 use crate::InstructionSet;
 
 /// Magnitudes that are summed side by side: one sum would wait for each of its terms.
-pub const LANES: usize = 8;
+const LANES: usize = 8;
 /// Numbers of a sum that are made together, term after term, so that none is written before it is whole.
 const BLOCK: usize = 4 * LANES;
 

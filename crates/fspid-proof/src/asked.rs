@@ -5,7 +5,7 @@
 //! beside the verdict that they leave it out.
 
 use fspid_sim::sensor::{Sensor, SensorModel};
-use fspid_sim::{Autopilot, LinearPlant, Plant, Rest, Scenario, Steady, Surroundings, Weather};
+use fspid_sim::{LinearPlant, Plant, Rest, Scenario, Steady, Surroundings, Weather};
 
 use crate::description::LoopDescription;
 use crate::scope::{Asked, LeftOut, Range};
@@ -19,8 +19,8 @@ impl Asked {
         // The bias of the actuator is the description's.
         let steady = Steady { bias_rad: 0.0, ..scenario.steady() };
         // Of gains that move what outer loops command counts as well.
-        let commanded = scenario.autopilot.as_ref().and_then(Autopilot::pitch_rad);
-        let commanded_rad = commanded
+        let commanded_rad = scenario
+            .commanded_rad()
             .filter(|_| Rest::depends_on_what_is_held(scenario, &description.controller))
             .map_or(0.0, |[least, most]| least.abs().max(most.abs()));
         let range = Range {

@@ -153,6 +153,13 @@ pub struct Undecided {
     pub doubt: Doubt,
 }
 
+impl Undecided {
+    /// Of something that is no loop of a plant at rest.
+    fn beyond(doubt: Doubt) -> Self {
+        Self { spectral_radius: f64::NAN, at: RestPoint::TRIM, doubt }
+    }
+}
+
 /// Asks each plant that lasts at every rest of the scenario, with the gains that the controller has with everything at
 /// zero: what [`Stand`] says of each. A nonlinear aircraft is judged by its linear model around the trim, and where it has an
 /// autopilot by its small motions with everything that each mode engages ([`mode_poles`]).
@@ -171,12 +178,8 @@ pub fn growth_at_rest(
     let aircraft = scenario.plant.aircraft();
     let trimmed = aircraft.map(AircraftPlant::lasting).transpose()?.unwrap_or_default();
     let mut found = GrowthAtRest::default();
-    let of_change = |found: &mut GrowthAtRest| {
-        let (at, doubt) = (RestPoint::TRIM, Doubt::ChangedAircraft);
-        found.undecided.get_or_insert(Undecided { spectral_radius: f64::NAN, at, doubt });
-    };
     if trimmed.iter().any(|(_, plant)| plant.is_none()) {
-        of_change(&mut found);
+        found.undecided = Some(Undecided::beyond(Doubt::ChangedAircraft));
     }
     let around_trim = trimmed.iter().filter_map(|(from_s, plant)| Some((*from_s, plant.as_ref()?)));
     for (from_s, plant) in around_trim.chain(scenario.lasting_plants()) {
@@ -197,29 +200,35 @@ pub fn growth_at_rest(
             }
         }
     }
-    if aircraft.is_some_and(|aircraft| aircraft.changing().fuel().is_some()) {
-        let empty = aircraft.and_then(AircraftPlant::without_fuel);
-        let holds = |plant: &LinearPlant| -> Result<bool, SimError> {
-            let sampled = SampledPlant::of(scenario, plant)?;
-            let rests = Rest::all(scenario, plant, controller, gains).into_iter();
-            let mut stands = rests.map(|rest| rest.stand(scenario, &sampled, controller));
-            stands.try_fold(true, |all, stand| Ok(all && stand? == Stand::Holds))
-        };
-        if !empty.as_ref().map(holds).transpose()?.unwrap_or(false) {
-            of_change(&mut found);
+    if let Some(fuelled) = aircraft.filter(|aircraft| aircraft.changing().fuel().is_some()) {
+        let empty = fuelled.without_fuel();
+        let holds = empty.map(|plant| holds(scenario, &plant, controller, gains)).transpose()?;
+        if holds != Some(true) {
+            found.undecided.get_or_insert(Undecided::beyond(Doubt::ChangedAircraft));
         }
     }
     match growing_mode(scenario, controller, gains) {
         Ok(None) => {}
         Ok(certain) => return Ok(GrowthAtRest { certain, undecided: None }),
         Err(SimError::LongWay { .. }) => {
-            let doubt = Doubt::LongMode;
-            let undecided = Undecided { spectral_radius: f64::NAN, at: RestPoint::TRIM, doubt };
-            found.undecided.get_or_insert(undecided);
+            found.undecided.get_or_insert(Undecided::beyond(Doubt::LongMode));
         }
         Err(error) => return Err(error),
     }
     Ok(found)
+}
+
+/// True where every rest of a plant is shown to hold.
+fn holds(
+    scenario: &Scenario,
+    plant: &LinearPlant,
+    controller: &Controller,
+    gains: Gains<f64>,
+) -> Result<bool, SimError> {
+    let sampled = SampledPlant::of(scenario, plant)?;
+    let rests = Rest::all(scenario, plant, controller, gains).into_iter();
+    let mut stands = rests.map(|rest| rest.stand(scenario, &sampled, controller));
+    stands.try_fold(true, |all, stand| Ok(all && stand? == Stand::Holds))
 }
 
 /// Up to this spectral radius a mode of an autopilot grows nothing: above 1 by the error of the differences that found it,

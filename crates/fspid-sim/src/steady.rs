@@ -47,6 +47,15 @@ impl Scenario {
         Steady { setpoint_rad, ..self.steady_where(stays) }
     }
 
+    /// Least and largest set-point that the pitch loop can be given where the autopilot's modes move pitch, rad from the trim:
+    /// what they command is added to the scenario's own.
+    #[must_use]
+    pub fn commanded_rad(&self) -> Option<[f64; 2]> {
+        let [lower, upper] = self.autopilot.as_ref()?.pitch_rad()?;
+        let [least, most] = self.setpoint.ends_rad();
+        Some([least + lower, most + upper])
+    }
+
     fn steady_where(&self, counts: impl Fn(&Shape) -> bool + Copy) -> Steady {
         let biased = |sensor: &Option<Sensor>| sensor.as_ref().map_or(0.0, Sensor::bias).abs();
         Steady {

@@ -159,22 +159,10 @@ fn measure(
             (Some(controller), false) => AtRest::stability(scenario, controller),
         };
         let unstable = at_rest.unstable.filter(|_| judging.stability == Stability::Analysed);
-        let (edges, pushes_s) = (prepared.edges(), scenario.pushes_s());
-        let metrics = FlightMetrics::of(&trace, edges, scenario.timing, unstable, &pushes_s);
-        let (name, range_rule) = (flyer.name().to_owned(), study.range_rule);
-        let duration_s = scenario.timing.end_s();
-        let in_moving_air = scenario.has_moving_air();
-        Ok(ControllerResult {
-            name,
-            trace,
-            metrics,
-            at_rest,
-            range_rule,
-            duration_s,
-            in_moving_air,
-        })
+        let (flown, rest) = ((trace, prepared.edges()), (at_rest, unstable));
+        ControllerResult::of(study, flyer.name(), flown, rest)
     });
-    let results: Vec<ControllerResult> = results.collect::<Result<_, SimError>>()?;
+    let results: Vec<ControllerResult> = results.collect();
     let judgements = judge(study, &results);
     let flights = results.into_iter().map(|result| {
         let concerns = |judgement: &&Judgement| {

@@ -4,7 +4,6 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use fspid::sim::{InFlight, Outcome, Prepared, Trace};
 use fspid::study::analysis::AtRest;
-use fspid::study::metrics::FlightMetrics;
 use fspid::study::simulation::{ControllerResult, Simulation};
 use pyo3::prelude::*;
 
@@ -109,23 +108,12 @@ impl Now {
 
     fn flight(&self, origin: Origin) -> Flight {
         let Episode { study, prepared, .. } = &self.episode;
-        let (scenario, trace, range_rule) = (&study.scenario, self.trace.clone(), study.range_rule);
-        let (timing, pushes_s) = (scenario.timing, scenario.pushes_s());
-        let metrics = FlightMetrics::of(&trace, prepared.edges(), timing, None, &pushes_s);
-        let result = ControllerResult {
-            name: NAME.to_owned(),
-            trace,
-            metrics,
-            at_rest: AtRest::unknown(),
-            range_rule,
-            duration_s: timing.end_s(),
-            in_moving_air: scenario.has_moving_air(),
-        };
+        let (flown, rest) = ((self.trace.clone(), prepared.edges()), (AtRest::unknown(), None));
         let simulation = Simulation {
-            scenario: scenario.name.clone(),
-            results: vec![result],
+            scenario: study.scenario.name.clone(),
+            results: vec![ControllerResult::of(study, NAME, flown, rest)],
             judgements: Vec::new(),
-            range_rule,
+            range_rule: study.range_rule,
             failed_own_flights: Vec::new(),
         };
         Flight::new(Arc::clone(study), simulation, origin)

@@ -43,8 +43,8 @@ impl AircraftPlant {
         Ok(plants)
     }
 
-    /// The plant with its configurations as they are at last and an empty tank; nothing where no fuel is burnt or it has no
-    /// trim.
+    /// The plant with its configurations as they are at last and an empty tank; nothing where it has no trim, or nothing that
+    /// could change.
     #[must_use]
     pub fn without_fuel(&self) -> Option<LinearPlant> {
         let last_s = self.changing().ended_s().last().copied().unwrap_or(0.0);

@@ -93,32 +93,30 @@ fn still(scenario: &Scenario, autopilot: &Autopilot, mode: usize) -> Result<Prep
     still.timing = Timing::new(dt_s, samples as f64 * dt_s)?;
     let course = scenario.surroundings.weather.as_ref().map(|weather| weather.course);
     let calm = |course| Weather { course, winds: Vec::new(), turbulence: None };
-    let around_rest = |sensor: Option<Sensor>| sensor.map(|it| it.around_rest(dt_s)).transpose();
+    let around_rest = |sensor: Option<Sensor>| sensor.map(|it| it.around_rest(dt_s));
     // A scale would move the trim of what is not counted from it.
-    let late = |sensor: Option<Sensor>| -> Result<Option<Sensor>, SimError> {
-        around_rest(sensor)?.map(Sensor::without_scale).transpose()
-    };
+    let late = |sensor: Option<Sensor>| around_rest(sensor).map(Sensor::without_scale);
     let Surroundings { pitch_sensor, rate_sensor, .. } = scenario.surroundings;
     still.surroundings = Surroundings {
         weather: course.map(calm),
-        pitch_sensor: around_rest(pitch_sensor)?,
-        rate_sensor: around_rest(rate_sensor)?,
+        pitch_sensor: around_rest(pitch_sensor),
+        rate_sensor: around_rest(rate_sensor),
     };
     let beam = autopilot.glide_slope().zip(scenario.plant.aircraft()).map(|(beam, plant)| {
         let (sine, cosine) = crate::math::sin_cos(beam.course_rad);
-        Ok::<_, SimError>(GlideSlope {
+        GlideSlope {
             angle_rad: 0.0,
             antenna_m: [FAR_M * cosine, FAR_M * sine],
             altitude_m: plant.trim().target.altitude_m,
-            angle_sensor: late(beam.angle_sensor)?,
-            range_sensor: late(beam.range_sensor)?,
+            angle_sensor: late(beam.angle_sensor),
+            range_sensor: late(beam.range_sensor),
             ..*beam
-        })
+        }
     });
     let loops = autopilot.loops().iter().map(|outer| {
         let gains = at_rest(&outer.controller);
         let controller = unlimited(&outer.controller, gains)?;
-        Ok(OuterLoop { controller, sensor: late(outer.sensor)?, ..outer.clone() })
+        Ok(OuterLoop { controller, sensor: late(outer.sensor), ..outer.clone() })
     });
     let loops = loops.collect::<Result<Vec<_>, SimError>>()?;
     let energy = autopilot.total_energy().map(|total| {
@@ -135,7 +133,7 @@ fn still(scenario: &Scenario, autopilot: &Autopilot, mode: usize) -> Result<Prep
         ..mode.clone()
     });
     let modes = alone.into_iter().collect();
-    still.autopilot = Some(Autopilot::new(loops, energy.transpose()?, beam.transpose()?, modes)?);
+    still.autopilot = Some(Autopilot::new(loops, energy.transpose()?, beam, modes)?);
     still.prepare()
 }
 

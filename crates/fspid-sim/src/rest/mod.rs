@@ -34,7 +34,6 @@ mod tests;
 
 use fspid_core::{ErrorSign, Fspid, GainLimits, Gains, IntegralForm, Law, PidConfig, SecondInput};
 
-use crate::autopilot::Autopilot;
 use crate::controller::Controller;
 use crate::error::SimError;
 use crate::loop_model::{Gathered, LoopModel, LoopSettings, Memory, SampledPlant};
@@ -174,12 +173,11 @@ impl Rest {
         let steady = scenario.resting();
         // A bias is drawn once: with its sign.
         let rate_rad_s = scenario.surroundings.rate_sensor.as_ref().map_or(0.0, Sensor::bias);
-        let is_same = is_the_same_everywhere(fspid, rate_rad_s);
         let leakage_per_s = match fspid.tuner().settings().law {
             Law::Memoryless => None,
             Law::Accumulating { leakage_per_s } => Some(leakage_per_s),
         };
-        if leakage_per_s == Some(0.0) || is_same {
+        if leakage_per_s == Some(0.0) || is_the_same_everywhere(fspid, rate_rad_s) {
             return still;
         }
         let scale = scenario.surroundings.pitch_sensor.map_or(1.0, |s| 1.0 + s.model().scale_error);
@@ -195,8 +193,8 @@ impl Rest {
         let loads = either_way(steady.load_with_offsets_rad(plant, &config));
         let own = held.setpoints(&steady).into_iter().chain(scenario.setpoint.held_rad());
         let own = own.map(|setpoint_rad| (setpoint_rad, false));
-        let commanded = scenario.autopilot.as_ref().and_then(Autopilot::pitch_rad);
-        let commanded = commanded.into_iter().flatten().map(|setpoint_rad| (setpoint_rad, true));
+        let commanded = scenario.commanded_rad().into_iter().flatten();
+        let commanded = commanded.map(|setpoint_rad| (setpoint_rad, true));
         let mut found: Vec<Self> = Vec::new();
         for (setpoint_rad, is_only_commanded) in own.chain(commanded) {
             for &load_rad in &loads {

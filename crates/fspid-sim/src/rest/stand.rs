@@ -70,6 +70,14 @@ pub enum Doubt {
     ChangedAircraft,
 }
 
+impl Doubt {
+    /// True for what is no loop of a plant at rest: a set-point that is held says nothing of it.
+    #[must_use]
+    pub fn is_beyond_the_loop(self) -> bool {
+        matches!(self, Self::LongMode | Self::ChangedAircraft)
+    }
+}
+
 /// The loop of one side: stable, unstable, or neither for all that is known.
 #[derive(Clone, Copy)]
 enum Found {

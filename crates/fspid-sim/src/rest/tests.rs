@@ -8,7 +8,7 @@ use fspid_core::{
 };
 use fspid_fuzzy::{Defuzzifier, OutOfRange, Supervisor};
 
-use super::{Holding, RestPoint, slopes};
+use super::{Holding, RestPoint, Side, slopes};
 
 const DT_S: f64 = 0.02;
 const RANGE: f64 = 5.0;
@@ -73,6 +73,29 @@ fn controller(dice: &mut Dice) -> Fspid<f64> {
     Fspid::new(tuner, config).expect("allowed")
 }
 
+/// A sample beside rest.
+struct Moved {
+    error_rad: f64,
+    last_error_rad: f64,
+    rate_off_rad_s: f64,
+}
+
+impl Moved {
+    /// What the linear loop on a side adds to the command there.
+    fn command_rad(&self, side: &Side, config: &PidConfig<f64>) -> f64 {
+        let Self { error_rad, last_error_rad, rate_off_rad_s } = *self;
+        let change_rad = error_rad - last_error_rad;
+        let by_derivative = side.gains.kd / (config.derivative.filter_s + DT_S);
+        let gathered = side.gathered.map_or(0.0, |it| {
+            it.by_error * error_rad + it.by_change * change_rad - it.by_rate * rate_off_rad_s
+        });
+        (side.gains.kp + side.gains.ki * DT_S + by_derivative) * error_rad
+            + side.change_gain * change_rad
+            - (config.rate_gain_s + side.rate_gain_s) * rate_off_rad_s
+            + gathered
+    }
+}
+
 #[test]
 fn a_held_command_adds_what_the_flown_controller_answers_beside_rest() {
     let mut dice = Dice(14);
@@ -125,14 +148,8 @@ fn a_held_command_adds_what_the_flown_controller_answers_beside_rest() {
         let direction = slopes::direction([per_error * error_rad, beside * second_seen]);
         let side = rest.sides[rest.of_direction[direction]];
         let config = fspid.config_at(gains_of(&holding, rate_rad_s));
-        let by_derivative = side.gains.kd / (config.derivative.filter_s + DT_S);
-        let expected = (side.gains.kp + side.gains.ki * DT_S + by_derivative) * error_rad
-            + side.change_gain * (error_rad - last_error_rad)
-            - (config.rate_gain_s + side.rate_gain_s) * rate_off_rad_s
-            + side.gathered.map_or(0.0, |it| {
-                it.by_error * error_rad + it.by_change * (error_rad - last_error_rad)
-                    - it.by_rate * rate_off_rad_s
-            });
+        let moved = Moved { error_rad, last_error_rad, rate_off_rad_s };
+        let expected = moved.command_rad(&side, &config);
         assert_eq!(side.gathered.map(|it| it.keeps), leakage_per_s.map(|by| 1.0 - by * DT_S));
         let found = flown.command_rad - held_rad;
         // Values near 1 are known to 10⁻¹⁶, and sides whose slopes differ by 10⁻⁴ are one.

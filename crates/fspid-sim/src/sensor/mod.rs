@@ -112,16 +112,16 @@ impl Sensor {
     }
 
     /// What small motions around rest see of it: scale and age, the largest where that changes.
-    pub(crate) fn around_rest(&self, dt_s: f64) -> Result<Self, SimError> {
-        let Sensing { samples, part, .. } = Sensing::through(Some(self), dt_s);
+    pub(crate) fn around_rest(self, dt_s: f64) -> Self {
+        let Sensing { samples, part, .. } = Sensing::through(Some(&self), dt_s);
         let delay_s = (samples as f64 + part) * dt_s;
         let SensorModel { scale_error, .. } = self.model;
-        Self::new(SensorModel { scale_error, delay_s, ..SensorModel::default() }, 0, self.channel)
+        Self { model: SensorModel { scale_error, delay_s, ..SensorModel::default() }, ..self }
     }
 
     /// The same without an error of its scale.
-    pub(crate) fn without_scale(self) -> Result<Self, SimError> {
-        Self::new(SensorModel { scale_error: 0.0, ..self.model }, self.seed, self.channel)
+    pub(crate) fn without_scale(self) -> Self {
+        Self { model: SensorModel { scale_error: 0.0, ..self.model }, ..self }
     }
 
     /// The bias of this sensor, drawn from its seed, unit.

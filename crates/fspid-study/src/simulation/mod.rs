@@ -12,6 +12,7 @@ pub(crate) use json::own_flight;
 pub use words::WRONG_WAY;
 
 use fspid_lti::LtiError;
+use fspid_sim::signal::Edge;
 use fspid_sim::stability::{Unstable, instability};
 use fspid_sim::{
     Controller, Flyer, NamedController, RestPoint, Scenario, SimError, Trace, simulate,
@@ -43,6 +44,27 @@ pub struct ControllerResult {
 }
 
 impl ControllerResult {
+    /// A flight of a study and its measures; `unstable` is what its loop at rest counts for there.
+    #[must_use]
+    pub fn of(
+        study: &Study,
+        name: &str,
+        (trace, edges): (Trace, &[Edge]),
+        (at_rest, unstable): (AtRest, Option<Unstable>),
+    ) -> Self {
+        let scenario = &study.scenario;
+        let (timing, pushes_s) = (scenario.timing, scenario.pushes_s());
+        Self {
+            name: name.to_owned(),
+            metrics: FlightMetrics::of(&trace, edges, timing, unstable, &pushes_s),
+            trace,
+            at_rest,
+            range_rule: study.range_rule,
+            duration_s: timing.end_s(),
+            in_moving_air: scenario.has_moving_air(),
+        }
+    }
+
     /// How the flight ended.
     #[must_use]
     pub fn ending(&self) -> Ending {
@@ -121,21 +143,8 @@ impl Simulation {
             .map(|(flyer, trace)| {
                 let at_rest = at_rest(scenario, flyer)?;
                 let unstable = at_rest.unstable.filter(&counts);
-                let pushes_s = scenario.pushes_s();
-                let (edges, timing) = (&flight.edges, scenario.timing);
-                let metrics = FlightMetrics::of(&trace, edges, timing, unstable, &pushes_s);
-                let (name, range_rule) = (flyer.name().to_owned(), study.range_rule);
-                let duration_s = scenario.timing.end_s();
-                let in_moving_air = scenario.has_moving_air();
-                Ok(ControllerResult {
-                    name,
-                    trace,
-                    metrics,
-                    at_rest,
-                    range_rule,
-                    duration_s,
-                    in_moving_air,
-                })
+                let (flown, rest) = ((trace, &flight.edges[..]), (at_rest, unstable));
+                Ok(ControllerResult::of(study, flyer.name(), flown, rest))
             })
             .collect::<Result<Vec<_>, SimError>>()?;
         let judgements = judge(study, &results);

@@ -69,8 +69,11 @@ impl AtRest {
     #[must_use]
     pub fn undecided_in_words(&self) -> Option<String> {
         let undecided = self.undecided?;
-        let held = held_in_words(undecided.at);
-        Some(format!("stability at rest {held}: {}", why_undecided(&undecided)))
+        let why = why_undecided(&undecided);
+        if undecided.doubt.is_beyond_the_loop() {
+            return Some(format!("stability at rest: {why}"));
+        }
+        Some(format!("stability at rest {}: {why}", held_in_words(undecided.at)))
     }
 
     /// What is said of a constant load that is not removed within the flight; none where it is, or nobody can tell.

@@ -267,8 +267,12 @@ fn a_loop_that_grows_at_a_set_point_that_outer_loops_may_command_is_undecided() 
     let words = found.at_rest.undecided_in_words().expect("undecided");
     assert!(words.contains("loops around the pitch loop may command"), "{words}");
     let narrow = ["outer_loop[0].least=-0.2", "outer_loop[0].most=0.2"];
-    let found = result(LATE, &[set.as_slice(), &narrow].concat());
-    assert_eq!(found.at_rest.undecided_in_words(), None);
+    let narrow = [set.as_slice(), &narrow].concat();
+    assert_eq!(result(LATE, &narrow).at_rest.undecided_in_words(), None);
+    // It is added to what the scenario commands.
+    let commanded = study(LATE, &[narrow.as_slice(), &["setpoint.amplitude_deg=1.0"]].concat());
+    let ends = commanded.scenario.commanded_rad().expect("it moves pitch").map(f64::to_degrees);
+    assert!((ends[0] + 0.2).abs() < 1e-9 && (ends[1] - 1.2).abs() < 1e-9, "{ends:?}");
 }
 
 const FLAPS: &str = r#"
@@ -318,7 +322,15 @@ fn the_aircraft_is_asked_with_the_configuration_that_it_comes_to() {
         &["configuration[0].pitch.alpha=0.0", "configuration[0].lift.reference=-9.0"],
     );
     let words = lost.at_rest.undecided_in_words().expect("undecided");
-    assert!(words.contains("no trim"), "{words}");
+    assert!(words.starts_with("stability at rest: undecided: with its configuration"), "{words}");
+    // What cannot be asked of all that flies is not called certified, nor stable.
+    let required = FLAPS.to_owned()
+        + "[[requirement]]\nmeasure = \"stable\"\n[[requirement]]\nmeasure = \"certified\"\n";
+    let set = ["configuration[0].pitch.alpha=0.0", "configuration[0].lift.reference=-9.0"];
+    let found = Simulation::of(&study(&required, &set)).expect("it flies");
+    assert!(found.judgements.iter().all(|it| !it.met), "{:?}", found.judgements);
+    let held = Simulation::of(&study(&required, &set[..1])).expect("it flies");
+    assert!(held.judgements.iter().all(|it| it.met), "{:?}", held.judgements);
 }
 
 /// Fuel that is burnt ahead of the centre of gravity takes the static stability away.

@@ -14,7 +14,8 @@ use fspid_scenario::measure::{Family, Measure};
 use fspid_scenario::requirement::{Air, Conditions, Requirement};
 use fspid_scenario::units::degrees;
 
-/// Of the time that it took to settle so much has to be flown after it, to call it settled.
+/// Of the time that it took to settle so much has to be flown after it, to call it settled. A choice: what leaves its band more
+/// slowly is a matter of the loop at rest, which is asked for itself.
 const STAYS: f64 = 0.1;
 
 /// Cases of a measure of a flight.

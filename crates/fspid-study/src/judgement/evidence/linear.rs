@@ -1,7 +1,7 @@
 //! The linear loops of a controller: one for each plant that lasts.
 
 use fspid_lti::Mode;
-use fspid_sim::{Doubt, NamedController, RestPoint, Scenario, SimError};
+use fspid_sim::{NamedController, RestPoint, Scenario, SimError};
 
 use crate::analysis::{
     Analysis, Margins, PlantLoop, Question, RestLoop, decibels, held_at_rest, why_undecided,
@@ -102,12 +102,8 @@ pub(super) fn cases(
     let mut cases = Vec::new();
     if requirement.measure == Measure::Stable {
         cases.extend(diverged(result).into_iter().chain(growing_mode(result)));
-        let beyond_loops = result
-            .at_rest
-            .undecided
-            .filter(|it| matches!(it.doubt, Doubt::LongMode | Doubt::ChangedAircraft));
-        if let Some(undecided) = beyond_loops.filter(|_| cases.is_empty()) {
-            return Err(NotEvaluated::Absent(why_undecided(&undecided)));
+        if cases.is_empty() {
+            require_decided(result)?;
         }
     }
     cases.extend(rest_cases(loops, requirement)?);
@@ -136,6 +132,12 @@ fn diverged(result: &ControllerResult) -> Option<Case> {
         | fspid_sim::Outcome::ControllerLost { .. }
         | fspid_sim::Outcome::PlantLost { .. } => None,
     }
+}
+
+/// Refuses a flight of which it is not known whether what is no loop of a plant holds: an aircraft of later, a long mode.
+pub(super) fn require_decided(result: &ControllerResult) -> Result<(), NotEvaluated> {
+    let beyond = result.at_rest.undecided.filter(|it| it.doubt.is_beyond_the_loop());
+    beyond.map_or(Ok(()), |undecided| Err(NotEvaluated::Absent(why_undecided(&undecided))))
 }
 
 /// An autopilot's mode that grows is part of no loop with a plant.

@@ -111,7 +111,10 @@ impl<'a> Evidence<'a> {
                 frozen::cases(self.mapped()?, requirement)
             }
             Family::Airframe => airframe::cases(self.study, requirement),
-            Family::Proof => proof::cases(self.study, self.named()?),
+            Family::Proof => {
+                linear::require_decided(self.result)?;
+                proof::cases(self.study, self.named()?)
+            }
         }
     }
 
