@@ -43,7 +43,7 @@ impl Drawn {
 }
 
 /// Everything that is bad.
-pub(crate) const FAMILIES: [fn(&mut Drawn) -> Bad; 8] = [
+pub(crate) const FAMILIES: [fn(&mut Drawn) -> Bad; 9] = [
     late_integrator,
     late_sensor,
     slow_growth,
@@ -51,6 +51,7 @@ pub(crate) const FAMILIES: [fn(&mut Drawn) -> Bad; 8] = [
     integral_of_the_wrong_sign,
     plant_of_the_wrong_sign,
     self_tuner_without_integral,
+    held_command,
     ground,
 ];
 
@@ -238,6 +239,95 @@ fn self_tuner_without_integral(drawn: &mut Drawn) -> Bad {
     );
     let (plant, dt_s) = (plant(&[b], &[1.0, -sigma]), drawn.size(-2.5, -1.0));
     Loop { plant, actuator: String::new(), dt_s, controller }.bad("self-tuner without integral")
+}
+
+/// A self-tuner on $1/s$ whose kp, or whose ki of a literal integral, follows the error, at once or leaking:
+/// $\Delta_k = \rho \Delta_{k-1} + \sigma e_k$ with $\sigma$ per rad.
+struct Following {
+    dt_s: f64,
+    kp: f64,
+    ki: f64,
+    /// What a gain keeps from sample to sample; 0 without memory.
+    kept: f64,
+}
+
+impl Following {
+    fn drawn(drawn: &mut Drawn) -> Self {
+        let dt_s = drawn.size(-2.5, -1.0);
+        let kp = drawn.size(-0.5, 0.5);
+        let kept = [0.0, drawn.unit()][drawn.below(3).min(1) as usize];
+        Self { dt_s, kp, ki: kp * kp * drawn.size(-2.0, -0.5), kept }
+    }
+
+    /// The least $G$ that makes the loop grow. A held part H of the command, $(b - 1) r$ of the proportional term or the sum
+    /// $T \sum e$ that carries a load, moves with its gain: with $G = -\sigma H$ small motions have
+    ///
+    /// $(z - 1)^2 (z - \rho) + T (k_p (z - 1)(z - \rho) + k_i T z (z - \rho) - G z (z - 1)) = 0,$
+    ///
+    /// $z^3 + a_2 z^2 + a_1 z + a_0$ with $a_2 = c_2 - T G$ and $a_1 = c_1 + T G$, and a cubic whose roots are all within the
+    /// unit circle has $|a_1 - a_0 a_2| < 1 - a_0^2$ (E. I. Jury, J. Blanchard, Proc. IRE 49 (1961) 1947).
+    fn limit(&self) -> f64 {
+        let Self { dt_s, kp, ki, kept } = *self;
+        let [proportional, integral] = [kp * dt_s, ki * dt_s * dt_s];
+        let c2 = proportional + integral - 2.0 - kept;
+        let c1 = 1.0 + 2.0 * kept - proportional * (1.0 + kept) - integral * kept;
+        let a0 = kept * (proportional - 1.0);
+        (1.0 - a0 * a0 - c1 + a0 * c2) / (dt_s * (1.0 + a0))
+    }
+
+    /// The loop at this share of the limit.
+    fn at(&self, share: f64, drawn: &mut Drawn) -> Bad {
+        let Self { dt_s, kp, ki, kept } = *self;
+        let held_deg = drawn.size(-0.3, 1.0);
+        let literal = drawn.below(2) == 1;
+        let per_deg = share * self.limit() / held_deg;
+        // Under a load d the sum is -d / ki.
+        let [of_kp, of_ki] = if literal { [0.0, per_deg * ki] } else { [per_deg, 0.0] };
+        let (law, per_sample) = match kept == 0.0 {
+            true => ("law = \"memoryless\"\n".to_owned(), 1.0),
+            false => (
+                format!("law = \"accumulating\"\nleakage_per_s = {:?}\n", (1.0 - kept) / dt_s),
+                dt_s,
+            ),
+        };
+        let held = match literal {
+            true => "integral = \"literal\"\n".to_owned(),
+            false => format!("setpoint_weights = {{ proportional = 0.0 }}\n{}", limits(drawn)),
+        };
+        // Rows of numbers from -1 at an error of -5 to 1 at 5.
+        let rows = |scale: f64| {
+            let row = |i: i32| format!("{:?}", [scale * f64::from(i - 3) / 3.0; 7]);
+            format!("[{}]", (0..7).map(row).collect::<Vec<_>>().join(", "))
+        };
+        let [numbers, still] = [rows(1.0), rows(0.0)];
+        let scales = [5.0 * of_kp / per_sample, 5.0 * of_ki / per_sample];
+        let controller = format!(
+            "kind = \"fspid\"\n{law}nominal = {{ kp = {kp:?}, ki = {ki:?}, kd = 0.0 }}\n{held}supervisor = {{ numbers = {{ delta_kp = {numbers}, delta_ki = {numbers}, delta_kd = {still} }}, range = 5.0, error_scale = 1.0, change_scale = 1.0, output_scale = {{ kp = {:?}, ki = {:?}, kd = 0.0 }} }}\n",
+            scales[0], scales[1]
+        );
+        let plant = plant(&[1.0], &[1.0, 0.0]);
+        let mut found =
+            Loop { plant, actuator: String::new(), dt_s, controller }.bad("held command");
+        let [setpoint, load] = if literal { [0.0, held_deg] } else { [held_deg, 0.0] };
+        found.text =
+            found.text.replace("amplitude_deg = 1.0", &format!("amplitude_deg = {setpoint:?}"));
+        found.text += &format!(
+            "[[disturbance]]\nenters_at = \"servo\"\nkind = \"step\"\namplitude_deg = {load:?}\n"
+        );
+        found
+    }
+}
+
+fn held_command(drawn: &mut Drawn) -> Bad {
+    let beyond = 1.0 + beyond(drawn);
+    Following::drawn(drawn).at(beyond, drawn)
+}
+
+/// The same within its limit, which holds.
+#[cfg(test)]
+pub(crate) fn held_command_within(drawn: &mut Drawn) -> Bad {
+    let within = 1.0 - drawn.size(-5.0, -0.5);
+    Following::drawn(drawn).at(within, drawn)
 }
 
 /// An aircraft that is told to descend where there is no room: 10 deg below its path for half a minute from 100 ft.

@@ -141,6 +141,19 @@ mod tests {
         assert!(20 * found.undecided < found.verdicts, "{} {}", found.undecided, found.verdicts);
     }
 
+    /// The limit of what a held command may do to its gains is the closed form's, from both sides: else the family beyond it
+    /// would tell nothing.
+    #[test]
+    fn held_commands_within_the_limit_of_the_closed_form_are_stable() {
+        for number in 0..40 {
+            let within = bad::held_command_within(&mut Drawn(number));
+            let study = file::parse(&within.text, "good.toml", None, &[]).expect("allowed");
+            let flown = Simulation::of(&study).expect("it flies");
+            let at_rest = &flown.results[0].at_rest;
+            assert_eq!(at_rest.stability_word(), Some("stable"), "{}", within.text);
+        }
+    }
+
     /// The same questions of a loop that holds, or they would find nothing bad.
     #[test]
     fn a_good_loop_is_called_good_by_everybody() {
