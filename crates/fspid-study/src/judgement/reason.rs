@@ -107,6 +107,19 @@ pub enum NotEvaluated {
     /// No mode of the loop has a frequency that counts.
     #[error("no mode of the loop has a frequency that counts")]
     NoMode,
+    /// A sampled loop says nothing of the frequencies that count.
+    #[error(
+        "nothing from {} Hz on can be asked of a loop that is sampled {} times a second: its margins end at {} Hz, half of that. Sample faster, or show by other means what faster motions do",
+        to_digits(*from_hz, 6),
+        to_digits(2.0 * *ends_hz, 6),
+        to_digits(*ends_hz, 6)
+    )]
+    BeyondSampling {
+        /// Where the band starts, Hz.
+        from_hz: f64,
+        /// Half the sample rate, Hz.
+        ends_hz: f64,
+    },
     /// The gain of the loop is 1 at no frequency.
     #[error("the gain of the loop is 1 at no frequency")]
     NoCrossover,

@@ -249,6 +249,21 @@ fn a_loop_whose_gain_is_nowhere_one_has_no_crossover() {
     assert!(phase.met && phase.value_in_words() == "without end");
 }
 
+/// A band above half the sample rate has no crossing, which was taken for a margin without end.
+#[test]
+fn what_is_faster_than_the_samples_has_no_margin_that_could_be_met() {
+    for measure in ["phase_margin_deg", "gain_margin_db", "gain_margin_high_db"] {
+        let found = |from_hz: &str| {
+            let asked = format!("measure = \"{measure}\"\nleast = 6.0\nfrom_hz = {from_hz}");
+            of("P", &asked, &["loop.sample_period_s=0.05", "loop.duration_s=1.0"])
+        };
+        let beyond = NotEvaluated::BeyondSampling { from_hz: 10.0, ends_hz: 10.0 };
+        assert!(found("9.99").met);
+        let refused = found("10.0");
+        assert_eq!((refused.met, refused.found), (false, Err(beyond)));
+    }
+}
+
 /// A proof is a requirement.
 #[test]
 fn a_loop_that_is_proved_meets_it_and_one_that_grows_standing_still_does_not() {

@@ -156,6 +156,7 @@ fn of_rest(
         return stable(rest, place);
     }
     let margins = rest.margins.map_err(|reason| with_place(reason, place))?;
+    require_sampled(rest, requirement)?;
     match requirement.measure {
         Measure::ModeDamping => mode_damping(rest, place, requirement),
         Measure::PhaseMargin if requirement.conditions.has_band() => {
@@ -209,6 +210,15 @@ pub(super) fn of_margins(measure: Measure, margins: &Margins) -> (f64, Option<f6
         }
         // The phase margin, and nothing else comes here.
         _ => (margins.phase_margin_deg, margins.gain_crossover_rad_s),
+    }
+}
+
+/// Refuses a band that starts at or beyond half the sample rate: no frequency of the loop is in it, which is no margin.
+fn require_sampled(rest: &RestLoop, requirement: &Requirement) -> Result<(), NotEvaluated> {
+    let ends_hz = 0.5 / rest.open.dt_s();
+    match requirement.conditions.from_hz.filter(|from_hz| *from_hz >= ends_hz) {
+        Some(from_hz) => Err(NotEvaluated::BeyondSampling { from_hz, ends_hz }),
+        None => Ok(()),
     }
 }
 
