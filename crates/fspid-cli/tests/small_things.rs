@@ -350,6 +350,20 @@ fn a_file_that_is_no_scenario_is_called_what_it_is() {
         }
         std::fs::remove_file(folder.join("x.toml")).expect("it is there");
     }
+    let data = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data");
+    for (file, what) in [
+        ("aircraft/navion.toml", "an aircraft"),
+        ("plants/b747-paper.toml", "a plant"),
+        ("requirements/rvsm.toml", "a set of requirements"),
+    ] {
+        let path = data.join(file).display().to_string();
+        for command in ["check", "simulate"] {
+            let output = fspid(&[command, &path], folder);
+            let told = text(&output.stderr);
+            assert!(code(&output) == 2 && told.lines().count() < 4, "{command} {file}: {told}");
+            assert!(told.contains(&format!("this is {what}, and not a scenario")), "{told}");
+        }
+    }
 }
 
 #[test]

@@ -21,6 +21,7 @@ mod changed_text;
 mod dispersion;
 mod extra;
 pub(crate) mod files;
+mod kind;
 mod overrides;
 mod paths;
 mod preset;
@@ -303,6 +304,14 @@ fn read(
     Some((built, setting::settings(files, &section), marks))
 }
 
+/// Tells of a file of another kind what it is, and nothing of keys that it cannot have.
+fn not_a_scenario<T>(report: &mut Report, what: &str, allowed: &str) -> Option<T> {
+    let source = report.add_source(None, "");
+    let place = Span { source, start: 0, end: 0 };
+    report.missing(place, "", format!("this is {what}, and not a scenario"), allowed);
+    None
+}
+
 /// The document with what comes from outside, and the marks that were in it.
 fn changed_document(
     report: &mut Report,
@@ -317,13 +326,13 @@ fn changed_document(
         return None;
     }
     if let Some(what) = other_kind(text) {
-        let source = report.add_source(None, "");
-        let place = Span { source, start: 0, end: 0 };
         let allowed = "a scenario; `check` and `infer` read fuzzy systems and rule tables";
-        report.missing(place, "", format!("this is {what}, and not a scenario"), allowed);
-        return None;
+        return not_a_scenario(report, what, allowed);
     }
     let mut document = document::read(report, None, text)?;
+    if let Some((what, allowed)) = kind::other(&document) {
+        return not_a_scenario(report, what, allowed);
+    }
     renamed::in_item(report, &mut document, &mut Vec::new());
     overrides::apply_listed(report, files, &mut document);
     for text in extra.overrides {

@@ -3,6 +3,7 @@
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use super::syntax;
 use fspid_diagnostics::{Report, Span};
 
 /// Largest file, in bytes.
@@ -138,22 +139,8 @@ fn report_syntax<T>(
     error: &toml::de::Error,
 ) -> Option<T> {
     let span = error.span().unwrap_or(0..0);
-    let message = if error.message().starts_with("duplicate key") {
-        "this key or table is here twice".to_owned()
-    } else if is_decimal_comma(text, span.start) {
-        "not TOML: a number with a comma; its decimal sign is a point".to_owned()
-    } else {
-        format!("not TOML: {}", error.message().replace('\n', ", "))
-    };
-    report.line(place(source, span), message);
+    report.line(place(source, span), syntax::reason(text, error));
     None
-}
-
-/// True for the comma of `10,5`, where the number should have ended.
-fn is_decimal_comma(text: &str, at: usize) -> bool {
-    let around = at.checked_sub(1).and_then(|begin| text.get(begin..at + 2));
-    matches!(around.map(str::as_bytes), Some([before, b',', after])
-        if before.is_ascii_digit() && after.is_ascii_digit())
 }
 
 /// Refuses what could overwhelm the parser: NUL, and nesting without end.

@@ -13,6 +13,7 @@ mod key;
 mod kind;
 pub(crate) mod schema;
 mod section;
+mod syntax;
 mod table;
 pub(crate) mod word;
 

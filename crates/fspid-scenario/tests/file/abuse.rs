@@ -65,10 +65,11 @@ fn a_byte_order_mark_and_carriage_returns_change_nothing() {
 }
 
 #[test]
-fn an_empty_file_and_a_file_of_something_else_say_what_is_missing() {
+fn an_empty_file_is_called_empty_and_a_file_of_something_else_says_what_is_wrong() {
     for text in ["", "\n\n", "# nothing", "\u{feff}"] {
         let found = problems(text);
-        assert_eq!(found.list.len(), 6, "{found}");
+        assert_eq!(found.list.len(), 1, "{found}");
+        assert!(found.to_string().contains("this is an empty file, and not a scenario"), "{found}");
     }
     for text in [
         "{\"schema\": 1}",

@@ -1,0 +1,144 @@
+//! Why a line is no TOML, in the words of who wrote it.
+
+use toml::de::Error;
+
+/// What is wrong where the parser stopped.
+pub(super) fn reason(text: &str, error: &Error) -> String {
+    if error.message().starts_with("duplicate key") {
+        return "this key or table is here twice".to_owned();
+    }
+    let at = error.span().map_or(0, |span| span.start);
+    let message = match slip(text, at) {
+        Some(slip) => slip.to_owned(),
+        None => error.message().replace('\n', ", "),
+    };
+    format!("not TOML: {message}")
+}
+
+/// The mistakes that are made again and again, for which the parser's words name a remedy that is none.
+fn slip(text: &str, at: usize) -> Option<&'static str> {
+    if is_decimal_comma(text, at) {
+        return Some("a number with a comma; its decimal sign is a point");
+    }
+    let line = line_at(text, at);
+    let Some((key, value)) = line.split_once('=') else {
+        let is_colon = line.split_once(':').is_some_and(|(key, _)| is_bare(key.trim()));
+        // Without either it may be the value of a `--set`, or of a list over several lines.
+        let colon = is_colon.then_some("a key and its value have `=` between them");
+        return colon.or_else(|| of_value(line.trim()).filter(|_| !line.trim().is_empty()));
+    };
+    let value = value.split('#').next().unwrap_or("").trim();
+    if !key.trim().split('.').all(|part| is_bare(part.trim())) {
+        return None;
+    }
+    of_value(value)
+}
+
+fn of_value(value: &str) -> Option<&'static str> {
+    let rest = value.trim_start_matches(['+', '-']);
+    let after = rest.trim_start_matches(|c: char| c.is_ascii_digit() || c == '.');
+    let starts_with_digit = rest.starts_with(|c: char| c.is_ascii_digit());
+    if value.is_empty() {
+        Some("nothing stands after `=`; here a value belongs")
+    } else if matches!(value, "True" | "TRUE" | "False" | "FALSE") {
+        Some("true and false are written in small letters")
+    } else if value.starts_with(['“', '”', '„', '«', '‘', '’']) {
+        Some("a text stands in straight quotes, \"…\"")
+    } else if starts_with_digit && after.trim_start().starts_with(is_of_unit) && !is_power(after) {
+        Some("a number stands alone: its unit is that of the key's name")
+    } else if starts_with_digit && after.trim_start().starts_with(['/', '*', '^']) {
+        Some("a number is written worked out")
+    } else if !after.is_empty() || !rest.contains(|c: char| c.is_ascii_digit()) {
+        None
+    } else if rest.starts_with('.') || rest.ends_with('.') {
+        Some("a number has a digit before and after its point")
+    } else if rest.starts_with('0') {
+        Some("a number starts with no zero that could be left away")
+    } else {
+        None
+    }
+}
+
+/// True for the first sign of a unit.
+fn is_of_unit(sign: char) -> bool {
+    sign.is_alphabetic() || sign == '°' || sign == '%'
+}
+
+/// True for `e3` after a number, and for one that is not written to its end.
+fn is_power(after: &str) -> bool {
+    let Some(rest) = after.strip_prefix(['e', 'E']) else {
+        return false;
+    };
+    rest.trim_start_matches(['+', '-']).chars().all(|c| c.is_ascii_digit())
+}
+
+/// True for a key that needs no quotes.
+fn is_bare(key: &str) -> bool {
+    !key.is_empty() && key.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-')
+}
+
+/// The line in which a byte lies; that of the end where it begins none.
+fn line_at(text: &str, at: usize) -> &str {
+    let head = text.get(..at.min(text.len())).unwrap_or("");
+    let head = head.strip_suffix('\n').unwrap_or(head);
+    let start = head.rfind('\n').map_or(0, |newline| newline + 1);
+    text[start..].lines().next().unwrap_or("")
+}
+
+/// True for the comma of `10,5`, where the number should have ended.
+fn is_decimal_comma(text: &str, at: usize) -> bool {
+    let around = at.checked_sub(1).and_then(|begin| text.get(begin..at + 2));
+    matches!(around.map(str::as_bytes), Some([before, b',', after])
+        if before.is_ascii_digit() && after.is_ascii_digit())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use toml::de::DeTable;
+
+    fn told(line: &str) -> String {
+        let text = format!("schema = 1\n{line}\nlast = 2\n");
+        let error = DeTable::parse(&text).expect_err("it is wrong");
+        reason(&text, &error)
+    }
+
+    #[test]
+    fn what_is_often_written_wrongly_is_told_with_its_remedy() {
+        for (line, words) in [
+            ("name =", "nothing stands after `=`"),
+            ("name = # a comment", "nothing stands after `=`"),
+            ("kp = 5 deg", "its unit is that of the key's name"),
+            ("kp = -5.5deg", "its unit is that of the key's name"),
+            ("kp = 5°", "its unit is that of the key's name"),
+            ("kp = 10 %", "its unit is that of the key's name"),
+            ("kp = 1e3 m", "its unit is that of the key's name"),
+            ("kp = 1,5", "its decimal sign is a point"),
+            ("kp = True", "in small letters"),
+            ("kp: 5", "`=` between them"),
+            ("kp = 1/2", "worked out"),
+            ("kp = .5", "before and after its point"),
+            ("kp = 5.", "before and after its point"),
+            ("kp = 05", "no zero"),
+            ("name = “x”", "straight quotes"),
+            ("name = pitch", "must be quoted"),
+            ("kp = 1e", "exponent"),
+            ("[loop", "unclosed table"),
+        ] {
+            let told = told(line);
+            assert!(told.starts_with("not TOML: ") && told.contains(words), "{line}: {told}");
+        }
+        assert_eq!(told("a = 1\na = 2"), "this key or table is here twice");
+        let error = toml::de::DeValue::parse("5 deg").expect_err("it is wrong");
+        assert!(reason("5 deg", &error).contains("its unit"), "{}", reason("5 deg", &error));
+    }
+
+    #[test]
+    fn the_last_line_without_an_end_and_signs_of_many_bytes_are_read() {
+        for text in ["kp =", "kp = 5 °", "ä: 5", "=", "\u{feff}", "kp = “"] {
+            if let Err(error) = DeTable::parse(text) {
+                assert!(!reason(text, &error).is_empty(), "{text}");
+            }
+        }
+    }
+}
