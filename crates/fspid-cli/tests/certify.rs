@@ -96,6 +96,9 @@ fn a_certificate_is_checked_alone_and_against_a_scenario() {
     let differences = answer["against"]["differences"].as_array().expect("a list");
     assert_eq!(differences.len(), 1, "{answer}");
     assert_eq!(differences[0]["path"], "controller.gains.ki");
+    let both = fspid(&["certify", text(&scenario), "--check", text(&certificate)]);
+    assert_eq!(code(&both), 2);
+    assert!(told(&both).contains("--against"), "{}", told(&both));
     let lost = fspid(&["certify", "--check", text(&certificate), "--set", "name=\"x\""]);
     assert_eq!(code(&lost), 2);
     assert!(told(&lost).contains("--against"), "{}", told(&lost));

@@ -243,6 +243,9 @@ fn an_interval_is_told_with_what_holds_on_both_sides_and_the_file_is_judged_alik
         assert_eq!(code(&refused), 2);
         assert!(text(&refused.stderr).contains(wrong), "{}", text(&refused.stderr));
     }
+    let near = fspid(&["verify", "pitch.toml", "--interval", "controller.FSPID.nominl.kp"], folder);
+    let meant = "did you mean `controller.FSPID.nominal.kp`?";
+    assert!(text(&near.stderr).contains(meant), "{}", text(&near.stderr));
     let mixed = [&asked[..], &["--set", "loop.sample_period_s=0.02"]].concat();
     let refused = fspid(&mixed, folder);
     assert_eq!(code(&refused), 2);

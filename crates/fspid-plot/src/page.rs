@@ -72,6 +72,8 @@ pub(super) enum Swatch {
     Divide,
     /// A line of the grid.
     Grid,
+    /// No sign: what is named is nowhere in the picture.
+    Nothing,
 }
 
 /// A name and the swatch that stands for it.
@@ -156,6 +158,7 @@ fn swatch(canvas: &mut Canvas, x: f64, y: f64, swatch: Swatch) {
         }
         Swatch::Sign(sign, role) => sign.draw(canvas, (x + SWATCH / 2.0, y), role),
         Swatch::Outline => canvas.line((x, y), (end, y), &Paint::line(Role::Ink, 1.7)),
+        Swatch::Nothing => {}
         Swatch::Divide => canvas.line((x, y), (end, y), &Paint::line(Role::Ink, 2.8)),
         Swatch::Grid => canvas.line((x, y), (end, y), &Paint::line(Role::Grid, 1.4)),
         Swatch::Hatched => {

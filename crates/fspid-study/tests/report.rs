@@ -203,3 +203,19 @@ fn a_report_shows_the_gains_that_fly() {
     assert!(lines[1].starts_with("P: kp 0.39"), "{lines:?}");
     assert!(lines[1].contains("schedule at a dynamic pressure of 2000.9"), "{lines:?}");
 }
+
+#[test]
+fn a_report_says_what_was_set_from_outside_of_its_file() {
+    let set = ["loop.duration_s=2.0".to_owned(), "controller.P.kp=1.0 & up".to_owned()];
+    let text = HOSTILE.replace("<img src=x onerror=alert(1)>", "P");
+    let study = file::parse(&text, "test.toml", None, &set[..1]).expect("the scenario is right");
+    let simulation = Simulation::of(&study).expect("it can be flown");
+    let page = report::of_simulation(&study, &simulation);
+    let command = "fspid simulate FILE --set loop.duration_s=2.0 --report OUT.html";
+    assert!(page.contains(command), "{command}");
+    assert!(of_flight(&text).contains("fspid simulate FILE --report OUT.html"));
+    let mut hostile = study;
+    hostile.overrides = set.to_vec();
+    let page = report::of_simulation(&hostile, &simulation);
+    assert!(page.contains("--set &#x27;controller.P.kp=1.0 &amp; up&#x27;"), "quoted and escaped");
+}

@@ -80,7 +80,7 @@ fn row(source: &Source<'_>, controller: usize, it: &MeasureSummary) -> Distribut
     }
 }
 
-/// Median and percentiles, and how many values lie beyond the picture.
+/// Median and percentiles, how many values lie beyond the bars, and how many flights have none.
 fn words(it: &MeasureSummary) -> String {
     let [low, median, high] = [0.05, 0.5, 0.95].map(|share| value_at(it, share));
     let same = it.moments.filter(|moments| moments.minimum >= moments.maximum);
@@ -93,11 +93,20 @@ fn words(it: &MeasureSummary) -> String {
         }
         _ => String::new(),
     };
-    let beyond = it.histogram.as_ref().map_or(0, |histogram| histogram.below + histogram.above);
-    for (found, what) in [(beyond, "beyond"), (it.missing + it.not_finite, "without")] {
-        if found > 0 && !(what == "without" && it.is_event) {
-            words.push_str(&format!("; {} {what}", count(found)));
+    if let Some(histogram) = &it.histogram {
+        let ends = histogram.edges.first().zip(histogram.edges.last());
+        let [low, high] = ends.map_or([f64::NAN; 2], |(low, high)| [*low, *high]);
+        for (found, side, end) in
+            [(histogram.below, "below", low), (histogram.above, "above", high)]
+        {
+            if found > 0 {
+                words.push_str(&format!("; {} {side} {} without a bar", count(found), number(end)));
+            }
         }
+    }
+    let without = it.missing + it.not_finite;
+    if without > 0 && !it.is_event {
+        words.push_str(&format!("; {} without", count(without)));
     }
     words
 }
@@ -175,4 +184,37 @@ fn numbers(it: &MeasureSummary) -> Vec<Datum> {
         extreme(it.lowest.first()),
         extreme(it.highest.first()),
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::statistics::Histogram;
+
+    #[test]
+    fn values_beyond_the_bars_are_told_with_the_ends_of_the_bars() {
+        let found = MeasureSummary {
+            name: "overshoot_pct".to_owned(),
+            unit: "%".to_owned(),
+            meaning: String::new(),
+            count: 20,
+            missing: 2,
+            not_finite: 1,
+            moments: None,
+            quantiles: Vec::new(),
+            histogram: Some(Histogram {
+                edges: vec![0.5, 1.0, 1.5],
+                counts: vec![8, 9],
+                below: 0,
+                above: 3,
+            }),
+            lowest: Vec::new(),
+            highest: Vec::new(),
+            bad: None,
+            is_event: false,
+        };
+        assert_eq!(words(&found), "; 3 above 1.5 without a bar; 3 without");
+        let quiet = MeasureSummary { is_event: true, histogram: None, ..found };
+        assert_eq!(words(&quiet), "");
+    }
 }

@@ -16,7 +16,7 @@ use fspid_study::certify::{
     self, Answer, Cases, CertificateFile, Certification, CertifiedCases, CheckedFile, Effort,
     NotWritable, Question,
 };
-use fspid_study::output;
+use fspid_study::{output, shell};
 use fspid_tune::problems_of_certified;
 
 /// Prove or refute that a self-tuning loop is stable while its gains move.
@@ -34,7 +34,7 @@ pub(crate) struct Arguments {
     #[arg(required_unless_present = "check")]
     file: Option<InFile>,
     /// Verify a certificate instead; nothing but this file is read.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["file", "controller", "out"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["controller", "out"])]
     check: Option<InFile>,
     /// Compare the certificate with what this scenario flies, field by field.
     #[arg(long, value_name = "SCENARIO", requires = "check")]
@@ -81,7 +81,11 @@ fn cases() -> impl TypedValueParser<Value = Cases> {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     match (&arguments.check, &arguments.file) {
-        (Some(path), _) => check(path, arguments),
+        (Some(_), Some(scenario)) => Err(Failure::input(format_args!(
+            "--check reads the certificate alone; `--against {}` compares it with what that scenario flies",
+            shell::word(&scenario.display().to_string())
+        ))),
+        (Some(path), None) => check(path, arguments),
         (None, Some(path)) => prove(path, arguments),
         (None, None) => Err(Failure::input("no scenario and no certificate")),
     }

@@ -130,9 +130,12 @@ impl GainMap {
             entries.push(entry("flown path".to_owned(), Swatch::Outline));
         }
         if let Some((required, what)) = &self.required {
-            let met = self.all().filter(|cell| cell.meets(*required) == Some(true)).count();
+            let is = |met: bool| move |cell: &MapCell| cell.meets(*required) == Some(met);
+            let met = self.all().filter(is(true)).count();
             let name = format!("{what} required: met at {met} of {} nodes", self.all().count());
-            entries.push(entry(name, Swatch::Divide));
+            // A line is drawn where a node that meets it has a neighbour that does not.
+            let divides = met > 0 && self.all().any(|cell| is(false)(&cell));
+            entries.push(entry(name, if divides { Swatch::Divide } else { Swatch::Nothing }));
         }
         if self.all().any(|cell| cell == MapCell::Unstable) {
             entries.push(entry("UNSTABLE with the gains frozen there".to_owned(), Swatch::Hatched));

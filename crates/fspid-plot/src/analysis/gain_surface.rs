@@ -38,7 +38,7 @@ impl GainSurface {
         let title = &self.map.title;
         // The line that divides the map is not drawn on the surface.
         let mut entries = self.map.entries();
-        entries.retain(|entry| entry.swatch != Swatch::Divide);
+        entries.retain(|entry| !matches!(entry.swatch, Swatch::Divide | Swatch::Nothing));
         let notes = Notes::set(entries, WIDTH - 2.0 * EDGE);
         let top = page::title_height(title, WIDTH);
         let mut canvas = Canvas::new(WIDTH, top + VIEW + notes.height() + EDGE);

@@ -452,6 +452,16 @@ fn a_map_counts_what_is_unstable_and_what_meets_the_requirement() {
     let words = format!("unstable at {unstable} of 40000 nodes");
     assert!(dense.render().as_str().contains(&words), "{words}");
     assert!(dense.render().as_str().contains(" of 40000 nodes<"));
+    // Where all or none is as required there is no line, and none is explained.
+    let thick = |map: &GainMap| map.render().as_str().matches("stroke-width=\"2.8\"").count();
+    assert!(thick(&map(9)) > 0);
+    for required in [-100.0, 100.0] {
+        let mut one = map(9);
+        one.cells.iter_mut().flatten().for_each(|cell| *cell = MapCell::Value(3.0));
+        one.required = Some((required, "so much".to_owned()));
+        assert_eq!(thick(&one), 0);
+        assert!(one.render().as_str().contains(">so much required: met at "));
+    }
     let mut fine = map(9);
     fine.cells[8].truncate(6);
     fine.cells[7].truncate(8);

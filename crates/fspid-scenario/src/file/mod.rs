@@ -99,6 +99,8 @@ pub struct Study {
     pub derivatives: Option<FlownDerivatives>,
     /// Everything that is set, in the order of the specification.
     pub settings: Vec<Setting>,
+    /// What was set from outside of its text, such as `controller.FSPID.nominal.kp=2.5`, in this order.
+    pub overrides: Vec<String>,
     /// Files that it refers to, as it names them.
     pub files: Vec<String>,
     /// SHA-256 of the text, the overrides and everything they refer to, in hexadecimal digits.
@@ -163,6 +165,7 @@ impl Study {
             range_rule,
             derivatives,
             settings: Vec::new(),
+            overrides: Vec::new(),
             files: Vec::new(),
             digest: String::new(),
             warnings: Vec::new(),
@@ -278,6 +281,7 @@ fn parse_keeping(
     let digest = files.finish();
     Ok(Study {
         settings,
+        overrides: extra.overrides.to_vec(),
         files: named,
         digest,
         warnings,

@@ -1,7 +1,6 @@
 //! The report of `fspid analyse`: verdicts, margins, figures.
 
-use fspid_sim::SimError;
-
+use super::command;
 use crate::analysis::figures::{
     LoopFigures, MapQuantity, gain_map, gain_surface, pole_zero, radius_figure, root_locus,
 };
@@ -14,6 +13,7 @@ use fspid_page::analysis::{
 use fspid_page::number::{fixed, significant};
 use fspid_plot::{LineFigure, LinePanel, Series, SeriesStyle, Svg};
 use fspid_scenario::file::Study;
+use fspid_sim::SimError;
 
 /// Beyond this a step response has run away.
 const RUN_AWAY: f64 = 10.0;
@@ -44,7 +44,7 @@ pub(super) fn report(study: &Study, analysis: &Analysis) -> Result<String, SimEr
         requirements: None,
         chapters,
         provenance: Provenance {
-            command: format!("fspid analyse FILE --broken-at {point} --report OUT.html"),
+            command: command("analyse", study, &format!(" --broken-at {point}")),
             digest: study.digest.clone(),
             further: Vec::new(),
         },

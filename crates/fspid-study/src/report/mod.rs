@@ -18,6 +18,7 @@ mod user;
 
 use crate::analysis::Analysis;
 use crate::fuzzy_system::Audit;
+use crate::shell;
 use crate::simulation::Simulation;
 use fspid_page::page::PageSection;
 use fspid_scenario::file::Study;
@@ -56,4 +57,11 @@ pub fn of_audit(audit: &Audit<'_>) -> String {
 /// Eigenvalues that are not found.
 pub fn of_analysis(study: &Study, analysis: &Analysis) -> Result<String, fspid_sim::SimError> {
     loops::report(study, analysis)
+}
+
+/// The command that writes a report of this study again, with everything that was set from outside of its file.
+fn command(name: &str, study: &Study, options: &str) -> String {
+    let set = |change: &String| format!(" --set {}", shell::word(change));
+    let sets: String = study.overrides.iter().map(set).collect();
+    format!("fspid {name} FILE{options}{sets} --report OUT.html")
 }

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::supervisor;
 use super::traces::{Drawing, fails, is_cut_short};
-use super::{measures, settings};
+use super::{command, measures, settings};
 use crate::metrics::Verdict;
 use crate::report::templates::render;
 use crate::simulation::{ControllerResult, Simulation};
@@ -263,6 +263,7 @@ impl User<'_> {
         let context = context! {
             part => "provenance",
             version => env!("CARGO_PKG_VERSION"),
+            command => command("simulate", self.study, ""),
             digest => self.study.digest,
         };
         PageSection::of("provenance", "Provenance", render("user", context))

@@ -122,12 +122,16 @@ fn left_out(parts: &Parts, losses: &mut Losses) {
     }
 }
 
-/// Compares the answers of the system with those of the file.
+/// Compares the answers of the system with those of the file, and notes where they differ.
 fn measured(parts: &Parts, text: &str, losses: &mut Losses) {
     let reading = super::read(text).ok();
     let points = measure::questions(parts);
     let found = reading.and_then(|reading| measure::differences(parts, &reading.parts, points));
     for (output, (largest, without)) in parts.outputs.iter().zip(found.unwrap_or_default()) {
+        // Answers that are the same are no loss.
+        if largest == 0.0 && without == 0 {
+            continue;
+        }
         let name = &output.name;
         let unanswered = if without > 0 {
             format!("; {without} are answered by only one of the two")

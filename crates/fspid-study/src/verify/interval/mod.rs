@@ -18,6 +18,7 @@ mod words;
 
 use std::path::Path;
 
+use fspid_diagnostics::nearest;
 use fspid_scenario::file::{PathRow, Problems, paths_of};
 use serde_json::{Value, json};
 
@@ -51,10 +52,12 @@ pub enum IntervalError {
     #[error(transparent)]
     Problems(Problems),
     /// Nothing is there.
-    #[error("there is no `{path}`")]
+    #[error("there is no `{path}`{}; `fspid check --paths FILE` lists what there is", meant(nearest.as_deref()))]
     NoPlace {
         /// What was asked for.
         path: String,
+        /// What was probably meant.
+        nearest: Option<String>,
     },
     /// What is there is no number.
     #[error("`{path}` is no number, so that there is no interval around it")]
@@ -88,7 +91,7 @@ pub fn interval(question: &Question<'_>) -> Result<Interval, IntervalError> {
         .map_err(IntervalError::Problems)?;
     let path = question.path.to_owned();
     let row = rows.iter().find(|row| row.path == path);
-    let row = row.ok_or_else(|| IntervalError::NoPlace { path: path.clone() })?;
+    let row = row.ok_or_else(|| no_place(&rows, &path))?;
     let kind = row.schema.get("type").and_then(Value::as_str);
     let number = row.value.as_ref().and_then(|value| value.parse::<f64>().ok());
     let is_number = matches!(kind, Some("number" | "integer"));
@@ -101,6 +104,16 @@ pub fn interval(question: &Question<'_>) -> Result<Interval, IntervalError> {
     let within = if whole { 1.0 } else { TOLERANCE * size };
     let search = Search::around(present, size, whole, &mut |value| looker.look(value));
     Ok(Interval { path, present, asked: looker.asked, within, search })
+}
+
+fn no_place(rows: &[PathRow], path: &str) -> IntervalError {
+    let known: Vec<&str> = rows.iter().map(|row| row.path.as_str()).collect();
+    let nearest = nearest(path, &known).map(str::to_owned);
+    IntervalError::NoPlace { path: path.to_owned(), nearest }
+}
+
+fn meant(nearest: Option<&str>) -> String {
+    nearest.map_or_else(String::new, |path| format!("; did you mean `{path}`?"))
 }
 
 /// The controller that a number belongs to.
