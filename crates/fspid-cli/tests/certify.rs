@@ -145,3 +145,17 @@ fn a_loop_of_too_many_states_is_refused_by_name() {
     assert_eq!(code(&refused), 1, "{}", told(&refused));
     assert!(out(&refused).contains("allowed are up to 40"), "{}{}", out(&refused), told(&refused));
 }
+
+/// The certificate of the plant of the start, which is proved, was told to be what flies.
+#[test]
+fn a_flight_that_grows_where_the_certificate_does_not_look_is_not_what_is_certified() {
+    let (_folder, scenario, certificate) = design();
+    let change = "\n[[plant_change]]\nat_s = 10.0\nnumerator = [0.843, 0.00991]\ndenominator = [1.0, 1.17, 1.55, 0.0125, 0.00728]\n";
+    let designed = std::fs::read_to_string(&scenario).expect("readable");
+    std::fs::write(&scenario, designed + change).expect("written");
+    let against = ["certify", "--check", text(&certificate), "--against", text(&scenario)];
+    let told = fspid(&against);
+    assert_eq!(code(&told), 1, "{}", out(&told));
+    let expected = "at_rest: certified stable, flown UNSTABLE while the set-point is held at 0 deg, with the plant from 10 s on";
+    assert!(out(&told).contains(expected), "{}", out(&told));
+}

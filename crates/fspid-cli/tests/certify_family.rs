@@ -335,3 +335,83 @@ fn an_aircraft_is_proved_for_any_mass_speed_and_altitude_between_limits() {
     let output = fspid(&words, folder.path());
     assert_eq!(code(&output), 0, "{}", text(&output.stdout));
 }
+
+/// A Navion whose gains a schedule moves by powers of the dynamic pressure, which are 1 at either end of each draw alone.
+const SCHEDULED: &str = r#"
+schema = 1
+name = "scheduled"
+[aircraft]
+name = "navion"
+model = "linear"
+airspeed_m_s = 53.6
+altitude_m = 1000.0
+[actuator]
+time_constant_s = 0.1
+[loop]
+sample_period_s = 0.02
+duration_s = 4.0
+[setpoint]
+kind = "step"
+amplitude_deg = 1.0
+[[controller]]
+name = "PID"
+kind = "pid"
+kp = 0.82
+ki = 0.43
+kd = 0.165
+derivative_filter_s = 0.05
+schedule = { dynamic_pressure_pa = 1765.0, exponent = 60.0, least_factor = 1.0 }
+[[dispersion]]
+path = "aircraft.airspeed_m_s"
+distribution = "uniform"
+lower = 50.0
+upper = 56.0
+[[dispersion]]
+path = "aircraft.altitude_m"
+distribution = "uniform"
+lower = 0.0
+upper = 2000.0
+[[disturbance]]
+kind = "step"
+enters_at = "elevator"
+amplitude_deg = 0.0
+at_s = 1.0
+[[dispersion]]
+path = "disturbance[0].amplitude_deg"
+distribution = "uniform"
+lower = 0.0
+upper = 4.0
+"#;
+
+/// It was proved for all of it, and at 56 m/s and sea level it flies apart within two seconds.
+#[test]
+fn numbers_that_gains_are_scheduled_by_make_no_family() {
+    let folder = folder(SCHEDULED);
+    let refused = fspid(&["certify", "drawn.toml", "--family"], folder.path());
+    assert_eq!(code(&refused), 1);
+    let told = text(&refused.stdout);
+    assert!(told.contains("OPEN: `aircraft.airspeed_m_s`"), "{told}");
+    assert!(told.contains("scheduled from it"), "{told}");
+    let corner = ["--set", "aircraft.airspeed_m_s=56.0", "--set", "aircraft.altitude_m=0.0"];
+    let flown = fspid(&[&["simulate", "drawn.toml"], &corner[..]].concat(), folder.path());
+    assert!(
+        code(&flown) == 1 && text(&flown.stdout).contains("diverged"),
+        "{}",
+        text(&flown.stdout)
+    );
+}
+
+/// A family took the sentence about drawn numbers away, those of loads with it.
+#[test]
+fn what_is_drawn_of_loads_is_named_beside_a_family() {
+    let schedule = SCHEDULED.lines().find(|line| line.starts_with("schedule")).expect("a schedule");
+    let folder = folder(&SCHEDULED.replace(schedule, ""));
+    let path = folder.path();
+    let proved = fspid(&["certify", "drawn.toml", "--family", "--out", "c"], path);
+    let told = text(&proved.stdout);
+    assert_eq!(code(&proved), 0, "{told}");
+    assert!(told.contains("not as the dispersions draw them"), "{told}");
+    assert!(!told.contains("nominal numbers"), "{told}");
+    let compared = ["certify", "--check", "c/pid.certificate.json", "--against", "drawn.toml"];
+    assert_eq!(code(&fspid(&compared, path)), 0);
+}

@@ -5,6 +5,7 @@
 //! beside the verdict that they leave it out.
 
 use fspid_sim::sensor::{Sensor, SensorModel};
+use fspid_sim::signal::{Disturbance, Entry};
 use fspid_sim::{LinearPlant, Plant, Rest, Scenario, Steady, Surroundings, Weather};
 
 use crate::description::LoopDescription;
@@ -63,15 +64,23 @@ pub fn left_out_of(scenario: &Scenario) -> Vec<LeftOut> {
         LeftOut::MovingAir => weather.as_ref().is_some_and(moves),
         LeftOut::Noise => noisy,
         LeftOut::Drift => sensors().any(|model| model.drift > 0.0),
+        LeftOut::SeenPitch => shows_wrongly(pitch_sensor, disturbances),
         LeftOut::Disturbances => disturbances.iter().any(|one| !one.is_noise()),
         // Known to the study alone.
-        LeftOut::Dispersions | LeftOut::OtherChoices => false,
+        LeftOut::Dispersions | LeftOut::DrawnCommands | LeftOut::OtherChoices => false,
         LeftOut::OuterLoops => autopilot.is_some(),
         LeftOut::Configurations => {
             plant.aircraft().is_some_and(|plant| !plant.changing().is_still())
         }
     };
     LeftOut::ALL.into_iter().filter(|what| present(*what)).collect()
+}
+
+/// True where the pitch that is seen at rest is another than the aircraft's.
+fn shows_wrongly(sensor: &Option<Sensor>, disturbances: &[Disturbance]) -> bool {
+    let model = sensor.as_ref().map(Sensor::model);
+    model.is_some_and(|it| it.scale_error != 0.0 || it.bias > 0.0)
+        || disturbances.iter().any(|it| it.entry() == Entry::Measurement && !it.is_noise())
 }
 
 fn moves(weather: &Weather) -> bool {

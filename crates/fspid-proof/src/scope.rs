@@ -113,10 +113,14 @@ pub enum LeftOut {
     Noise,
     /// Bias of sensors that wanders.
     Drift,
+    /// What the pitch sensor shows wrongly at rest.
+    SeenPitch,
     /// Disturbances while they move.
     Disturbances,
     /// Numbers of the scenario that are drawn anew in campaigns.
     Dispersions,
+    /// What the dispersions draw of all that acts on the loop from outside.
+    DrawnCommands,
     /// What else the dispersions choose among.
     OtherChoices,
     /// Outer loops, which command the pitch set-point from what the aircraft does.
@@ -127,7 +131,7 @@ pub enum LeftOut {
 
 impl LeftOut {
     /// All of them.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 14] = [
         Self::Rounding,
         Self::MovingSetpoint,
         Self::NonlinearAircraft,
@@ -135,8 +139,10 @@ impl LeftOut {
         Self::MovingAir,
         Self::Noise,
         Self::Drift,
+        Self::SeenPitch,
         Self::Disturbances,
         Self::Dispersions,
+        Self::DrawnCommands,
         Self::OtherChoices,
         Self::OuterLoops,
         Self::Configurations,
@@ -153,8 +159,10 @@ impl LeftOut {
             Self::MovingAir => "moving-air",
             Self::Noise => "noise",
             Self::Drift => "drift",
+            Self::SeenPitch => "seen-pitch",
             Self::Disturbances => "disturbances",
             Self::Dispersions => "dispersions",
+            Self::DrawnCommands => "drawn-commands",
             Self::OtherChoices => "other-choices",
             Self::OuterLoops => "outer-loops",
             Self::Configurations => "configurations",
@@ -191,13 +199,15 @@ impl fmt::Display for LeftOut {
                 "The aircraft is nonlinear: proved is a statement about its linear model at the trim."
             }
             Self::PlantChange => {
-                "Each plant is proved on its own; the passage from one to the next is not."
+                "The plant changes in flight: the claim is about one plant that stays, not about the others, which have certificates of their own, nor about the passage from one to the next."
             }
             Self::MovingAir => "Wind, gusts and turbulence are left out: the air is calm.",
             Self::Noise => "Noise is left out: sensors are without noise.",
             Self::Drift => "Wandering bias of sensors is left out: a bias stands still.",
+            Self::SeenPitch => "Rest is told of the pitch that the controller sees: by what its sensor shows wrongly the aircraft's own is off.",
             Self::Disturbances => "Disturbances count while they stand still, as loads.",
             Self::Dispersions => "The claim is about the nominal numbers, not about those that a campaign draws.",
+            Self::DrawnCommands => "Set-points, disturbances, moving air and noise count as they are written, not as the dispersions draw them.",
             Self::OtherChoices => "Of what the dispersions choose among, the claim is about one choice alone: others have certificates of their own.",
             Self::OuterLoops => "The claim is about the pitch loop alone, not about the outer loops around it and the set-points that they command.",
             Self::Configurations => {

@@ -12,7 +12,7 @@ use crate::signal::{Disturbance, Entry, Shape, extremes};
 pub struct Steady {
     /// Least and largest set-point, rad from the trim; the trim itself lies between them.
     pub setpoint_rad: [f64; 2],
-    /// Largest load at servo and elevator, rad of elevator, without a sign: disturbances but for noise.
+    /// Largest load, rad of elevator, without a sign: disturbances at servo and elevator together, but for noise.
     pub load_rad: f64,
     /// Bias of the actuator, rad, without a sign.
     pub bias_rad: f64,
@@ -20,14 +20,21 @@ pub struct Steady {
     pub offset_rad: f64,
     /// Largest offset of the measured rate, rad/s, without a sign.
     pub rate_offset_rad_s: f64,
+    /// What the pitch sensor shows of a radian of pitch.
+    pub pitch_scale: f64,
 }
 
 impl Scenario {
     /// The set-points and loads of the scenario: where one of them moves, the furthest that it goes. In all time:
     /// where a flight ends is no property of the loop.
+    ///
+    /// The load is the largest that anything in the loop has to hold: the controller that of servo and elevator together, the
+    /// servo that of the elevator alone, which one at the servo that is its opposite takes off the controller and not off it.
     #[must_use]
     pub fn steady(&self) -> Steady {
-        self.steady_where(|_| true)
+        let together = self.steady_where(|_| true);
+        let at_elevator = self.furthest(&[Entry::Elevator], |_| true);
+        Steady { load_rad: together.load_rad.max(at_elevator), ..together }
     }
 
     /// The same of what the loop can come to rest under: loads that stay from some time on to the end of the flight, and
@@ -65,6 +72,8 @@ impl Scenario {
             offset_rad: self.furthest(&[Entry::Measurement], counts)
                 + biased(&self.surroundings.pitch_sensor),
             rate_offset_rad_s: biased(&self.surroundings.rate_sensor),
+            pitch_scale: 1.0
+                + self.surroundings.pitch_sensor.map_or(0.0, |it| it.model().scale_error),
         }
     }
 
@@ -93,10 +102,10 @@ impl LinearPlant {
 impl Steady {
     /// The largest command, rad, that holds the plant beside what the set-point alone asks for.
     ///
-    /// An offset of what is seen is a pitch that is off by as much, and one of the seen rate a command.
+    /// An offset of what is seen is a pitch that is off by as much as shows so, and one of the seen rate a command.
     #[must_use]
     pub fn load_with_offsets_rad(&self, plant: &LinearPlant, config: &PidConfig<f64>) -> f64 {
-        let of_offset = self.offset_rad / plant.steady_gain().abs();
+        let of_offset = self.offset_rad / (self.pitch_scale * plant.steady_gain()).abs();
         let of_offset = if self.offset_rad == 0.0 { 0.0 } else { of_offset };
         self.load_rad
             + self.bias_rad

@@ -82,6 +82,12 @@ impl<'a> Files<'a> {
         Self { kept: kept.clone(), ..Self::new(folder) }
     }
 
+    /// For the same scenario with another value: the same changes wait, and what was read is read no more.
+    pub(crate) fn again(&self) -> Self {
+        let changes = self.changes().map(|change| (change.clone(), false)).collect();
+        Self { changes, ..Self::of_kept(self.folder, &self.kept) }
+    }
+
     /// Keeps what the file says that the key at `path` refers to.
     pub(crate) fn keep(&mut self, path: String, spec: &'static Table, section: Section) {
         self.referred.push((path, spec, section));
@@ -161,6 +167,16 @@ impl<'a> Files<'a> {
     fn name(&mut self, path: &str) {
         if !self.names.iter().any(|name| name == path) {
             self.names.push(path.to_owned());
+        }
+    }
+
+    /// Adds the files of another reading to the digest and to the names, if there are any that were not read here.
+    pub(crate) fn join(&mut self, other: Self) {
+        let is_new = |name: &&String| !self.names.contains(name);
+        let new: Vec<String> = other.names.iter().filter(is_new).cloned().collect();
+        if !new.is_empty() {
+            self.names.extend(new);
+            self.digest(&other.finish());
         }
     }
 

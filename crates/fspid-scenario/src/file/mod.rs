@@ -304,6 +304,7 @@ fn read(
     let built = built?;
     if report.count() == 0 {
         build::loops::check(report, &section, &built.scenario);
+        template::read_chosen(report, files, &document, &built.dispersions);
     }
     Some((built, setting::settings(files, &section), marks))
 }

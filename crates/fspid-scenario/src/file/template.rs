@@ -7,6 +7,7 @@ use super::document::{Item, Value};
 use super::extra::Extra;
 use super::files::{Files, Kept};
 use super::overrides::{self, Found, Setting};
+use crate::dispersion::Dispersion;
 use crate::setting_path::{NewValue, SettingPath, steps};
 use crate::tuning::TunableParameter;
 use fspid_diagnostics::{Problems, Report, Span};
@@ -194,6 +195,29 @@ enum Asked {
     Numbers,
     /// And whether its loops can be judged, which takes longer.
     Loops,
+}
+
+/// Reads the files that only what a dispersion chooses among names, so that the digest is of them as well.
+pub(super) fn read_chosen(
+    report: &Report,
+    files: &mut Files<'_>,
+    document: &Item,
+    dispersions: &[Dispersion],
+) {
+    for dispersion in dispersions {
+        let texts = dispersion.choices.iter().filter(|it| matches!(it, NewValue::Text(_)));
+        for value in texts {
+            let (mut report, mut document, mut again) =
+                (report.clone(), document.clone(), files.again());
+            for path in dispersion.targets.iter().flat_map(|target| &target.paths) {
+                let set = setting(&mut report, path, value);
+                overrides::put(&mut report, &mut again, &mut document, (path.steps(), &set));
+            }
+            // What is wrong with it is told where it is drawn.
+            build(&mut report, &mut again, &document, Asked::Numbers);
+            files.join(again);
+        }
+    }
 }
 
 fn build(

@@ -17,7 +17,8 @@ pub(crate) fn limits(
     let written = section.given(keys::LEAST) || section.given(keys::MOST);
     check_signs(report, section, Some(measure));
     if measure.is_yes_or_no() {
-        return if written { (least, most) } else { (Some(1.0), None) };
+        check_yes(report, section, (least, most));
+        return (Some(1.0), None);
     }
     // A limit that is written wrongly is told already, and so is a table with an unknown key.
     if !written && section.sound {
@@ -30,6 +31,17 @@ pub(crate) fn limits(
         section.wrong(report, keys::MOST, "below `least`", format!("{least:?} or above"));
     }
     (least, most)
+}
+
+/// Refuses limits by which what is asked for, which is 1, were missed or its opposite met.
+fn check_yes(report: &mut Report, section: &Section, (least, most): (Option<f64>, Option<f64>)) {
+    let allowed = "no limit, or `least = 1`: the answer is yes, which is 1, or no, which is 0";
+    if least.is_some_and(|least| least != 1.0) {
+        section.wrong(report, keys::LEAST, "a limit of a question", allowed);
+    }
+    if most.is_some() {
+        section.wrong(report, keys::MOST, "a limit of a question", allowed);
+    }
 }
 
 /// Refuses limits below 0 of what never is; of a measure that nobody knows as well.

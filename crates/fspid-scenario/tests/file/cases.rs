@@ -100,6 +100,26 @@ fn a_requirement_that_no_case_is_left_for_is_refused() {
     assert_eq!(study(&text("calm")).case_requirements.len(), study("").case_requirements.len() + 1);
 }
 
+/// With `most = 1` the opposite of what was asked for met it.
+#[test]
+fn a_question_has_no_limit_by_which_its_opposite_could_be_an_answer() {
+    for measure in ["stable", "certified", "frozen_stable"] {
+        let with = |limit: &str| {
+            let asked = format!("[[requirement]]\nmeasure = \"{measure}\"\n{limit}\n");
+            file::parse(&format!("{}{asked}", file::starter()), "asked.toml", None, &[])
+        };
+        for limit in ["most = 1.0", "most = 0.5", "least = 0.0", "least = 0.5", "least = 2.0"] {
+            let told = with(limit).expect_err("refused").to_string();
+            assert!(told.contains("a limit of a question"), "{measure} {limit}: {told}");
+        }
+        for limit in ["", "least = 1.0"] {
+            let study = with(limit).expect("allowed");
+            let asked = study.requirements.last().expect("a requirement");
+            assert_eq!((asked.least, asked.most), (Some(1.0), None), "{measure} {limit}");
+        }
+    }
+}
+
 #[test]
 fn what_is_yes_or_no_has_no_mean_that_could_be_limited() {
     let told = problems("[[tuning.limit]]\nmeasure = \"stable\"\nleast = 0.9\n");

@@ -131,3 +131,30 @@ fn draws_become_values_and_factors_go_with_what_stands_in_the_preset() {
     let chosen = kind.values(&drawn[1..], &nominal[1]);
     assert_eq!(chosen[0].1, NewValue::Text("bumpless".to_owned()));
 }
+
+/// A campaign went on with another plant than it had begun with.
+#[test]
+fn the_digest_is_of_files_that_only_a_dispersion_names_too() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let plant = |name: &str, damping: f64| {
+        let text = format!(
+            "name = \"own\"\ntitle = \"own\"\nnumerator = [1.0]\ndenominator = [1.0, {damping:?}, 0.0]\nelevator_sign = \"nose-up-positive\"\nsource = \"made up\"\n"
+        );
+        std::fs::write(folder.path().join(name), text).expect("a file");
+    };
+    let text = scenario(
+        "path = \"plant.file\"\ndistribution = \"choice\"\nvalues = [\"a.toml\", \"b.toml\"]",
+    );
+    let text = text.replace("preset = \"navion-paper\"", "file = \"a.toml\"");
+    let study = || file::parse(&text, "x.toml", Some(folder.path()), &[]);
+    let study = || study().unwrap_or_else(|problems| panic!("{problems}"));
+    plant("a.toml", 1.0);
+    plant("b.toml", 2.0);
+    let before = study();
+    assert_eq!(before.files, ["a.toml", "b.toml"]);
+    assert_eq!(before.digest, study().digest);
+    plant("b.toml", 2.1);
+    assert_ne!(before.digest, study().digest);
+    let template = Template::parse(&text, "x.toml", Some(folder.path()), &Extra::default());
+    assert_eq!(template.expect("a scenario").study().digest, study().digest);
+}

@@ -1,8 +1,10 @@
 //! What is certified beside what a scenario flies, field by field.
 
 use super::comparison::{Comparison, Difference};
+use fspid_diagnostics::digits::to_digits;
 use fspid_proof::{Asked, LeftOut, LoopDescription, Way, ways_of};
-use fspid_sim::SimError;
+use fspid_sim::stability::Unstable;
+use fspid_sim::{Scenario, SimError};
 use serde_json::{Value, json};
 
 use super::checked::CheckedFile;
@@ -11,7 +13,8 @@ use super::loop_file::LoopFile;
 use super::nonlinear_file::AircraftFile;
 use super::scope::commands_in_words;
 use super::{asked, cases, family, nonlinear};
-use crate::analysis::lasting_plants;
+use crate::analysis::{AtRest, held_in_words, lasting_plants, why_undecided};
+use crate::metrics::short;
 use fspid_scenario::file::{Study, Template};
 
 /// What stands in for something that is not there.
@@ -38,6 +41,9 @@ impl CheckedFile {
                     found
                 });
                 differences.extend(compared.min_by_key(Vec::len).unwrap_or_default());
+                if self.certificate.claim.is_of_stability() {
+                    differences.extend(not_held(study, &origin.controller));
+                }
             }
             Flown::Without { path, flown } => {
                 let certified = match path {
@@ -161,6 +167,36 @@ impl CheckedFile {
     fn is_of_one_choice(&self) -> bool {
         self.certificate.left_out.contains(&LeftOut::OtherChoices)
     }
+}
+
+/// That the flight grows at rest, with a plant or an aircraft of later or with the outer loops around the certified one, of
+/// which the certificate does not speak; that this is not known counts as well.
+fn not_held(study: &Study, controller: &str) -> Option<Difference> {
+    let scenario = &study.scenario;
+    let named = scenario.controllers.iter().find(|named| named.name == controller)?;
+    let at_rest = AtRest::stability(scenario, &named.controller);
+    let beyond = at_rest.undecided.filter(|it| it.doubt.is_beyond_the_loop());
+    let flown = match (at_rest.unstable, beyond) {
+        (Some(unstable), _) => grows_in_words(scenario, &unstable),
+        (None, Some(undecided)) => format!("undecided: {}", why_undecided(&undecided)),
+        (None, None) => return None,
+    };
+    Some(Difference { path: "at_rest".to_owned(), certified: "stable".to_owned(), flown })
+}
+
+/// Where a flight grows at rest.
+fn grows_in_words(scenario: &Scenario, unstable: &Unstable) -> String {
+    let mode = unstable.mode.and_then(|mode| scenario.autopilot.as_ref()?.modes().get(mode));
+    let with = match mode {
+        Some(mode) => format!("with the outer loops of mode {}", mode.name),
+        None => held_in_words(unstable.at),
+    };
+    let from = match unstable.from_s {
+        0.0 => String::new(),
+        from_s => format!(", with the plant from {} s on", short(from_s)),
+    };
+    let radius = to_digits(unstable.spectral_radius, 7);
+    format!("UNSTABLE {with}{from} (spectral radius {radius})")
 }
 
 /// What a scenario has and a claim neither covers nor leaves out.

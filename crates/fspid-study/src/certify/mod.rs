@@ -302,5 +302,8 @@ fn asked(study: &Study, plant: &LinearPlant, description: &LoopDescription) -> A
     if !study.dispersions.is_empty() {
         asked.left_out.push(LeftOut::Dispersions);
     }
+    if study.dispersions.iter().any(family::reaches_outside_of_the_loop) {
+        asked.left_out.push(LeftOut::DrawnCommands);
+    }
     asked
 }

@@ -192,7 +192,7 @@ fn rest_error(scope: &Scope) -> String {
     }
     let most = short(degrees(scope.rest_error_rad));
     let at = held(scope.range);
-    format!("REST IS UP TO {most} deg FROM THE SET-POINT, at {at}: there is no integral")
+    format!("REST IS SEEN UP TO {most} deg FROM THE SET-POINT, at {at}: there is no integral")
 }
 
 fn remains(scope: &Scope) -> String {

@@ -348,7 +348,7 @@ fn a_check_says_what_the_proof_said_of_its_scope() {
 fn an_error_that_stays_is_told_in_sentences_in_numbers_and_in_a_cell_of_a_table() {
     let study = load("scenarios/747-pitch-step.toml", &[]);
     let certification = Certification::of(&study, Some("PC"), &effort()).expect("certified");
-    let told = "REST IS UP TO 0.172259 deg FROM THE SET-POINT, at set-points up to 1 deg";
+    let told = "REST IS SEEN UP TO 0.172259 deg FROM THE SET-POINT, at set-points up to 1 deg";
     assert!(certification.text().contains(told), "{}", certification.text());
     let off_deg = &certification.json()["controllers"][0]["scope"]["rest_error_deg"];
     assert!((off_deg.as_f64().expect("a number") - 0.172_259_0).abs() < 1e-7, "{off_deg}");

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use fspid_proof::{Asked, LoopDescription, NotProvable, Range};
+use fspid_proof::{Asked, LeftOut, LoopDescription, NotProvable, Range};
 use fspid_scenario::file::{self, Study};
 use fspid_sim::LinearPlant;
 use fspid_study::analysis::{Analysis, Question};
@@ -53,4 +53,82 @@ fn set_points_and_loads_that_begin_after_the_flight_are_in_the_range_that_is_ask
     // And nothing is no negative nothing.
     let still = asked(&study("747-pitch-step.toml", &["setpoint.amplitude_deg=0"]));
     assert_eq!(still.setpoint_rad.to_bits(), 0.0_f64.to_bits());
+}
+
+const SERVO: &str = r#"
+schema = 1
+name = "loads"
+[plant]
+preset = "navion-full"
+[actuator]
+time_constant_s = 0.1
+position_limit_deg = 20.0
+[loop]
+sample_period_s = 0.02
+duration_s = 60.0
+[setpoint]
+kind = "step"
+amplitude_deg = 1.0
+[[disturbance]]
+enters_at = "servo"
+kind = "step"
+amplitude_deg = 19.5
+at_s = 5.0
+[[disturbance]]
+enters_at = "elevator"
+kind = "step"
+amplitude_deg = -19.5
+at_s = 5.0
+[[controller]]
+name = "PID"
+kind = "pid"
+kp = 1.0
+ki = 0.5
+kd = 0.2
+"#;
+
+fn parsed(text: &str, set: &[&str]) -> Study {
+    let set: Vec<String> = set.iter().map(|&change| change.to_owned()).collect();
+    file::parse(text, "loop.toml", None, &set).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The controller does not see it, and the servo went to its limit for ever.
+#[test]
+fn a_load_at_the_elevator_is_held_by_the_servo_whatever_acts_before_it() {
+    let load_deg = |set: &[&str]| asked(&parsed(SERVO, set)).load_rad.to_degrees();
+    assert!((load_deg(&[]) - 19.5).abs() < 1e-9, "{}", load_deg(&[]));
+    // The controller holds both.
+    let same = load_deg(&["disturbance[1].amplitude_deg=3.0"]);
+    assert!((same - 22.5).abs() < 1e-9, "{same}");
+    // One at the servo alone is none of the servo's.
+    let alone = load_deg(&["disturbance[1].amplitude_deg=0.0"]);
+    assert!((alone - 19.5).abs() < 1e-9, "{alone}");
+}
+
+/// The pitch is off by what the sensor has to be off to show so, and the elevator holds that.
+#[test]
+fn an_offset_of_the_measured_pitch_is_a_pitch_that_shows_so() {
+    let offset =
+        "disturbance=[{enters_at='measurement', kind='step', amplitude_deg=-1.0, at_s=1.0}]";
+    let load = |scale: f64| {
+        let sensor = format!("sensor={{preset='ideal', pitch={{scale_error_pct={scale:?}}}}}");
+        asked(&parsed(SERVO, &[offset, &sensor])).load_rad
+    };
+    let [plain, fifth] = [load(0.0), load(-80.0)];
+    assert!(plain > 0.0 && (fifth / plain - 5.0).abs() < 1e-9, "{fifth} of {plain}");
+}
+
+fn left_out(study: &Study) -> Vec<LeftOut> {
+    let scenario = &study.scenario;
+    let plant = scenario.plant.linear().expect("a linear plant");
+    Asked::of(scenario, plant, &described_with(study, plant)).left_out
+}
+
+#[test]
+fn what_a_sensor_shows_wrongly_at_rest_is_named_beside_the_claim() {
+    let is_named = |set: &str| left_out(&parsed(SERVO, &[set])).contains(&LeftOut::SeenPitch);
+    assert!(!is_named("loop.duration_s=60.0"));
+    assert!(is_named("sensor={preset='ideal', pitch={scale_error_pct=2.0}}"));
+    assert!(is_named("sensor={preset='ideal', pitch={bias_deg=0.1}}"));
+    assert!(is_named("disturbance[0].enters_at='measurement'"));
 }

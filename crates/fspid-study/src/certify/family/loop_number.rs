@@ -64,6 +64,11 @@ impl LoopNumber {
         }
     }
 
+    /// True for what the dynamic pressure of a trim follows from, by which gains are scheduled.
+    pub(super) fn is_of_pressure(self) -> bool {
+        matches!(self, Self::Aircraft(AircraftNumber::Airspeed | AircraftNumber::Altitude, _))
+    }
+
     /// The number at a place; none for places that are none of these.
     pub(super) fn at(path: &SettingPath) -> Option<Self> {
         let (table, rest) = path.text().split_once('.')?;

@@ -5,7 +5,7 @@ use fspid_numeric::Scalar;
 use fspid_proof::check::{ContinuousPlant, NotProved, ROUNDED, Sloped, printed};
 use fspid_proof::{LoopDescription, MOST_PARAMETERS, NotProvable, Parameter, ScaledSensor};
 use fspid_scenario::dispersion::{Dispersion, Distribution};
-use fspid_scenario::file::{NewValue, SettingPath, Study, Template};
+use fspid_scenario::file::{GainSource, NewValue, SettingPath, Study, Template};
 use fspid_sim::LinearPlant;
 
 use super::Chosen;
@@ -48,6 +48,8 @@ struct Drawn {
     parameter: Parameter,
     /// Each with the number that stands there, where draws are factors of it.
     numbers: Vec<(LoopNumber, Option<f64>)>,
+    /// Where they stand in the scenario.
+    targets: Vec<SettingPath>,
 }
 
 /// All members of a loop.
@@ -75,6 +77,7 @@ impl Members {
         if drawn.len() > MOST_PARAMETERS {
             return Err(NoFamily::TooMany(drawn.len()));
         }
+        asking.follow_together(&drawn)?;
         let parameters = drawn.iter().map(|one| one.parameter.clone()).collect();
         let source = Source::of(template.study(), description);
         Ok(Self { drawn, parameters, source })
@@ -96,6 +99,20 @@ impl Members {
 }
 
 impl Drawn {
+    /// What a drawn value sets in the scenario.
+    fn values(&self, drawn: f64) -> impl Iterator<Item = (&SettingPath, NewValue)> {
+        self.targets.iter().zip(&self.numbers).map(move |(path, (_, nominal))| {
+            (path, NewValue::Number(nominal.map_or(drawn, |nominal| nominal * drawn)))
+        })
+    }
+
+    fn does_not_stand_alone(&self) -> NoFamily {
+        NoFamily::NotBounded {
+            path: self.parameter.paths.join(", "),
+            why: "the loop does not follow it as a family does: it changes gains that are designed or scheduled from it, or the aircraft has configurations, Mach rows or tables; allowed is a number that stands alone",
+        }
+    }
+
     /// Puts what a value between two ends is of a loop.
     fn put_between(
         &self,
@@ -174,47 +191,66 @@ impl Asking<'_> {
             };
             let numbers = numbers.into_iter().zip(&target.paths);
             let numbers: Vec<_> = numbers.map(|(number, path)| (number, nominal(path))).collect();
-            let drawn = Drawn { parameter, numbers };
-            self.follows(&drawn, &target.paths)?;
+            let drawn = Drawn { parameter, numbers, targets: target.paths.clone() };
+            self.is_not_scheduled(&drawn)?;
+            for end in drawn.parameter.ends {
+                self.follow(&[(&drawn, end)])?;
+            }
             found.push(drawn);
         }
         Ok(found)
     }
 
-    /// Holds a drawn number against the scenario itself: at both ends the loop is the one that follows from the number, and
-    /// nothing else of it has changed.
-    fn follows(&self, drawn: &Drawn, paths: &[SettingPath]) -> Result<(), NoFamily> {
-        for end in drawn.parameter.ends {
-            let values: Vec<(&SettingPath, NewValue)> = paths
-                .iter()
-                .zip(&drawn.numbers)
-                .map(|(path, (_, nominal))| {
-                    (path, NewValue::Number(nominal.map_or(end, |nominal| nominal * end)))
-                })
-                .collect();
-            let flown = self.described(&values, paths)?;
-            let mut source = Source::of(self.template.study(), self.description);
-            let follows = drawn
-                .put_between(&mut source, [end; 2], self.description)
-                .is_some_and(|()| source.is_of(&flown, self.description));
-            if !follows {
-                return Err(NoFamily::NotBounded {
-                    path: drawn.parameter.paths.join(", "),
-                    why: "the loop does not follow it as a family does: it changes gains that are designed or scheduled from it, or the aircraft has configurations, Mach rows or tables; allowed is a number that stands alone",
-                });
-            }
+    /// Refuses what gains are scheduled by: they may stand still at the ends of each draw, where a factor has its limits, and
+    /// move between them.
+    fn is_not_scheduled(&self, drawn: &Drawn) -> Result<(), NoFamily> {
+        let study = self.template.study();
+        let is_own = |name: &str| {
+            let mut all = study.scenario.controllers.iter();
+            all.any(|it| it.name == name && it.controller == self.description.controller)
+        };
+        let is_scheduled = study.derived_gains.iter().any(|gains| {
+            matches!(gains.source, GainSource::Schedule { .. }) && is_own(&gains.controller)
+        });
+        match is_scheduled && drawn.numbers.iter().any(|(number, _)| number.is_of_pressure()) {
+            true => Err(drawn.does_not_stand_alone()),
+            false => Ok(()),
+        }
+    }
+
+    /// Holds numbers that are drawn at once against the scenario itself, all at their lower and all at their upper ends.
+    fn follow_together(&self, drawn: &[Drawn]) -> Result<(), NoFamily> {
+        for side in [0, 1] {
+            let at: Vec<_> = drawn.iter().map(|one| (one, one.parameter.ends[side])).collect();
+            self.follow(&at)?;
         }
         Ok(())
     }
 
+    /// Holds drawn numbers against the scenario itself: with them the loop is the one that follows from them, and nothing
+    /// else of it has changed.
+    fn follow(&self, at: &[(&Drawn, f64)]) -> Result<(), NoFamily> {
+        let values: Vec<(&SettingPath, NewValue)> =
+            at.iter().flat_map(|it| it.0.values(it.1)).collect();
+        let flown = self.described(&values)?;
+        let mut source = Source::of(self.template.study(), self.description);
+        let put = at.iter().try_for_each(|(drawn, value)| {
+            drawn.put_between(&mut source, [*value; 2], self.description)
+        });
+        let mut all = at.iter();
+        let last = all.next_back().map(|(drawn, _)| drawn.does_not_stand_alone());
+        match last {
+            Some(refused) if put.is_none() || !source.is_of(&flown, self.description) => {
+                Err(refused)
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// The same controller's loop with other numbers.
-    fn described(
-        &self,
-        values: &[(&SettingPath, NewValue)],
-        paths: &[SettingPath],
-    ) -> Result<LoopDescription, NoFamily> {
+    fn described(&self, values: &[(&SettingPath, NewValue)]) -> Result<LoopDescription, NoFamily> {
         let no_member = |why: String| {
-            let path = paths.iter().map(SettingPath::text).collect::<Vec<_>>().join(", ");
+            let path = values.iter().map(|(path, _)| path.text()).collect::<Vec<_>>().join(", ");
             let value = values.first().map_or(String::new(), |(_, value)| value.to_string());
             NoFamily::NoMember { path, value, why }
         };
@@ -239,6 +275,11 @@ impl Asking<'_> {
 /// True for a dispersion that no loop depends on.
 pub(in super::super) fn is_outside_of_the_loop(dispersion: &Dispersion) -> bool {
     dispersion.targets.iter().flat_map(|target| &target.paths).all(is_outside)
+}
+
+/// True for a dispersion that draws something on which no loop depends, which acts on it.
+pub(in super::super) fn reaches_outside_of_the_loop(dispersion: &Dispersion) -> bool {
+    dispersion.targets.iter().flat_map(|target| &target.paths).any(is_outside)
 }
 
 /// True for a dispersion of which a box of the loop's numbers is made.

@@ -8,7 +8,7 @@ mod source;
 
 pub(super) use answer::{box_in_words, in_json, in_words, sentences};
 pub use members::NoFamily;
-pub(super) use members::{is_in_a_box, is_outside_of_the_loop};
+pub(super) use members::{is_in_a_box, is_outside_of_the_loop, reaches_outside_of_the_loop};
 
 use fspid_proof::check::{PlantSet, Sloped};
 use fspid_proof::{
