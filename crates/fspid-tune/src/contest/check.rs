@@ -5,7 +5,7 @@ use fspid_scenario::count::{BUDGET, SEEDS};
 use fspid_scenario::file::{Study, Template};
 use fspid_scenario::tuning::{Contest as Rules, Tuning};
 
-use super::{Contest, Entrant, Options, flight, mirror};
+use super::{Contest, Entrant, Options, flight, mirror, twins};
 use crate::crew::Part;
 use crate::error::{TuneError, WrongCase};
 use crate::flights::{Asked, Dispersed, Flights, FlownCase, flown_case};
@@ -29,12 +29,14 @@ pub(super) fn checked(source: &Source, options: &Options) -> Result<Contest, Tun
         return Err(refused(source, problems, Vec::new()));
     };
     let tuning = study.tuning.clone();
-    problems.extend(tuned_on(tuning.as_ref(), &rules));
     let efforts = efforts(tuning.as_ref(), &rules, options, &mut problems);
     let (cases, wrong_cases) = templates(source, &rules)?;
     if cases.len() == rules.cases.len() {
         problems.extend(mirror::problems(&rules, &cases));
     }
+    let is_right = |name: &&str| wrong_cases.iter().all(|it| it.case != **name);
+    let right = rules.cases.iter().map(|case| case.name.as_str()).filter(is_right);
+    problems.extend(twins::problems(source, study, right.zip(&cases))?);
     let mut entrants = Vec::new();
     for name in &names {
         match entrant(source, study, name, &cases, &rules) {
@@ -65,36 +67,6 @@ fn refused(source: &Source, problems: Vec<String>, wrong_cases: Vec<WrongCase>) 
 
 /// Everybody is measured as it flew, and asked what a constant load does.
 const JUDGING: Judging = Judging { stability: Stability::AsFlown, loads: true };
-
-/// Cases of the contest that are cases of the tuning.
-fn tuned_on(tuning: Option<&Tuning>, rules: &Rules) -> Vec<String> {
-    let Some(tuning) = tuning else {
-        return Vec::new();
-    };
-    let training: Vec<(&str, Vec<&str>)> = match tuning.cases.is_empty() {
-        true => vec![("the scenario as written", Vec::new())],
-        false => tuning.cases.iter().map(|it| (it.name.as_str(), changes(&it.set))).collect(),
-    };
-    let twin = |set: &[String]| {
-        let set = changes(set);
-        training.iter().find(|(_, other)| *other == set).map(|(name, _)| *name)
-    };
-    let named = rules.cases.iter().filter_map(|case| Some((&case.name, twin(&case.set)?)));
-    named
-        .map(|(name, twin)| {
-            format!(
-                "case \"{name}\" changes what \"{twin}\" of the tuning changes; judge on what nobody was tuned on"
-            )
-        })
-        .collect()
-}
-
-/// Changes without spaces that mean nothing, in an order of their own.
-fn changes(set: &[String]) -> Vec<&str> {
-    let mut changes: Vec<&str> = set.iter().map(|change| change.trim()).collect();
-    changes.sort_unstable();
-    changes
-}
 
 fn efforts(
     tuning: Option<&Tuning>,

@@ -36,6 +36,7 @@ mod summary;
 mod table;
 mod text;
 mod tuning;
+mod twins;
 mod two_way;
 mod words;
 

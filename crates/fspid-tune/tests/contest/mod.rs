@@ -4,6 +4,7 @@
 
 mod linear_aircraft;
 mod mirror;
+mod twins;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -522,13 +523,13 @@ fn a_self_tuner_that_is_unstable_at_rest_fails_though_its_case_asks_nothing_of_i
 
 #[test]
 fn what_makes_a_contest_none_is_told_at_once_and_before_anything_is_flown() {
-    let twice = "\n[[contest.case]]\nname = \"trained\"\nset = [\" actuator.time_constant_s=0.1\"]\n\n[[contest.case]]\nname = \"wrong\"\nset = [\"loop.sample_period_s=-1.0\"]\n";
+    let twice = "\n[[contest.case]]\nname = \"trained\"\nset = [\" actuator.time_constant_s=0.100\"]\n\n[[contest.case]]\nname = \"wrong\"\nset = [\"loop.sample_period_s=-1.0\"]\n";
     let alone = "\n[[controller]]\nname = \"P\"\nkind = \"p\"\nkp = { tune = [0.1, 3.0], scale = \"log\", start = 0.8 }\n";
     let place = place(&format!("{LOOP}{alone}{TUNING}{}", cases(twice)));
     let told = place.refused(&Options { seeds: Some(0), budget: Some(0) });
     for part in [
         "it has 1 controller",
-        "case \"trained\" changes what \"slow servo\" of the tuning changes",
+        "case \"trained\" flies what \"slow servo\" of the tuning flies",
         "the number of seeds is 0; allowed is a whole number from 1 to 1000",
         "the budget is 0; allowed is a whole number from 1 to 10000000",
         "case \"wrong\" makes the scenario wrong",
@@ -546,7 +547,7 @@ fn the_scenario_as_written_was_tuned_on_where_no_case_is_listed() {
     let again = "\n[[contest.case]]\nname = \"again\"\nset = []\n";
     let told =
         place(&format!("{LOOP}{MARKED}{tuning}{}", cases(again))).refused(&Options::default());
-    assert!(told.contains("case \"again\" changes what \"the scenario as written\""), "{told}");
+    assert!(told.contains("case \"again\" flies what \"the scenario as written\""), "{told}");
 }
 
 #[test]

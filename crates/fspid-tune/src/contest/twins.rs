@@ -1,0 +1,69 @@
+//! Cases that fly the same: what a contest counts as evidence twice, or has been tuned on.
+
+use fspid_scenario::dispersion::Dispersion;
+use fspid_scenario::file::{Study, Template};
+use fspid_sim::Scenario;
+
+use crate::error::TuneError;
+use crate::source::Source;
+
+/// What is wrong with the cases that are judged on, each with its name: one that flies what an earlier one flies, and one that
+/// flies what a case of the tuning flies, however both are written.
+pub(super) fn problems<'a>(
+    source: &Source,
+    study: &Study,
+    judged: impl Iterator<Item = (&'a str, &'a Template)>,
+) -> Result<Vec<String>, TuneError> {
+    let trained = trained(source, study)?;
+    let (mut problems, mut before) = (Vec::<String>::new(), Vec::<(&str, Flown)>::new());
+    for (name, template) in judged {
+        let flown = Flown::of(template.study());
+        if let Some((twin, _)) = trained.iter().find(|(_, other)| *other == flown) {
+            problems.push(format!(
+                "case \"{name}\" flies what \"{twin}\" of the tuning flies; judge on what nobody was tuned on"
+            ));
+        }
+        if let Some((twin, _)) = before.iter().find(|(_, other)| *other == flown) {
+            problems.push(format!(
+                "case \"{name}\" flies what case \"{twin}\" flies, and would count twice; leave one of them out"
+            ));
+        }
+        before.push((name, flown));
+    }
+    Ok(problems)
+}
+
+/// What each case of the tuning flies; the scenario as it is written where it has none.
+fn trained(source: &Source, study: &Study) -> Result<Vec<(String, Flown)>, TuneError> {
+    let Some(tuning) = &study.tuning else {
+        return Ok(Vec::new());
+    };
+    if tuning.cases.is_empty() {
+        return Ok(vec![("the scenario as written".to_owned(), Flown::of(study))]);
+    }
+    let mut trained = Vec::new();
+    for case in &tuning.cases {
+        match source.case(case) {
+            Ok(template) => trained.push((case.name.clone(), Flown::of(template.study()))),
+            // It is told by those who tune on it.
+            Err(TuneError::Case(_)) => {}
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(trained)
+}
+
+/// All that decides about the flights of a case.
+#[derive(PartialEq)]
+struct Flown {
+    scenario: Scenario,
+    dispersions: Vec<Dispersion>,
+}
+
+impl Flown {
+    fn of(study: &Study) -> Self {
+        // What it is called changes no flight.
+        let scenario = Scenario { name: String::new(), ..study.scenario.clone() };
+        Self { scenario, dispersions: study.dispersions.clone() }
+    }
+}
