@@ -32,6 +32,7 @@ mod generator;
 pub mod gradient;
 mod gust_entry;
 mod gust_response;
+mod held_limits;
 mod in_flight;
 mod inflow;
 mod instant;

@@ -9,11 +9,14 @@ use fspid_lti::{Complex, Matrix, eigenvalues, spectral_radius};
 use crate::aircraft::AircraftPlant;
 use crate::controller::Controller;
 use crate::error::SimError;
+use crate::held_limits;
 use crate::in_flight::{ModePoles, mode_poles};
 use crate::loop_model::{BreakPoint, LoopModel, Memory, SampledPlant};
 use crate::plant::LinearPlant;
 use crate::rest::{Doubt, Rest, RestPoint, Stand};
 use crate::scenario::Scenario;
+
+pub use crate::held_limits::is_lost_at_a_limit;
 
 /// A radius this close below 1 cannot be told from 1 after rounding; it counts as unstable.
 const MARGIN: f64 = 1e-9;
@@ -155,7 +158,8 @@ pub struct Undecided {
 
 impl Undecided {
     /// Of something that is no loop of a plant at rest.
-    fn beyond(doubt: Doubt) -> Self {
+    #[must_use]
+    pub fn beyond(doubt: Doubt) -> Self {
         Self { spectral_radius: f64::NAN, at: RestPoint::TRIM, doubt }
     }
 }
@@ -206,6 +210,9 @@ pub fn growth_at_rest(
         if holds != Some(true) {
             found.undecided.get_or_insert(Undecided::beyond(Doubt::ChangedAircraft));
         }
+    }
+    if held_limits::are_exceeded(scenario, controller, gains.ki) {
+        found.undecided.get_or_insert(Undecided::beyond(Doubt::BeyondLimits));
     }
     match growing_mode(scenario, controller, gains) {
         Ok(None) => {}

@@ -66,6 +66,11 @@ impl Disturbance {
         matches!(self.shape, Shape::Noise { .. })
     }
 
+    /// True for what keeps its value between the times at which it moves: neither noise nor a sine.
+    pub(crate) fn stands_still(&self) -> bool {
+        !matches!(self.shape, Shape::Noise { .. } | Shape::Sine { .. })
+    }
+
     /// Its amplitude, rad, and its shape.
     pub(crate) fn part(&self) -> (f64, &Shape) {
         (self.amplitude_rad, &self.shape)

@@ -4,7 +4,7 @@
 use fspid_core::{Gains, Law};
 use fspid_sim::load::{ConstantLoad, constant_load};
 use fspid_sim::stability::{GrowthAtRest, Undecided, Unstable, growth_at_rest};
-use fspid_sim::{Controller, RestPoint, Scenario, SimError};
+use fspid_sim::{Controller, Doubt, RestPoint, Scenario, SimError};
 
 use super::equilibrium::{Equilibrium, added_at_rest, equilibrium};
 use crate::metrics::short;
@@ -103,6 +103,13 @@ impl AtRest {
                 self.gains.gains().filter(|_| self.not_asked.is_none()).map(|_| "stable")
             }
         }
+    }
+
+    /// The same of a flight that ended at a limit with an error that grows, whatever small motions do.
+    #[must_use]
+    pub(crate) fn lost_at_a_limit(self) -> Self {
+        let lost = || Undecided::beyond(Doubt::BeyondLimits);
+        Self { undecided: self.undecided.or_else(|| self.unstable.is_none().then(lost)), ..self }
     }
 
     /// Of a controller without equations, of which nothing can be asked.

@@ -85,5 +85,6 @@ fn undecided(spectral_radius: f64, doubt: Doubt) -> Absent {
         Doubt::LongMode => Absent::LongMode,
         Doubt::Commanded => Absent::Commanded { spectral_radius },
         Doubt::ChangedAircraft => Absent::ChangedAircraft,
+        Doubt::BeyondLimits => Absent::BeyondLimits,
     }
 }

@@ -123,6 +123,11 @@ pub enum Absent {
         "undecided: with its configuration or its fuel of later in the flight the aircraft has no trim at the speed and altitude of the start, or none that is shown to be stable"
     )]
     ChangedAircraft,
+    /// An unstable plant is to be held where the limits leave too little for it.
+    #[error(
+        "undecided: the plant is unstable by itself, and at the end of the flight set-point and loads take more elevator than a limit leaves, or the command is at a limit and the error grows"
+    )]
+    BeyondLimits,
     /// The loop has so many states that nothing bounds its peaks from above.
     #[error("no bound of its peaks is proved: {order} states, samples of dead time included")]
     NotProved {

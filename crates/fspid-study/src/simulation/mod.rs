@@ -13,7 +13,7 @@ pub use words::WRONG_WAY;
 
 use fspid_lti::LtiError;
 use fspid_sim::signal::Edge;
-use fspid_sim::stability::{Unstable, instability};
+use fspid_sim::stability::{Unstable, instability, is_lost_at_a_limit};
 use fspid_sim::{
     Controller, Flyer, NamedController, RestPoint, Scenario, SimError, Trace, simulate,
 };
@@ -54,6 +54,9 @@ impl ControllerResult {
     ) -> Self {
         let scenario = &study.scenario;
         let (timing, pushes_s) = (scenario.timing, scenario.pushes_s());
+        let named = scenario.controllers.iter().find(|it| it.name == name);
+        let is_lost = named.is_some_and(|it| is_lost_at_a_limit(scenario, &it.controller, &trace));
+        let at_rest = if is_lost { at_rest.lost_at_a_limit() } else { at_rest };
         Self {
             name: name.to_owned(),
             metrics: FlightMetrics::of(&trace, edges, timing, unstable, &pushes_s),

@@ -1,6 +1,7 @@
 //! Stability at rest is asked wherever the scenario, or what stands around its pitch loop, holds the aircraft, with everything
 //! that is late or changes in flight. Flights of the program refute what would be said of less.
 
+use fspid_sim::Doubt;
 use fspid_study::metrics::Verdict;
 use fspid_study::simulation::{ControllerResult, Simulation};
 
@@ -353,4 +354,56 @@ fn an_aircraft_that_is_not_shown_to_hold_with_an_empty_tank_is_undecided() {
     };
     assert!(undecided(-1.0).is_some_and(|words| words.contains("fuel")));
     assert_eq!(undecided(0.3), None);
+}
+
+/// An unstable plant under a load that it holds with nine tenths of its limit, and to which it comes with a jump.
+const AT_A_LIMIT: &str = r#"
+schema = 1
+name = "at a limit"
+[plant]
+numerator = [1.0]
+denominator = [1.0, 0.6, -0.4]
+elevator_sign = "nose-up-positive"
+[loop]
+sample_period_s = 0.02
+duration_s = 15.0
+[setpoint]
+kind = "ramp"
+amplitude_deg = 1.0
+at_s = 0.0
+width_s = 2.0
+[[disturbance]]
+kind = "step"
+enters_at = "servo"
+amplitude_deg = 9.0
+at_s = 1.0
+[[controller]]
+name = "PID"
+kind = "pid"
+kp = 3.0
+ki = 0.5
+kd = 1.5
+output_limits_deg = [-10.0, 10.0]
+"#;
+
+/// It went through 467 deg and further, without a step that it could have failed to settle after: "flown", `stable` met.
+#[test]
+fn an_unstable_plant_that_is_lost_at_a_limit_is_not_called_stable() {
+    let doubt = |set: &[&str]| result(AT_A_LIMIT, set).at_rest.undecided.map(|it| it.doubt);
+    let of = |load: f64, more: &[&str]| {
+        let load = format!("disturbance[0].amplitude_deg={load:?}");
+        doubt(&[&[load.as_str()], more].concat())
+    };
+    assert_eq!(of(9.0, &[]), Some(Doubt::BeyondLimits));
+    assert_eq!(of(3.0, &[]), None);
+    // Beyond what there is, however short the flight.
+    assert_eq!(of(11.0, &["loop.duration_s=1.5"]), Some(Doubt::BeyondLimits));
+    assert_eq!(of(9.0, &["loop.duration_s=1.5"]), None);
+    // A servo's own limits as well, which a load at it does not reach.
+    let servo = ["actuator={time_constant_s=0.05, position_limit_deg=2.0}", "loop.duration_s=1.5"];
+    assert_eq!(of(3.0, &servo), None);
+    let elevator = [&servo[..], &["disturbance[0].enters_at=elevator"]].concat();
+    assert_eq!(of(3.0, &elevator), Some(Doubt::BeyondLimits));
+    // A plant that holds by itself rests somewhere, and its flight tells where.
+    assert_eq!(of(11.0, &["plant.denominator=[1.0, 0.6, 0.4]"]), None);
 }
