@@ -4,6 +4,7 @@
 //! part does not compile until somebody has decided whether claims cover it, bound it, refuse it, or say
 //! beside the verdict that they leave it out.
 
+use fspid_sim::loop_model::Sensing;
 use fspid_sim::sensor::{Sensor, SensorModel};
 use fspid_sim::signal::{Disturbance, Entry};
 use fspid_sim::{LinearPlant, Plant, Rest, Scenario, Steady, Surroundings, Weather};
@@ -64,6 +65,12 @@ pub fn left_out_of(scenario: &Scenario) -> Vec<LeftOut> {
         LeftOut::MovingAir => weather.as_ref().is_some_and(moves),
         LeftOut::Noise => noisy,
         LeftOut::Drift => sensors().any(|model| model.drift > 0.0),
+        LeftOut::BetweenSamples => {
+            let part = |sensor: &Option<Sensor>| {
+                Sensing::through(sensor.as_ref(), scenario.timing.dt_s()).part
+            };
+            part(pitch_sensor) > 0.0 || part(rate_sensor) > 0.0
+        }
         LeftOut::SeenPitch => shows_wrongly(pitch_sensor, disturbances),
         LeftOut::Disturbances => disturbances.iter().any(|one| !one.is_noise()),
         // Known to the study alone.

@@ -113,6 +113,8 @@ pub enum LeftOut {
     Noise,
     /// Bias of sensors that wanders.
     Drift,
+    /// What a sensor shows between two samples.
+    BetweenSamples,
     /// What the pitch sensor shows wrongly at rest.
     SeenPitch,
     /// Disturbances while they move.
@@ -131,7 +133,7 @@ pub enum LeftOut {
 
 impl LeftOut {
     /// All of them.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::Rounding,
         Self::MovingSetpoint,
         Self::NonlinearAircraft,
@@ -139,6 +141,7 @@ impl LeftOut {
         Self::MovingAir,
         Self::Noise,
         Self::Drift,
+        Self::BetweenSamples,
         Self::SeenPitch,
         Self::Disturbances,
         Self::Dispersions,
@@ -159,6 +162,7 @@ impl LeftOut {
             Self::MovingAir => "moving-air",
             Self::Noise => "noise",
             Self::Drift => "drift",
+            Self::BetweenSamples => "between-samples",
             Self::SeenPitch => "seen-pitch",
             Self::Disturbances => "disturbances",
             Self::Dispersions => "dispersions",
@@ -204,6 +208,7 @@ impl fmt::Display for LeftOut {
             Self::MovingAir => "Wind, gusts and turbulence are left out: the air is calm.",
             Self::Noise => "Noise is left out: sensors are without noise.",
             Self::Drift => "Wandering bias of sensors is left out: a bias stands still.",
+            Self::BetweenSamples => "A sensor is late by no whole number of samples: the claim is about one that shows a straight line between two samples.",
             Self::SeenPitch => "Rest is told of the pitch that the controller sees: by what its sensor shows wrongly the aircraft's own is off.",
             Self::Disturbances => "Disturbances count while they stand still, as loads.",
             Self::Dispersions => "The claim is about the nominal numbers, not about those that a campaign draws.",

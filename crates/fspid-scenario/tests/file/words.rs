@@ -123,3 +123,31 @@ fn every_key_of_a_simulator_arrives_at_it() {
     assert!(refused("simulator.aircraft=\"../x\"").contains("no name of an aircraft"));
     assert!(refused("simulator.calibrated_kt=200").contains("mach"));
 }
+
+/// A disturbance was asked for, did nothing, and its flight was judged as one with it.
+#[test]
+fn what_happens_between_samples_and_is_not_seen_is_warned_of() {
+    let warned = |set: &[&str]| {
+        let set: Vec<String> = set.iter().map(|&change| change.to_owned()).collect();
+        let study = file::parse(file::starter(), "x.toml", None, &set);
+        study.unwrap_or_else(|problems| panic!("{problems}")).warnings.join("\n")
+    };
+    let pulse = |at_s: f64, width_s: f64| {
+        let pulse = format!(
+            "disturbance=[{{enters_at='elevator', kind='pulse', amplitude_deg=5.0, at_s={at_s:?}, width_s={width_s:?}}}]"
+        );
+        warned(&["loop.sample_period_s=0.02", &pulse])
+    };
+    let told = pulse(2.001, 0.018);
+    assert!(told.contains("disturbance[0].width_s") && told.contains("does not act"), "{told}");
+    for (at_s, width_s) in [(2.0, 0.001), (2.001, 0.02), (1.999, 0.002)] {
+        assert_eq!(pulse(at_s, width_s), "", "{at_s} {width_s}");
+    }
+    let servo = |frequency: f64, damping: f64| {
+        let servo =
+            format!("actuator={{natural_frequency_rad_s={frequency:?}, damping={damping:?}}}");
+        warned(&["loop.sample_period_s=0.05", &servo])
+    };
+    assert!(servo(70.0, 0.1).contains("the actuator swings at 70.0 rad/s"), "{}", servo(70.0, 0.1));
+    assert_eq!(servo(60.0, 0.1) + &servo(70.0, 0.7), "");
+}

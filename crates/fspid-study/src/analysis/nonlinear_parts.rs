@@ -10,7 +10,7 @@ type LeftOut = (bool, &'static str);
 /// Everything of a scenario that its linear loops leave out, in sentences.
 #[must_use]
 pub fn not_in_the_linear_loop(scenario: &Scenario) -> Vec<String> {
-    let all = [&of_what_flies(scenario)[..], &of_controllers(scenario), &[of_clocks(scenario)]];
+    let all = [&of_what_flies(scenario)[..], &of_controllers(scenario), &of_times(scenario)];
     let applying = all.into_iter().flatten().filter(|(applies, _)| *applies);
     applying.map(|(_, sentence)| (*sentence).to_owned()).collect()
 }
@@ -72,11 +72,22 @@ fn of_controllers(scenario: &Scenario) -> [LeftOut; 3] {
     ]
 }
 
-fn of_clocks(scenario: &Scenario) -> LeftOut {
+fn of_times(scenario: &Scenario) -> [LeftOut; 3] {
     let (surroundings, dt_s) = (&scenario.surroundings, scenario.timing.dt_s());
-    let mut sensors = [&surroundings.pitch_sensor, &surroundings.rate_sensor].into_iter();
-    (
-        sensors.any(|sensor| Sensing::through(sensor.as_ref(), dt_s).at_largest_age),
-        "A sensor has a clock of its own, so that the age of its values changes: they are taken at their largest age.",
-    )
+    let sensors = [&surroundings.pitch_sensor, &surroundings.rate_sensor];
+    let seen = sensors.map(|sensor| Sensing::through(sensor.as_ref(), dt_s));
+    [
+        (
+            seen.iter().any(|it| it.at_largest_age),
+            "A sensor has a clock of its own, so that the age of its values changes: they are taken at their largest age.",
+        ),
+        (
+            seen.iter().any(|it| it.part > 0.0),
+            "A sensor is late by no whole number of samples: between two samples its quantity is taken to go in a straight line, in flights as here, so that what moves as fast as samples follow is seen too smooth.",
+        ),
+        (
+            scenario.plant_changes.iter().any(|change| change.ramp_s() > 0.0),
+            "A plant that changes bit by bit passes plants that are not asked: asked is each that lasts.",
+        ),
+    ]
 }

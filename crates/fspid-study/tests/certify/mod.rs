@@ -5,7 +5,7 @@ use std::path::Path;
 use fspid_proof::{Asked, LeftOut, LoopDescription, NotProvable, Range};
 use fspid_scenario::file::{self, Study};
 use fspid_sim::LinearPlant;
-use fspid_study::analysis::{Analysis, Question};
+use fspid_study::analysis::{Analysis, Question, not_in_the_linear_loop};
 
 fn study(path: &str, set: &[&str]) -> Study {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(path);
@@ -131,4 +131,25 @@ fn what_a_sensor_shows_wrongly_at_rest_is_named_beside_the_claim() {
     assert!(is_named("sensor={preset='ideal', pitch={scale_error_pct=2.0}}"));
     assert!(is_named("sensor={preset='ideal', pitch={bias_deg=0.1}}"));
     assert!(is_named("disturbance[0].enters_at='measurement'"));
+}
+
+/// A loop with a sensor half of 0.25 s late was proved, and with the sensor's own motion between the samples it grows.
+#[test]
+fn a_sensor_that_is_late_by_part_of_a_sample_and_a_plant_that_changes_bit_by_bit_are_named() {
+    let late = |delay: &str| format!("sensor={{preset='ideal', pitch={{delay_s={delay}}}}}");
+    let [part, whole] = [late("0.03"), late("0.04")].map(|set| parsed(SERVO, &[&set]));
+    let is_named = |study: &Study| left_out(study).contains(&LeftOut::BetweenSamples);
+    assert!(is_named(&part) && !is_named(&whole));
+    let told = |study: &Study| not_in_the_linear_loop(&study.scenario).join("\n");
+    assert!(told(&part).contains("no whole number of samples"), "{}", told(&part));
+    assert!(!told(&whole).contains("no whole number of samples"), "{}", told(&whole));
+    let change = |ramp_s: f64| {
+        let change = "[[plant_change]]\nat_s = 5.0\npreset = \"navion-full\"\n";
+        told(&parsed(&format!("{SERVO}{change}ramp_s = {ramp_s:?}\n"), &[]))
+    };
+    let [ramp, jump] = [change(2.0), change(0.0)];
+    assert!(
+        ramp.contains("passes plants that are not asked") && !jump.contains("passes"),
+        "{ramp}"
+    );
 }

@@ -78,3 +78,19 @@ fn a_time_to_settle_counts_where_the_flight_goes_on() {
         }
     }
 }
+
+/// At its last sample an error within the band had "recovered in 0 s", and left it again.
+#[test]
+fn an_error_that_never_left_its_band_is_seen_there_for_as_long_as_it_may_take_to_come_back() {
+    for (from_s, met) in [(9.9, false), (9.5, true), (9.0, true)] {
+        let found = judged(&[
+            "loop.duration_s=10.0",
+            &format!("requirement[2].from_s={from_s:?}"),
+            "requirement[2].most=0.5",
+        ]);
+        let recovery = &found.judgements[2];
+        assert_eq!(recovery.met, met, "{from_s}: {:?}", recovery.found);
+        let is_short = matches!(recovery.found, Err(NotEvaluated::TooShort { .. }));
+        assert_eq!(is_short, !met, "{from_s}: {:?}", recovery.found);
+    }
+}

@@ -9,13 +9,17 @@ use crate::file::files::Files;
 use crate::file::spec::configuration::CONFIGURATION_CHANGE;
 use crate::file::spec::flight;
 use crate::file::spec::scenario as keys;
-use crate::file::spec::signal::FREQUENCY_HZ;
+use crate::file::spec::signal::{FREQUENCY_HZ, PULSE_WIDTH_S, SignalKind};
 use crate::file::spec::simulator;
 use crate::keyed::{KeyName, Section};
 use fspid_diagnostics::Report;
+use fspid_diagnostics::digits::to_digits;
 
 /// Most samples that ramps of the plant may take, each with a discretisation of its own.
 const MOST_RAMP_SAMPLES: f64 = 100_000.0;
+
+/// Below this damping a servo swings visibly after a command.
+const SWINGS_BELOW: f64 = 0.5;
 
 pub(super) fn timing(report: &mut Report, section: &Section) -> Option<Timing> {
     let dt_s = section.get(keys::SAMPLE_PERIOD_S)?;
@@ -181,6 +185,36 @@ fn changed(
     data::plant(report, files, part)
 }
 
+/// Warns of a pulse between two samples, which acts at none.
+fn warn_of_brief(report: &mut Report, part: &Section, timing: Timing) {
+    if part.variant() != Some(SignalKind::Pulse) {
+        return;
+    }
+    let Some(width_s) = part.get(PULSE_WIDTH_S) else { return };
+    let at_s = part.get(keys::AT_S).unwrap_or(0.0);
+    let ends = [at_s, at_s + width_s].map(|end_s| timing.first_sample_at(end_s));
+    if ends[0] == ends[1] && at_s <= timing.end_s() {
+        let path = part.path(PULSE_WIDTH_S);
+        let dt_s = timing.dt_s();
+        report.warn(format!(
+            "{path} is {width_s:?} s from {at_s:?} s on, and no sample lies within: it does not act; samples are {dt_s:?} s apart"
+        ));
+    }
+}
+
+/// Warns of a servo that swings between samples, where nothing of it is seen.
+fn warn_of_swinging(report: &mut Report, scenario: &Scenario) {
+    let lag = scenario.actuator.lag();
+    let Some((natural_frequency_rad_s, damping)) = lag.second_order_parameters() else { return };
+    let most_rad_s = core::f64::consts::PI / scenario.timing.dt_s();
+    if natural_frequency_rad_s > most_rad_s && damping < SWINGS_BELOW {
+        report.warn(format!(
+            "the actuator swings at {natural_frequency_rad_s:?} rad/s between samples, which show up to {} rad/s: travel and rate of the elevator are of what samples show",
+            to_digits(most_rad_s, 4)
+        ));
+    }
+}
+
 fn check_ramp(report: &mut Report, part: &Section, timing: Timing) {
     let ramp_s = part.get(keys::RAMP_S).unwrap_or(0.0);
     let start_s = part.get(keys::AT_S).unwrap_or(0.0).min(timing.end_s());
@@ -205,6 +239,7 @@ pub(super) fn check_flight(report: &mut Report, section: &Section, scenario: &Sc
     let disturbances = section.sections(keys::DISTURBANCE);
     for part in section.get(keys::SETPOINT).into_iter().chain(disturbances) {
         late(report, part);
+        warn_of_brief(report, part, scenario.timing);
         let nyquist_hz = 0.5 / scenario.timing.dt_s();
         let frequency_hz = part.get(FREQUENCY_HZ).unwrap_or(0.0);
         if frequency_hz > nyquist_hz {
@@ -214,6 +249,7 @@ pub(super) fn check_flight(report: &mut Report, section: &Section, scenario: &Sc
             ));
         }
     }
+    warn_of_swinging(report, scenario);
     let others = [keys::GUST, keys::PLANT_CHANGE, CONFIGURATION_CHANGE].into_iter();
     others.flat_map(|key| section.sections(key)).for_each(|part| late(report, part));
     let mut ramps = section

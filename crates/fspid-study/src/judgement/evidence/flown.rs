@@ -236,7 +236,7 @@ impl Flown<'_> {
         // Written so that NaN is outside.
         let is_outside = |error: &f64| !(error.abs() <= within_deg);
         let Some(outside) = errors_deg.iter().rposition(is_outside) else {
-            return Ok(Case { value: 0.0, place });
+            return self.undisturbed(place, window_s, most_s);
         };
         match errors_deg.get(outside..) {
             Some([before, after, ..]) => {
@@ -250,6 +250,20 @@ impl Flown<'_> {
                 Err(NotEvaluated::NotRecovered { within_deg, window_s, place })
             }
         }
+    }
+
+    /// An error that never left its band, which is seen to stay there for as long as it may take to come back.
+    fn undisturbed(
+        &self,
+        place: CasePlace,
+        window_s: f64,
+        most_s: Option<f64>,
+    ) -> Result<Case, NotEvaluated> {
+        let allowance_s = 1e-6 * self.timing.dt_s();
+        if most_s.is_none_or(|most_s| window_s + allowance_s >= most_s) {
+            return Ok(Case { value: 0.0, place });
+        }
+        Err(NotEvaluated::TooShort { settled_s: 0.0, window_s, place: Box::new(place) })
     }
 
     /// A measure of the whole flight or of the time that counts.
