@@ -6,6 +6,7 @@ mod closed_loop;
 mod describing;
 mod empirical;
 mod gradient;
+mod held_limits;
 mod in_flight;
 mod moving_air;
 mod reference;
