@@ -166,7 +166,11 @@ pub const COVERAGE: &[KeyCoverage] = &[
         Refused,
         "where it is not that of the loop: the age of values changes",
     ),
-    row("sensor.pitch.delay_s", Covered, "samples that are remembered, and a part of one"),
+    row(
+        "sensor.pitch.delay_s",
+        Covered,
+        "samples that are remembered, and a part of one as a straight line between two, which is said beside it",
+    ),
     row(
         "sensor.pitch.erection_deg_min",
         Refused,
@@ -183,7 +187,11 @@ pub const COVERAGE: &[KeyCoverage] = &[
         Refused,
         "where it is not that of the loop: the age of values changes",
     ),
-    row("sensor.rate.delay_s", Covered, "samples that are remembered, and a part of one"),
+    row(
+        "sensor.rate.delay_s",
+        Covered,
+        "samples that are remembered, and a part of one as a straight line between two, which is said beside it",
+    ),
     row("wind.*", Beside, MOVING_AIR),
     row("gust.*", Beside, MOVING_AIR),
     row("turbulence.*", Beside, MOVING_AIR),
@@ -379,7 +387,11 @@ pub const COVERAGE: &[KeyCoverage] = &[
         "a factor on what is enclosed of each gain",
     ),
     row("requirement.*", NoPart, AIM),
-    row("dispersion.*", Beside, "the claim is about the nominal numbers"),
+    row(
+        "dispersion.*",
+        Beside,
+        "the claim is about the nominal numbers; what a family draws of the loop is in its claim, and what is drawn of all that acts on it is not",
+    ),
     row("tuning.*", NoPart, AIM),
     row("contest.*", NoPart, AIM),
 ];
