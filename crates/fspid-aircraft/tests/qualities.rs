@@ -214,6 +214,17 @@ fn two_real_fast_poles_are_a_short_period_of_high_damping() {
     assert_eq!(Dropback::of(&heavy), Err(Absent::ShortPeriodDoesNotSwing));
 }
 
+/// A pair with a damping of 0.107 was left out, and the real pole had a damping of 1.
+#[test]
+fn a_pair_that_is_slower_than_the_real_pole_is_no_integral_to_leave_out() {
+    let slow = model(&[1.0, 1.0], &[1.0, 6.002, 2.012, 5.0], 300.0);
+    assert_eq!(Qualities::of(&slow, Category::B).short_period, Err(Absent::SlowPair));
+    // A pair beside a slow real pole is the short period.
+    let usual = model(&[1.0, 1.0], &[1.0, 2.01, 4.02, 0.04], 300.0);
+    let found = Qualities::of(&usual, Category::B).short_period.expect("a pair");
+    assert!((found.mode.natural_frequency_rad_s - 2.0).abs() < 0.02, "{found:?}");
+}
+
 #[test]
 fn a_phugoid_that_grows_slowly_enough_is_level_3() {
     let with_phugoid = |re: f64, im: f64| {

@@ -80,6 +80,29 @@ fn bounds_of_gusts_are_told_written_checked_and_compared_with_the_air_that_flies
     assert_eq!(json(&output)["scope"]["disturbances"], bounds);
 }
 
+/// A pulse of one sample at the servo was at its rate limit with a quarter of the energy that was told.
+#[test]
+fn an_energy_at_the_servo_is_not_told_to_be_without_limits() {
+    let told = |scenario: &str| {
+        let folder = folder(scenario);
+        let words = ["certify", "gusts.toml", "--disturbances", "--format", "json"];
+        let bounds = json(&fspid(&words, folder.path()))["controllers"][0]["scope"]["disturbances"]
+            .as_array()
+            .expect("bounds")
+            .clone();
+        let at_servo = |measured_by: &str| {
+            let mut of = bounds
+                .iter()
+                .filter(|it| [&it["enters"], &it["measured_by"]] == ["elevator", measured_by]);
+            of.all(|it| it["at_servo_too"] == true)
+        };
+        [at_servo("peak"), at_servo("energy")]
+    };
+    assert_eq!(told(SCENARIO), [true, false]);
+    let without = SCENARIO.replace("output_limits_deg = [-20.0, 20.0]", "");
+    assert_eq!(told(&without.replace("rate_limit_deg_s = 37.0", "")), [true, true]);
+}
+
 #[test]
 fn a_loop_that_is_not_proved_has_no_bounds_and_says_so() {
     let folder = folder(&SCENARIO.replace("kp = 0.82", "kp = 40.0"));

@@ -246,6 +246,14 @@ fn an_interval_is_told_with_what_holds_on_both_sides_and_the_file_is_judged_alik
     let near = fspid(&["verify", "pitch.toml", "--interval", "controller.FSPID.nominl.kp"], folder);
     let meant = "did you mean `controller.FSPID.nominal.kp`?";
     assert!(text(&near.stderr).contains(meant), "{}", text(&near.stderr));
+    // What is required of the aircraft alone is required around a controller's number too.
+    let airframe =
+        fspid(&["verify", "pitch.toml", "--set", "mil-f-8785c", "--interval", path], folder);
+    assert!(
+        !text(&airframe.stdout).contains("as nothing is required"),
+        "{}",
+        text(&airframe.stdout)
+    );
     let mixed = [&asked[..], &["--set", "loop.sample_period_s=0.02"]].concat();
     let refused = fspid(&mixed, folder);
     assert_eq!(code(&refused), 2);

@@ -25,6 +25,11 @@ pub enum Absent {
     /// The short period does not swing.
     #[error("the short period does not swing: its two poles are real")]
     ShortPeriodDoesNotSwing,
+    /// Of three poles the real one is faster than the pair, so that none is the integral of the pitch rate.
+    #[error(
+        "of three poles the pair is slower than the real one: which of them is the short period nobody can tell"
+    )]
+    SlowPair,
     /// A model without the slow half of the motion.
     #[error("the model holds the speed, so it has no phugoid")]
     NoPhugoid,

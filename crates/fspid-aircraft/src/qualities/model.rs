@@ -91,6 +91,10 @@ impl PitchModel {
             3 => {
                 let slowest =
                     poles.iter().map(|pole| pole.norm_sqr()).fold(f64::INFINITY, f64::min);
+                // A pair that is slower than the real pole is neither the integral nor left out.
+                if poles.iter().any(|pole| pole.norm_sqr() <= slowest && pole.im != 0.0) {
+                    return Err(Absent::SlowPair);
+                }
                 let fast = poles.iter().filter(|pole| pole.norm_sqr() > slowest && pole.im >= 0.0);
                 Ok(fast.map(|&pole| AircraftMode { name: ModeName::ShortPeriod, pole }).collect())
             }

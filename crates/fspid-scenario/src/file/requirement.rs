@@ -208,7 +208,19 @@ fn of_set(
     };
     files.digest(text);
     check_choices(report, section, &set);
-    set.requirements(&choices(section))
+    let asked = set.requirements(&choices(section));
+    if asked.is_empty() && section.sound {
+        let message = format!(
+            "no line of `{name}` is asked with these choices, so that nothing would be required"
+        );
+        section.problem(
+            report,
+            keys::SET,
+            message,
+            "choices with which a line of the set is asked",
+        );
+    }
+    asked
 }
 
 fn choices(section: &Section) -> Choices {

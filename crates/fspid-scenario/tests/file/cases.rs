@@ -125,3 +125,17 @@ fn what_is_yes_or_no_has_no_mean_that_could_be_limited() {
     let told = problems("[[tuning.limit]]\nmeasure = \"stable\"\nleast = 0.9\n");
     assert!(told.contains("it is yes or no") && told.contains("tuning.limit[0].measure"), "{told}");
 }
+
+/// In turbulent air no line of it is asked, and nothing of it was told: 1 of 1 met.
+#[test]
+fn a_set_of_which_nothing_is_asked_is_refused() {
+    let with = |air: &str| {
+        let asked = format!(
+            "[[requirement]]\nset = \"mil-f-9490d-altitude\"\ntarget_ft = 5000.0\nair = \"{air}\"\n"
+        );
+        file::parse(&format!("{}{asked}", file::starter()), "asked.toml", None, &[])
+    };
+    let told = with("turbulent").expect_err("refused").to_string();
+    assert!(told.contains("no line of `mil-f-9490d-altitude` is asked"), "{told}");
+    assert!(with("smooth").is_ok());
+}

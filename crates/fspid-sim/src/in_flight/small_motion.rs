@@ -357,14 +357,16 @@ impl Flying<'_> {
     }
 }
 
-/// Numbers of an aircraft beyond pitching, and the places of two of them.
-pub(crate) const BEYOND: usize = 7;
+/// Numbers of an aircraft beyond pitching, and the places of some of them.
+pub(crate) const BEYOND: usize = 9;
 /// Altitude.
 pub(crate) const ALTITUDE: usize = 0;
 /// Heading.
 pub(crate) const HEADING: usize = 1;
 /// Power of the engine.
-const POWER: usize = 6;
+pub(crate) const POWER: usize = 6;
+/// Aileron.
+pub(crate) const AILERON: usize = 7;
 
 /// What a controller without limits remembers.
 const REMEMBERED: usize = 3;

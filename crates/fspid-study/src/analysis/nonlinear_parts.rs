@@ -15,7 +15,7 @@ pub fn not_in_the_linear_loop(scenario: &Scenario) -> Vec<String> {
     applying.map(|(_, sentence)| (*sentence).to_owned()).collect()
 }
 
-fn of_what_flies(scenario: &Scenario) -> [LeftOut; 7] {
+fn of_what_flies(scenario: &Scenario) -> [LeftOut; 8] {
     let surroundings = &scenario.surroundings;
     let actuator = &scenario.actuator;
     let is_aircraft = scenario.plant.aircraft().is_some();
@@ -26,6 +26,10 @@ fn of_what_flies(scenario: &Scenario) -> [LeftOut; 7] {
     let erects = surroundings.pitch_sensor.is_some_and(|s| s.model().erection_rad_s > 0.0);
     [
         (is_aircraft, "The aircraft is nonlinear: analysed is its linear model at the trim."),
+        (
+            is_aircraft && scenario.autopilot.is_none(),
+            "Roll, yaw and bank are not asked: whether the aircraft holds its wings level, with its leveller and damper, is told of flights with an [[outer_loop]] and by `fspid aircraft modes`.",
+        ),
         (
             scenario.plant.aircraft().is_some_and(|plant| !plant.changing().is_still()),
             "Configurations that move and fuel that is burnt are left out: analysed is the aircraft as it is at the start.",

@@ -192,7 +192,8 @@ pub(super) fn in_json(scope: &Scope) -> Value {
         let most = one.unlimited_up_to.filter(|most| most.is_finite());
         json!({
             "enters": one.way.name(),
-            "at_servo_too": one.at_servo,
+            // Of an energy at the servo no size is known up to which no limit acts.
+            "at_servo_too": one.at_servo && (one.extent == Extent::Peak || most.is_none()),
             "unit": word,
             "bounds": one.quantity.name(),
             "measured_by": one.extent.name(),

@@ -311,7 +311,7 @@ pub(super) fn air(aircraft: &MotionNumbers) -> String {
     let MotionNumbers { height_m, density_kg_m3, densities_kg_m3, .. } = aircraft;
     if *height_m > 0.0 {
         format!(
-            "of any density from {} to {} kg/m³, as it has within {} m above and below the trim and for as long as the flight is there",
+            "of any density from {} to {} kg/m³, as it has within {} m above and below the trim (the height by the word of the certificate; --against computes it) and for as long as the flight is there",
             short(densities_kg_m3.min),
             short(densities_kg_m3.max),
             short(*height_m),

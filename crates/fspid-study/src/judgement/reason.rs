@@ -161,6 +161,15 @@ pub enum NotEvaluated {
         /// The nearest that the flight came, ft.
         left_ft: f64,
     },
+    /// The flight ends while it still goes away from the altitude that it aims at.
+    #[error(
+        "the flight still goes away from the target of {} ft at its last sample that counts: fly on, to see how far",
+        to_digits(*target_ft, 6)
+    )]
+    StillGoing {
+        /// The target, ft.
+        target_ft: f64,
+    },
     /// The aircraft's data do not say how far the angle of attack may go.
     #[error(
         "the aircraft's data name no largest angle of attack: `alpha_deg` of its [validity] does"

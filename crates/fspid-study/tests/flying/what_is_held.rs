@@ -407,3 +407,72 @@ fn an_unstable_plant_that_is_lost_at_a_limit_is_not_called_stable() {
     // A plant that holds by itself rests somewhere, and its flight tells where.
     assert_eq!(of(11.0, &["plant.denominator=[1.0, 0.6, 0.4]"]), None);
 }
+
+/// A Navion whose heading moves its bank, by a gain that is too small to be seen in a flight of seconds.
+const HEADING: &str = r#"
+schema = 1
+name = "heading"
+[aircraft]
+name = "navion"
+airspeed_m_s = 55.0
+altitude_ft = 5000.0
+validity = "warn"
+[lateral]
+bank_time_s = 2.0
+yaw_damping = 0.4
+[actuator]
+time_constant_s = 0.1
+[loop]
+sample_period_s = 0.01
+duration_s = 50.0
+[setpoint]
+kind = "step"
+amplitude_deg = 0.0
+[[outer_loop]]
+name = "heading"
+kind = "pid"
+holds = "heading"
+moves = "bank"
+kp = -1.0
+ki = 0.0
+least = -30.0
+most = 30.0
+[[mode]]
+name = "straight"
+engage = ["heading"]
+[[mode]]
+name = "turned"
+at_s = 2.0
+engage = ["heading"]
+target = { heading_deg = 0.001 }
+[[controller]]
+name = "PID"
+kind = "pid"
+kp = 1.5
+ki = 0.3
+kd = 1.0
+derivative_filter_s = 0.05
+"#;
+
+/// The aileron was held from the bank that was commanded a sample before, and that was no number of the flight: a loop of the
+/// wrong sign was stable, proved and flown.
+#[test]
+fn loops_of_heading_grow_in_flight_as_their_poles_say_at_any_sample_period() {
+    for dt_s in ["0.01", "0.02", "0.05"] {
+        let set = [format!("loop.sample_period_s={dt_s}")];
+        let flown = result(HEADING, &[set[0].as_str()]);
+        let unstable = flown.at_rest.unstable.expect("it grows");
+        assert_eq!(unstable.mode, Some(0));
+        let rate_1_s = std::f64::consts::LN_2 / unstable.doubling_s;
+        let bank = flown.trace.column("bank_rad").expect("a bank");
+        let largest = |from_s: f64| {
+            let within = flown.trace.time_s.iter().zip(bank);
+            let within = within.filter(|(time_s, _)| (from_s..from_s + 10.0).contains(*time_s));
+            within.map(|(_, bank)| bank.abs()).fold(0.0, f64::max)
+        };
+        let flown_1_s = (largest(40.0) / largest(20.0)).ln() / 20.0;
+        assert!((flown_1_s / rate_1_s - 1.0).abs() < 0.1, "{dt_s}: {flown_1_s} {rate_1_s}");
+    }
+    let held = result(HEADING, &["outer_loop[0].kp=1.0"]);
+    assert!(held.at_rest.unstable.is_none(), "{:?}", held.at_rest);
+}

@@ -3,7 +3,7 @@
 use fspid_aircraft::{EulerAngles, Quaternion, Spool};
 
 use super::{AircraftFlight, AircraftMotion, Moving};
-use crate::in_flight::{ALTITUDE, BEYOND, HEADING};
+use crate::in_flight::{AILERON, ALTITUDE, BEYOND, HEADING, POWER};
 
 impl AircraftFlight {
     /// Change of pitch, u, w, q, deflection and, for a lag of second order, its rate; SI.
@@ -44,7 +44,8 @@ impl AircraftFlight {
         self.plant.spool() != Spool::Instant
     }
 
-    /// Altitude, heading, v, p, r, bank and power of the engine; SI.
+    /// Altitude, heading, v, p, r, bank, power of the engine, aileron and rudder; SI. The surfaces are held from where leveller
+    /// and damper had them last, with the bank that was commanded then.
     pub(crate) fn beyond(&self, motion: &AircraftMotion) -> [f64; BEYOND] {
         let Moving { state, power, .. } = &motion.body;
         let (euler, rates_rad_s) = (state.euler(), state.rates_rad_s);
@@ -56,6 +57,8 @@ impl AircraftFlight {
             rates_rad_s.z,
             euler.phi_rad,
             *power,
+            motion.aileron_rad,
+            motion.rudder_rad,
         ]
     }
 
@@ -76,9 +79,10 @@ impl AircraftFlight {
                 let phi_rad = euler.phi_rad + by;
                 state.attitude = Quaternion::from_euler(EulerAngles { phi_rad, ..euler });
             }
-            _ => *power += by,
+            POWER => *power += by,
+            AILERON => motion.aileron_rad += by,
+            _ => motion.rudder_rad += by,
         }
         self.look(motion);
-        self.steer(motion);
     }
 }

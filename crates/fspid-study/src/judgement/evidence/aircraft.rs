@@ -152,6 +152,11 @@ impl Seen<'_> {
             let left_ft = -found.value;
             return Err(NotEvaluated::TargetNotReached { target_ft: target_m / FOOT_M, left_ft });
         }
+        // At the last sample of the flight it is the largest so far, and nobody has seen it end.
+        let ends = self.trace.time_s.last().copied();
+        if found.value > 0.0 && found.place.at_s == ends {
+            return Err(NotEvaluated::StillGoing { target_ft: target_m / FOOT_M });
+        }
         Ok(found)
     }
 
@@ -208,7 +213,9 @@ mod tests {
     #[test]
     fn beyond_the_target_is_on_the_side_that_the_flight_does_not_come_from() {
         assert_eq!(overshoot(&[1000.0, 1100.0, 1230.0, 1190.0], 1200.0), Ok((30.0, 2.0)));
-        assert_eq!(overshoot(&[1000.0, 900.0, 850.0, 790.0], 800.0), Ok((10.0, 3.0)));
+        assert_eq!(overshoot(&[1000.0, 900.0, 850.0, 790.0, 795.0], 800.0), Ok((10.0, 3.0)));
+        let going = overshoot(&[1000.0, 900.0, 850.0, 790.0], 800.0).expect_err("it goes on");
+        assert!(going.contains("still goes away"), "{going}");
         // Just there is there.
         assert_eq!(overshoot(&[0.0, 500.0, 400.0], 500.0), Ok((0.0, 1.0)));
         let short = overshoot(&[1000.0, 1100.0, 1150.0, 1120.0], 1200.0).expect_err("not there");

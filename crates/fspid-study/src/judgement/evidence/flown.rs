@@ -82,6 +82,10 @@ pub(in crate::judgement) fn time_that_counts(
         None => Some(rows.saturating_sub(1)),
     };
     match last {
+        // From the last sample on, unless it is asked for itself, nothing was flown.
+        Some(last) if first == last && rows > 1 && conditions.to_s.is_none() => {
+            Err(NotEvaluated::NotFlown { from_s, to_s, end_s })
+        }
         Some(last) if first <= last && last < rows => Ok(first..=last),
         _ => Err(NotEvaluated::NotFlown { from_s, to_s, end_s }),
     }

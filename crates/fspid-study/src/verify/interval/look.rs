@@ -75,7 +75,11 @@ impl<'a> Looker<'a> {
             study.scenario.externals.retain(|it| it.name == *name);
         }
         let simulation = Simulation::of(&study)?;
-        let is_asked = |of: &str| self.asked.controller.as_ref().is_none_or(|name| name == of);
+        // What is required of the aircraft alone is required whoever flies it.
+        let is_other = |of: &str| study.scenario.flyers().any(|flyer| flyer.name() == of);
+        let is_asked = |of: &str| {
+            self.asked.controller.as_ref().is_none_or(|name| name == of || !is_other(of))
+        };
         let judgements = simulation.judgements.iter().filter(|it| is_asked(&it.controller));
         self.asked.requirements = judgements.clone().count();
         let mut found: Vec<String> = match self.asked.requirements {
