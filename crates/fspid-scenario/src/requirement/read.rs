@@ -36,7 +36,7 @@ pub(crate) fn limits(
 /// Refuses limits by which what is asked for, which is 1, were missed or its opposite met.
 fn check_yes(report: &mut Report, section: &Section, (least, most): (Option<f64>, Option<f64>)) {
     let allowed = "no limit, or `least = 1`: the answer is yes, which is 1, or no, which is 0";
-    if least.is_some_and(|least| least != 1.0) {
+    if least.is_some_and(|least| least - 1.0 != 0.0) {
         section.wrong(report, keys::LEAST, "a limit of a question", allowed);
     }
     if most.is_some() {
