@@ -10,7 +10,7 @@ use crate::aircraft::AircraftPlant;
 use crate::controller::Controller;
 use crate::error::SimError;
 use crate::held_limits;
-use crate::in_flight::{ModePoles, mode_poles};
+use crate::in_flight::{ModePoles, mode_poles, radius_alone};
 use crate::loop_model::{BreakPoint, LoopModel, Memory, SampledPlant};
 use crate::plant::LinearPlant;
 use crate::rest::{Doubt, Rest, RestPoint, Stand};
@@ -210,6 +210,12 @@ pub fn growth_at_rest(
         if holds != Some(true) {
             found.undecided.get_or_insert(Undecided::beyond(Doubt::ChangedAircraft));
         }
+    }
+    // What cannot be moved about its trim is judged by its pitch loop alone.
+    let alone = radius_alone(scenario, controller, gains).ok().flatten();
+    if let Some(spectral_radius) = alone.filter(|radius| !(*radius <= MODE_RADIUS)) {
+        let found_so = Undecided { spectral_radius, ..Undecided::beyond(Doubt::Wings) };
+        found.undecided.get_or_insert(found_so);
     }
     if held_limits::are_exceeded(scenario, controller, gains.ki) {
         found.undecided.get_or_insert(Undecided::beyond(Doubt::BeyondLimits));

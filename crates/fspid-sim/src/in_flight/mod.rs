@@ -360,7 +360,7 @@ impl<P: Borrow<Prepared>> Course<P> {
     }
 }
 
-pub(crate) use small_motion::{AILERON, ALTITUDE, BEYOND, HEADING, POWER};
+pub(crate) use small_motion::{AILERON, ALTITUDE, BEYOND, HEADING, POWER, radius_alone};
 pub use small_motion::{ModePoles, mode_poles};
 
 /// Commands on their way, the oldest at `next`.

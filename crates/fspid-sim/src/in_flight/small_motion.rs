@@ -69,8 +69,8 @@ fn poles_of(
     }
     let still = still(scenario, autopilot, mode)?;
     let settling = settling_samples(scenario)?;
-    let matrix = one_sample(&still, settling, autopilot.modes().get(mode), controller);
-    let matrix = matrix.map_err(|ended| ended.of(mode))?;
+    let motion = one_sample(&still, settling, autopilot.modes().get(mode), controller);
+    let (_, matrix) = motion.map_err(|ended| ended.of(mode))?;
     let dt_s = scenario.timing.dt_s();
     let found = eigenvalues(&matrix)?;
     let spectral_radius = found.iter().map(|z| modulus(*z)).fold(0.0, f64::max);
@@ -83,9 +83,41 @@ fn in_s(z: Complex, dt_s: f64) -> Complex {
     Complex::new(libm::log(modulus(z)) / dt_s, libm::atan2(z.im, z.re) / dt_s)
 }
 
-/// The scenario at rest in still air with one mode engaged for good, nothing of it limited.
-fn still(scenario: &Scenario, autopilot: &Autopilot, mode: usize) -> Result<Prepared, SimError> {
+/// Spectral radius of all small motions about the trim of an aircraft with nothing around its pitch loop: roll, yaw and bank
+/// with leveller and damper among them. None with an autopilot, whose modes have them, and where the aileron rolls nothing.
+///
+/// # Errors
+/// As [`mode_poles`].
+pub(crate) fn radius_alone(
+    scenario: &Scenario,
+    controller: &Controller,
+    gains: Gains<f64>,
+) -> Result<Option<f64>, SimError> {
+    if scenario.autopilot.is_some()
+        || scenario.plant.aircraft().is_none()
+        || on_its_way(scenario) > MOST_AS_STATES
+    {
+        return Ok(None);
+    }
+    let controller = unlimited(controller, gains)?;
+    let still = still_alone(scenario)?.prepare()?;
+    let motion = one_sample(&still, settling_samples(scenario)?, None, &controller);
+    let (places, matrix) = motion.map_err(|ended| ended.of(0))?;
+    let at = |beyond: usize| {
+        places.iter().position(|place| matches!(place, Place::Beyond(at) if *at == beyond))
+    };
+    let rolls = at(ROLLING).zip(at(AILERON)).and_then(|(row, column)| matrix.get(row, column));
+    if rolls.is_none_or(|by_aileron| by_aileron == 0.0) {
+        return Ok(None);
+    }
+    let found = eigenvalues(&matrix)?;
+    Ok(Some(found.iter().map(|z| modulus(*z)).fold(0.0, f64::max)))
+}
+
+/// The scenario at rest in still air, without what is around its pitch loop.
+fn still_alone(scenario: &Scenario) -> Result<Scenario, SimError> {
     let mut still = scenario.clone();
+    still.autopilot = None;
     still.disturbances.clear();
     let dt_s = scenario.timing.dt_s();
     // Long enough to settle, however short the flight is.
@@ -94,14 +126,22 @@ fn still(scenario: &Scenario, autopilot: &Autopilot, mode: usize) -> Result<Prep
     let course = scenario.surroundings.weather.as_ref().map(|weather| weather.course);
     let calm = |course| Weather { course, winds: Vec::new(), turbulence: None };
     let around_rest = |sensor: Option<Sensor>| sensor.map(|it| it.around_rest(dt_s));
-    // A scale would move the trim of what is not counted from it.
-    let late = |sensor: Option<Sensor>| around_rest(sensor).map(Sensor::without_scale);
     let Surroundings { pitch_sensor, rate_sensor, .. } = scenario.surroundings;
     still.surroundings = Surroundings {
         weather: course.map(calm),
         pitch_sensor: around_rest(pitch_sensor),
         rate_sensor: around_rest(rate_sensor),
     };
+    Ok(still)
+}
+
+/// The scenario at rest in still air with one mode engaged for good, nothing of it limited.
+fn still(scenario: &Scenario, autopilot: &Autopilot, mode: usize) -> Result<Prepared, SimError> {
+    let mut still = still_alone(scenario)?;
+    let dt_s = scenario.timing.dt_s();
+    // A scale would move the trim of what is not counted from it.
+    let late =
+        |sensor: Option<Sensor>| sensor.map(|it| it.around_rest(dt_s)).map(Sensor::without_scale);
     let beam = autopilot.glide_slope().zip(scenario.plant.aircraft()).map(|(beam, plant)| {
         let (sine, cosine) = crate::math::sin_cos(beam.course_rad);
         GlideSlope {
@@ -365,6 +405,8 @@ pub(crate) const ALTITUDE: usize = 0;
 pub(crate) const HEADING: usize = 1;
 /// Power of the engine.
 pub(crate) const POWER: usize = 6;
+/// Roll rate.
+const ROLLING: usize = 3;
 /// Aileron.
 pub(crate) const AILERON: usize = 7;
 
@@ -394,7 +436,7 @@ fn one_sample(
     settling_samples: usize,
     mode: Option<&Mode>,
     controller: &Controller,
-) -> Result<Matrix, Ended> {
+) -> Result<(Vec<Place>, Matrix), Ended> {
     let course = Course::start(prepared, &Perturbation::NONE)?;
     let mut at = Flying { course, memory: State::new() };
     for _ in 0..settling_samples {
@@ -416,5 +458,5 @@ fn one_sample(
             matrix.set(row, column, (more - less) / (2.0 * half)).map_err(SimError::from)?;
         }
     }
-    Ok(matrix)
+    Ok((places, matrix))
 }

@@ -68,6 +68,8 @@ pub enum Doubt {
     /// With a configuration of later there is no trim at the speed and altitude of the start; or with an empty tank none, or one
     /// that is not shown to hold.
     ChangedAircraft,
+    /// About the trim of an aircraft something grows that is no pitching.
+    Wings,
     /// What is held at the end of the flight takes more than a limit leaves, of a plant that is unstable by itself; or the flight
     /// of one ended at a limit with an error that grows.
     BeyondLimits,
@@ -77,7 +79,7 @@ impl Doubt {
     /// True for what is no loop of a plant at rest: a set-point that is held says nothing of it.
     #[must_use]
     pub fn is_beyond_the_loop(self) -> bool {
-        matches!(self, Self::LongMode | Self::ChangedAircraft | Self::BeyondLimits)
+        matches!(self, Self::LongMode | Self::ChangedAircraft | Self::Wings | Self::BeyondLimits)
     }
 }
 

@@ -85,6 +85,7 @@ fn undecided(spectral_radius: f64, doubt: Doubt) -> Absent {
         Doubt::LongMode => Absent::LongMode,
         Doubt::Commanded => Absent::Commanded { spectral_radius },
         Doubt::ChangedAircraft => Absent::ChangedAircraft,
+        Doubt::Wings => Absent::Wings { spectral_radius },
         Doubt::BeyondLimits => Absent::BeyondLimits,
     }
 }

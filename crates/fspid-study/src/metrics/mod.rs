@@ -123,6 +123,14 @@ pub enum Absent {
         "undecided: with its configuration or its fuel of later in the flight the aircraft has no trim at the speed and altitude of the start, or none that is shown to be stable"
     )]
     ChangedAircraft,
+    /// The aircraft's roll, yaw or bank grows about its trim.
+    #[error(
+        "undecided: about the trim something grows that is no pitching (spectral radius {spectral_radius:.6}): roll, yaw or bank, with leveller and damper as they are"
+    )]
+    Wings {
+        /// Spectral radius of all small motions, sample to sample.
+        spectral_radius: f64,
+    },
     /// An unstable plant is to be held where the limits leave too little for it.
     #[error(
         "undecided: the plant is unstable by itself, and at the end of the flight set-point and loads take more elevator than a limit leaves, or the command is at a limit and the error grows"

@@ -476,3 +476,41 @@ fn loops_of_heading_grow_in_flight_as_their_poles_say_at_any_sample_period() {
     let held = result(HEADING, &["outer_loop[0].kp=1.0"]);
     assert!(held.at_rest.unstable.is_none(), "{:?}", held.at_rest);
 }
+
+/// A Learjet with five times its inertia in yaw: with its leveller the bank doubles in 110 s, and pitch settles meanwhile.
+#[test]
+fn an_aircraft_whose_wings_do_not_hold_is_not_called_stable() {
+    const HEAVY: &str = r#"
+schema = 1
+name = "heavy tip tanks"
+[aircraft]
+name = "learjet-24"
+airspeed_m_s = 206.0
+altitude_m = 12192.0
+iz_kg_m2 = 300000.0
+validity = "warn"
+[actuator]
+time_constant_s = 0.05
+[loop]
+sample_period_s = 0.02
+duration_s = 30.0
+[setpoint]
+kind = "step"
+amplitude_deg = 1.0
+at_s = 1.0
+[[controller]]
+name = "PID"
+kind = "pid"
+kp = 0.82
+ki = 0.3
+kd = 0.2
+derivative_filter_s = 0.05
+"#;
+    let heavy = result(HEAVY, &[]).at_rest.undecided.expect("it grows");
+    let doubling_s = 0.02 * std::f64::consts::LN_2 / heavy.spectral_radius.ln();
+    assert!(heavy.doubt == Doubt::Wings && (doubling_s - 112.0).abs() < 5.0, "{doubling_s}");
+    let own = HEAVY.replace("iz_kg_m2 = 300000.0\n", "");
+    assert_eq!(result(&own, &[]).at_rest.undecided, None);
+    // What flies in pitch alone has no wings to hold.
+    assert_eq!(result(HEAVY, &["aircraft.model=linear"]).at_rest.undecided, None);
+}
