@@ -13,6 +13,8 @@ use fspid_scenario::units::{FOOT_M, KNOT_M_S, degrees};
 
 /// Two altitudes this close are one: nothing is overshot between them, m.
 const SAME_ALTITUDE_M: f64 = 1e-3;
+/// Who moves away by less than this, a foot, in the last tenth of a flight has come to rest for an overshoot.
+const CREEPS_M: f64 = FOOT_M;
 
 /// The case of a measure over some samples of a flight that was flown to its end.
 pub(super) fn case(
@@ -152,12 +154,19 @@ impl Seen<'_> {
             let left_ft = -found.value;
             return Err(NotEvaluated::TargetNotReached { target_ft: target_m / FOOT_M, left_ft });
         }
-        // At the last sample of the flight it is the largest so far, and nobody has seen it end.
-        let ends = self.trace.time_s.last().copied();
-        if found.value > 0.0 && found.place.at_s == ends {
+        let left_m = self.left_in_the_last_tenth_m().unwrap_or(0.0) * way_m.signum();
+        if found.value > 0.0 && left_m > CREEPS_M {
             return Err(NotEvaluated::StillGoing { target_ft: target_m / FOOT_M });
         }
         Ok(found)
+    }
+
+    /// How far the altitude rose in the last tenth of the flight, m; none where the time that counts ends before it.
+    fn left_in_the_last_tenth_m(&self) -> Option<f64> {
+        let altitudes_m = self.trace.column("altitude_m")?;
+        let last = altitudes_m.len().checked_sub(1).filter(|last| last == self.time.end())?;
+        let before = last.checked_sub((altitudes_m.len() / 10).max(1))?;
+        Some(altitudes_m[last] - altitudes_m[before])
     }
 
     fn alpha_margin(&self) -> Result<Case, NotEvaluated> {
@@ -214,6 +223,8 @@ mod tests {
     fn beyond_the_target_is_on_the_side_that_the_flight_does_not_come_from() {
         assert_eq!(overshoot(&[1000.0, 1100.0, 1230.0, 1190.0], 1200.0), Ok((30.0, 2.0)));
         assert_eq!(overshoot(&[1000.0, 900.0, 850.0, 790.0, 795.0], 800.0), Ok((10.0, 3.0)));
+        // It creeps, as every capture does in the end.
+        assert_eq!(overshoot(&[1000.0, 1190.0, 1200.5, 1200.75], 1200.0), Ok((0.75, 3.0)));
         let going = overshoot(&[1000.0, 900.0, 850.0, 790.0], 800.0).expect_err("it goes on");
         assert!(going.contains("still goes away"), "{going}");
         // Just there is there.
