@@ -97,7 +97,8 @@ pub fn is_lost_at_a_limit(scenario: &Scenario, controller: &Controller, trace: &
     let plants = scenario.lasting_plants();
     let rows = trace.rows();
     let tail = rows / 10;
-    if tail < LEAST_TAIL || is_unlimited(scenario, controller) {
+    let is_cut = |command_rad: &f64| is_at_a_limit(scenario, controller, *command_rad);
+    if tail < LEAST_TAIL || !trace.command_rad.last().is_some_and(is_cut) {
         return false;
     }
     let errors: Vec<f64> =
@@ -105,7 +106,6 @@ pub fn is_lost_at_a_limit(scenario: &Scenario, controller: &Controller, trace: &
     let Some((before, last)) = errors.split_at_checked(rows - tail) else { return false };
     let largest = before.iter().copied().fold(0.0, f64::max);
     let grows = last.windows(2).all(|two| two[0] < two[1]) && last.last() > Some(&largest);
-    let is_cut = |command_rad: &f64| is_at_a_limit(scenario, controller, *command_rad);
     grows
         && trace.command_rad.iter().rev().take(tail).all(is_cut)
         && plants.last().is_some_and(|(_, plant)| is_unstable(plant))

@@ -211,8 +211,11 @@ pub fn growth_at_rest(
             found.undecided.get_or_insert(Undecided::beyond(Doubt::ChangedAircraft));
         }
     }
-    // What cannot be moved about its trim is judged by its pitch loop alone.
-    let alone = radius_alone(scenario, controller, gains).ok().flatten();
+    // Who leaves the trim within the few samples that are flown grows; what else cannot be asked is judged by its pitch alone.
+    let alone = match radius_alone(scenario, controller, gains) {
+        Err(SimError::LeavesTrim { .. }) => Some(f64::INFINITY),
+        other => other.ok().flatten(),
+    };
     if let Some(spectral_radius) = alone.filter(|radius| !(*radius <= MODE_RADIUS)) {
         let found_so = Undecided { spectral_radius, ..Undecided::beyond(Doubt::Wings) };
         found.undecided.get_or_insert(found_so);

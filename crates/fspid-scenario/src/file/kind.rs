@@ -2,7 +2,7 @@
 
 use crate::keyed::document::{Item, Value};
 
-/// A key that every scenario has and no other file.
+/// Keys of scenarios, which no other file has.
 const OF_SCENARIOS: [&str; 4] = ["controller", "loop", "setpoint", "schema"];
 
 /// Keys by which another kind is known, what it is, and what reads it.

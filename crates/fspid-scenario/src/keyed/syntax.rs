@@ -28,7 +28,8 @@ fn slip(text: &str, at: usize) -> Option<&'static str> {
         return colon.or_else(|| of_value(line.trim()).filter(|_| !line.trim().is_empty()));
     };
     let value = value.split('#').next().unwrap_or("").trim();
-    if !key.trim().split('.').all(|part| is_bare(part.trim())) {
+    // Two keys on a line, or a table within it, are another matter.
+    if value.contains('=') || !key.trim().split('.').all(|part| is_bare(part.trim())) {
         return None;
     }
     of_value(value)
@@ -64,8 +65,11 @@ fn is_of_unit(sign: char) -> bool {
     sign.is_alphabetic() || sign == '°' || sign == '%'
 }
 
-/// True for `e3` after a number, and for one that is not written to its end.
+/// True for `e3` after a number, for one that is not written to its end, and for `0x` and its like.
 fn is_power(after: &str) -> bool {
+    if after.starts_with(['x', 'o', 'b']) {
+        return true;
+    }
     let Some(rest) = after.strip_prefix(['e', 'E']) else {
         return false;
     };
@@ -124,6 +128,8 @@ mod tests {
             ("name = pitch", "must be quoted"),
             ("kp = 1e", "exponent"),
             ("[loop", "unclosed table"),
+            ("a = 1 b = 2", "unexpected key or value"),
+            ("a = 0x1G", "invalid hexadecimal"),
         ] {
             let told = told(line);
             assert!(told.starts_with("not TOML: ") && told.contains(words), "{line}: {told}");

@@ -18,7 +18,7 @@ use fspid_diagnostics::digits::to_digits;
 /// Most samples that ramps of the plant may take, each with a discretisation of its own.
 const MOST_RAMP_SAMPLES: f64 = 100_000.0;
 
-/// Below this damping a servo swings visibly after a command.
+/// Below this damping ratio, of which a step is overshot by 16 %, a servo is told to swing: a choice of this project.
 const SWINGS_BELOW: f64 = 0.5;
 
 pub(super) fn timing(report: &mut Report, section: &Section) -> Option<Timing> {

@@ -77,7 +77,9 @@ impl Members {
         if drawn.len() > MOST_PARAMETERS {
             return Err(NoFamily::TooMany(drawn.len()));
         }
-        asking.follow_together(&drawn)?;
+        if drawn.len() > 1 {
+            asking.follow_together(&drawn)?;
+        }
         let parameters = drawn.iter().map(|one| one.parameter.clone()).collect();
         let source = Source::of(template.study(), description);
         Ok(Self { drawn, parameters, source })
@@ -237,12 +239,9 @@ impl Asking<'_> {
         let put = at.iter().try_for_each(|(drawn, value)| {
             drawn.put_between(&mut source, [*value; 2], self.description)
         });
-        let mut all = at.iter();
-        let last = all.next_back().map(|(drawn, _)| drawn.does_not_stand_alone());
-        match last {
-            Some(refused) if put.is_none() || !source.is_of(&flown, self.description) => {
-                Err(refused)
-            }
+        let follows = put.is_some() && source.is_of(&flown, self.description);
+        match at.last() {
+            Some((drawn, _)) if !follows => Err(drawn.does_not_stand_alone()),
             _ => Ok(()),
         }
     }

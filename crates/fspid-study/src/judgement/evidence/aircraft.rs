@@ -13,7 +13,7 @@ use fspid_scenario::units::{FOOT_M, KNOT_M_S, degrees};
 
 /// Two altitudes this close are one: nothing is overshot between them, m.
 const SAME_ALTITUDE_M: f64 = 1e-3;
-/// Who moves away by less than this, a foot, in the last tenth of a flight has come to rest for an overshoot.
+/// Who moves away by less than this, a foot, in the last tenth of a flight has come to rest for an overshoot: a choice of this project.
 const CREEPS_M: f64 = FOOT_M;
 
 /// The case of a measure over some samples of a flight that was flown to its end.
