@@ -22,7 +22,7 @@ pub(super) fn chapter(source: &Source<'_>) -> Chapter {
     let (shown, empty): (Vec<_>, Vec<_>) = measures.iter().partition(|it| !it.of.is_empty());
     let (main, others): (Vec<_>, Vec<_>) = shown.into_iter().partition(|it| it.is_main);
     let mut items = vec![Item::Text(
-        "Each row is the histogram of one controller, as high as its highest bin, whose share of the flights stands left of it. Below: a thin line from 5 to 95 %, a thick one over the middle half, a stroke at the median. A dashed line is a limit; its short strokes point to what is not allowed. Beyond: flights outside the picture; without: flights that do not have the measure.".to_owned(),
+        "Each row is the histogram of one controller, as high as its highest bin, whose share of the flights stands left of it. Below: a thin line from 5 to 95 %, a thick one over the middle half, a stroke at the median. A dashed line is a limit; its short strokes point to what is not allowed. Few values far from the others have no bar, and stand in words; without: flights that do not have the measure.".to_owned(),
     )];
     let pictures = |list: &[&Measure<'_>]| list.iter().map(|it| picture(source, it)).collect();
     items.push(Item::Figures(pictures(&main[..main.len().min(MOST_FIGURES)])));
