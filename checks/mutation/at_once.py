@@ -4,6 +4,7 @@
     at_once.py FILE… [-- FILTER…]   files of one crate; of its tests those whose names have one of the words
     at_once.py crates/fspid-lti/src/frequency/*.rs -- frequency:: loops::
     at_once.py --again LOG FILE… -- FILTER…     of all changes those alone whose names a log of before calls missed
+    at_once.py --also CRATE FILE… -- FILTER…    tests of another crate as well, which use the files through what they export
 
 The body of each function becomes a choice among itself and its changes (as cargo-mutants, from the registry, lists them), in a copy
 of the repository under target/mutation. Changes that do not compile are found by the compiler and left out, all at once. Not for
@@ -48,6 +49,13 @@ class Body(NamedTuple):
     file: str
     begin: int
     end: int
+
+
+class Tests(NamedTuple):
+    """A program of tests and the folder of its crate, in which it runs."""
+
+    program: str
+    folder: Path
 
 
 class Change(NamedTuple):
@@ -165,15 +173,16 @@ def expanded(span: dict) -> list[dict]:
     return [span, *(expanded(span["expansion"]["span"]) if span["expansion"] else [])]
 
 
-def compiled(package: str, places: dict[tuple[str, int], int]) -> tuple[set[int], list[str]]:
+def compiled(packages: list[str], places: dict[tuple[str, int], int]) -> tuple[set[int], list[Tests]]:
     """Builds the tests of the copy: numbers of changes that do not compile, and the programs where all do."""
-    command = ["cargo", "test", "-p", package, "--lib", "--tests", "--all-features", "--no-run", "--locked", "--message-format=json"]
+    chosen = [word for package in packages for word in ("-p", package)]
+    command = ["cargo", "test", *chosen, "--lib", "--tests", "--all-features", "--no-run", "--locked", "--message-format=json"]
     environment = {**os.environ, "CARGO_TARGET_DIR": str(TARGET), "CARGO_INCREMENTAL": "0", "RUSTFLAGS": "--cap-lints=warn -Awarnings"}
     done = subprocess.run(command, cwd=COPY, env=environment, capture_output=True, text=True)
     wrong, programs, others = set(), [], []
     for told in map(json.loads, done.stdout.splitlines()):
         if told["reason"] == "compiler-artifact" and told.get("executable") and told["profile"]["test"]:
-            programs.append(told["executable"])
+            programs.append(Tests(told["executable"], Path(told["manifest_path"]).parent))
         if told["reason"] != "compiler-message" or told["message"]["level"] != "error":
             continue
         spans = sorted(told["message"]["spans"], key=lambda it: not it["is_primary"])
@@ -187,14 +196,14 @@ def compiled(package: str, places: dict[tuple[str, int], int]) -> tuple[set[int]
     return wrong, programs
 
 
-def asked(programs: list[str], folder: Path, filters: list[str], number: int, longest_s: float) -> str:
+def asked(programs: list[Tests], filters: list[str], number: int, longest_s: float) -> str:
     """What tests make of a change: caught, missed or too long."""
     # One seed, so that a change that is noticed is noticed again.
     environment = {**os.environ, "MUTANT": str(number), "PROPTEST_RNG_SEED": "1"}
-    begin = {"cwd": folder, "env": environment, "start_new_session": True, "text": True}
-    for program in programs:
+    begin = {"env": environment, "start_new_session": True, "text": True}
+    for program, folder in programs:
         is_too_long = threading.Event()
-        with subprocess.Popen([program, *filters], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, **begin) as run:
+        with subprocess.Popen([program, *filters], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, **begin) as run:
 
             def end() -> None:
                 # Programs that a test has begun are of its group.
@@ -226,7 +235,7 @@ def copied() -> None:
             shutil.copyfile(ours, theirs)
 
 
-def built(files: list[str], crate: str) -> tuple[list[Change], set[int], list[str]]:
+def built(files: list[str], crate: str, also: list[str]) -> tuple[list[Change], set[int], list[Tests]]:
     """All changes, numbers of those that do not compile, and the tests' programs with all others."""
     texts = {file: (ROOT / file).read_text() for file in files}
     changes, unviable = listed(files, texts), set()
@@ -238,7 +247,7 @@ def built(files: list[str], crate: str) -> tuple[list[Change], set[int], list[st
         left = [it for it in changes if it.number not in unviable]
         places = {(file, line): number for file in files for line, number in written(file, texts[file], left).items()}
         print(f"building {sum(it.body is not None for it in left)} changes", flush=True)
-        wrong, programs = compiled(Path(crate).name, places)
+        wrong, programs = compiled([Path(crate).name, *also], places)
         if not wrong:
             return changes, unviable, programs
         unviable |= wrong
@@ -248,6 +257,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("files", nargs="+", metavar="FILE")
     parser.add_argument("--again", metavar="LOG", type=Path)
+    parser.add_argument("--also", metavar="CRATE", action="append", default=[])
     words, filters = sys.argv[1:], []
     if "--" in words:
         words, filters = words[: words.index("--")], words[words.index("--") + 1:]
@@ -258,14 +268,13 @@ def main() -> int:
     install = ["cargo", "install", "cargo-mutants", "--version", "27.1.0", "--locked", "--debug", "--quiet", "--root", TOOLS]
     subprocess.run(install, check=True)
     copied()
-    changes, unviable, programs = built(files, crate)
-    folder = COPY / crate
-    if asked(programs, folder, filters, 0, 3600) != "missed":
+    changes, unviable, programs = built(files, crate, options.also)
+    if asked(programs, filters, 0, 3600) != "missed":
         raise SystemExit("the tests fail without a change")
     found = {}
     for change in changes:
         if change.body and change.number not in unviable and (again is None or change.name in again):
-            found[change] = asked(programs, folder, filters, change.number, LONGEST_S)
+            found[change] = asked(programs, filters, change.number, LONGEST_S)
             if found[change] == "missed":
                 print(f"missed: {change.name}, in line {change.line}", flush=True)
     if not found:

@@ -67,20 +67,34 @@ fn shifted(text: &str, shift_em: f64, attributes: &str) -> String {
 
 /// Width of `text` at `size` px in a common sans-serif face, on the safe side (px).
 pub(super) fn text_width(text: &str, size: f64) -> f64 {
+    let mut next = text.chars().skip(1);
+    let mut is_marked = false;
     let ems: f64 = text
         .chars()
-        .map(|c| match c {
-            'i' | 'j' | 'l' | 'I' | '.' | ',' | ':' | ';' | '|' | '\'' | '!' => 0.28,
-            'f' | 't' | 'r' | ' ' | '(' | ')' | '[' | ']' | '/' | '-' => 0.36,
-            'm' | 'w' | 'M' | 'W' | '%' | '@' => 0.9,
-            '_' | '^' | '{' | '}' => 0.0,
-            // Scripts of East Asia, and pictures.
-            '\u{2e80}'.. => 1.1,
-            c if c.is_uppercase() => 0.72,
-            _ => 0.57,
+        .map(|c| match (c, next.next()) {
+            // Marks of lowered and raised parts are not drawn; other lines below words are.
+            ('_' | '^', Some('{')) => {
+                is_marked = true;
+                0.0
+            }
+            ('{' | '}', _) if is_marked => 0.0,
+            (c, _) => ems(c),
         })
         .sum();
     ems * size
+}
+
+/// Width of a character (em).
+fn ems(c: char) -> f64 {
+    match c {
+        'i' | 'j' | 'l' | 'I' | '.' | ',' | ':' | ';' | '|' | '\'' | '!' => 0.28,
+        'f' | 't' | 'r' | ' ' | '(' | ')' | '[' | ']' | '/' | '-' => 0.36,
+        'm' | 'w' | 'M' | 'W' | '%' | '@' => 0.9,
+        // Scripts of East Asia, and pictures.
+        '\u{2e80}'.. => 1.1,
+        c if c.is_uppercase() => 0.72,
+        _ => 0.57,
+    }
 }
 
 /// Letters and digits of the title, for readable ids.
@@ -114,6 +128,12 @@ mod tests {
         assert_eq!(num(-0.001), "0");
         assert_eq!(num(f64::NAN), "0");
         assert_eq!(num(1.10), "1.1");
+    }
+
+    #[test]
+    fn lines_below_words_take_room_and_marks_take_none() {
+        assert!(text_width("phase_margin", 10.0) > text_width("phasemargin", 10.0));
+        assert!((text_width("k_{p}", 10.0) - text_width("kp", 10.0)).abs() < 1e-9);
     }
 
     #[test]
