@@ -59,6 +59,13 @@ impl<M: ForceModel> Aircraft<M> {
         Self { environment, ..self }
     }
 
+    /// The same body in the same environment, its forces in another form.
+    #[must_use]
+    pub fn with_model<N: ForceModel>(self, form: impl FnOnce(M) -> N) -> Aircraft<N> {
+        let Self { mass, model, environment } = self;
+        Aircraft { mass, model: form(model), environment }
+    }
+
     /// Another body with other forces in the same environment; the body is one that [`Self::new`] takes.
     pub(crate) fn with_parts<N>(&self, mass: MassProperties, model: N) -> Aircraft<N> {
         Aircraft { mass, model, environment: self.environment }

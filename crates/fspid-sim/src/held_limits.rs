@@ -3,6 +3,7 @@
 //! Around a rest limits do not act. Where there is none, because what is held takes more command than there is, a plant that is
 //! unstable by itself leaves for good, however stable the loop would be around it.
 
+use fspid_aircraft::ForceModel;
 use fspid_core::Limits;
 
 use crate::controller::Controller;
@@ -17,23 +18,44 @@ const UNSTABLE: f64 = 1e-6;
 const LEAST_TAIL: usize = 10;
 
 /// True where set-point and loads of the last sample, held on, take more than the limits of controller, servo or elevator of a
-/// linear plant that is unstable by itself and stays to the end. Without an integral rest is elsewhere, outer loops command
-/// another set-point, and a nonlinear aircraft has a flight to tell: of these it is not asked.
+/// plant that is unstable by itself and stays to the end; of a nonlinear aircraft its linear model at the last of its trims, with
+/// the travel of its own elevator. Without an integral rest is elsewhere, and outer loops command another set-point: of these it
+/// is not asked.
 pub(crate) fn are_exceeded(scenario: &Scenario, controller: &Controller, ki: f64) -> bool {
     if ki == 0.0 || scenario.autopilot.is_some() || is_unlimited(scenario, controller) {
         return false;
     }
-    let plants = scenario.lasting_plants();
-    plants.last().is_some_and(|(_, plant)| {
-        is_unstable(plant) && Held::at_the_end(scenario, plant).exceeds(scenario, controller)
+    last_plant(scenario).is_some_and(|plant| {
+        is_unstable(&plant) && Held::at_the_end(scenario, &plant).exceeds(scenario, controller)
     })
 }
 
 fn is_unlimited(scenario: &Scenario, controller: &Controller) -> bool {
+    controller.config().limits.is_none() && limits_of_servo(scenario).is_empty()
+}
+
+/// What keeps the elevator from where the controller wants it, rad from its place at the trim: limits of commands and of travel.
+fn limits_of_servo(scenario: &Scenario) -> Vec<(f64, f64)> {
     let actuator = &scenario.actuator;
-    controller.config().limits.is_none()
-        && actuator.command_limits_rad().is_none()
-        && actuator.travel_rad().is_none()
+    let of_airframe = scenario.plant.aircraft().map(|plant| {
+        let (trim_rad, travel) =
+            (plant.trim().point.elevator_rad, plant.aircraft().model().travel().elevator_rad);
+        // The trailing edge goes down where the command, nose up positive, is negative.
+        (trim_rad - travel.max, trim_rad - travel.min)
+    });
+    let all = [actuator.command_limits_rad(), actuator.travel_rad(), of_airframe];
+    all.into_iter()
+        .flatten()
+        .filter(|(least, most)| least.is_finite() || most.is_finite())
+        .collect()
+}
+
+/// The linear plant that a flight ends with; none of an aircraft that has no trim then.
+fn last_plant(scenario: &Scenario) -> Option<LinearPlant> {
+    match scenario.plant.aircraft() {
+        Some(aircraft) => aircraft.lasting().ok()?.pop()?.1,
+        None => scenario.lasting_plants().last().map(|(_, plant)| (*plant).clone()),
+    }
 }
 
 fn is_unstable(plant: &LinearPlant) -> bool {
@@ -74,9 +96,7 @@ impl Held {
         let commanded_rad = travelled_rad - self.at_servo_rad;
         let beyond = |(least, most): (f64, f64), value: f64| value < least || value > most;
         let ends = |limits: &Limits<f64>| (limits.lower(), limits.upper());
-        let actuator = &scenario.actuator;
-        let of_servo = [actuator.command_limits_rad(), actuator.travel_rad()];
-        of_servo.into_iter().flatten().any(|limits| beyond(limits, travelled_rad))
+        limits_of_servo(scenario).into_iter().any(|limits| beyond(limits, travelled_rad))
             || controller.config().limits.as_ref().is_some_and(|it| beyond(ends(it), commanded_rad))
     }
 }
@@ -90,11 +110,10 @@ fn last_load_rad(scenario: &Scenario, entry: Entry) -> f64 {
     values.last().copied().unwrap_or(0.0)
 }
 
-/// True where a flight of a linear plant that is unstable by itself ends at a limit of controller or servo with an error that is
+/// True where a flight of a plant that is unstable by itself ends at a limit of controller or servo with an error that is
 /// larger than ever before and grows: through the last tenth of it, at every sample.
 #[must_use]
 pub fn is_lost_at_a_limit(scenario: &Scenario, controller: &Controller, trace: &Trace) -> bool {
-    let plants = scenario.lasting_plants();
     let rows = trace.rows();
     let tail = rows / 10;
     let is_cut = |command_rad: &f64| is_at_a_limit(scenario, controller, *command_rad);
@@ -108,12 +127,11 @@ pub fn is_lost_at_a_limit(scenario: &Scenario, controller: &Controller, trace: &
     let grows = last.windows(2).all(|two| two[0] < two[1]) && last.last() > Some(&largest);
     grows
         && trace.command_rad.iter().rev().take(tail).all(is_cut)
-        && plants.last().is_some_and(|(_, plant)| is_unstable(plant))
+        && last_plant(scenario).is_some_and(|plant| is_unstable(&plant))
 }
 
 fn is_at_a_limit(scenario: &Scenario, controller: &Controller, command_rad: f64) -> bool {
     let own = controller.config().limits.as_ref().map(|it| (it.lower(), it.upper()));
-    let (servo, travel) = (scenario.actuator.command_limits_rad(), scenario.actuator.travel_rad());
     let at_end = |(least, most): (f64, f64)| command_rad <= least || command_rad >= most;
-    [own, servo, travel].into_iter().flatten().any(at_end)
+    own.into_iter().chain(limits_of_servo(scenario)).any(at_end)
 }

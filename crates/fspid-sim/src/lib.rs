@@ -17,6 +17,7 @@ mod actuated;
 pub mod actuator;
 pub mod air;
 pub mod aircraft;
+mod around_trim;
 pub mod autopilot;
 pub mod batch;
 mod closed_loop;

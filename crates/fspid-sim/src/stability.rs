@@ -7,10 +7,10 @@ use fspid_core::{Gains, PidConfig};
 use fspid_lti::{Complex, Matrix, eigenvalues, spectral_radius};
 
 use crate::aircraft::AircraftPlant;
+use crate::around_trim;
 use crate::controller::Controller;
 use crate::error::SimError;
 use crate::held_limits;
-use crate::in_flight::{ModePoles, mode_poles, radius_alone};
 use crate::loop_model::{BreakPoint, LoopModel, Memory, SampledPlant};
 use crate::plant::LinearPlant;
 use crate::rest::{Doubt, Rest, RestPoint, Stand};
@@ -164,9 +164,35 @@ impl Undecided {
     }
 }
 
+impl GrowthAtRest {
+    /// Takes a doubt, if it is the first.
+    pub(crate) fn doubt(&mut self, undecided: Undecided) {
+        self.undecided.get_or_insert(undecided);
+    }
+
+    /// With what was found elsewhere.
+    pub(crate) fn and(self, other: Self) -> Self {
+        Self {
+            certain: self.certain.or(other.certain),
+            undecided: self.undecided.or(other.undecided),
+        }
+    }
+
+    /// True where nothing grows and nothing is undecided.
+    pub(crate) fn holds(&self) -> bool {
+        self.certain.is_none() && self.undecided.is_none()
+    }
+
+    /// What is certain leaves no doubt.
+    fn settled(self) -> Self {
+        Self { undecided: self.undecided.filter(|_| self.certain.is_none()), ..self }
+    }
+}
+
 /// Asks each plant that lasts at every rest of the scenario, with the gains that the controller has with everything at
 /// zero: what [`Stand`] says of each. A nonlinear aircraft is judged by its linear model around the trim, and where it has an
-/// autopilot by its small motions with everything that each mode engages ([`mode_poles`]).
+/// autopilot by its small motions with everything that each mode engages ([`mode_poles`](crate::mode_poles)); so is the aircraft
+/// that it comes to be, by a configuration that moves or fuel that is burnt.
 ///
 /// A pole on the unit circle grows nothing. One within 10⁻⁹ of it cannot be told from such a one after rounding and is
 /// undecided: at 100 Hz it would double in 80 days, at 10 kHz in 19 hours.
@@ -179,98 +205,53 @@ pub fn growth_at_rest(
     gains: Gains<f64>,
 ) -> Result<GrowthAtRest, SimError> {
     scenario.plant.require_equations()?;
-    let aircraft = scenario.plant.aircraft();
-    let trimmed = aircraft.map(AircraftPlant::lasting).transpose()?.unwrap_or_default();
     let mut found = GrowthAtRest::default();
-    if trimmed.iter().any(|(_, plant)| plant.is_none()) {
-        found.undecided = Some(Undecided::beyond(Doubt::ChangedAircraft));
+    if let Some(aircraft) = scenario.plant.aircraft() {
+        found = around_trim::growth(scenario, aircraft, controller, gains)?;
     }
-    let around_trim = trimmed.iter().filter_map(|(from_s, plant)| Some((*from_s, plant.as_ref()?)));
-    for (from_s, plant) in around_trim.chain(scenario.lasting_plants()) {
-        let sampled = SampledPlant::of(scenario, plant)?;
-        for rest in Rest::all(scenario, plant, controller, gains) {
-            let at = rest.at;
-            match rest.stand(scenario, &sampled, controller)? {
-                Stand::Holds => {}
-                Stand::Undecided { spectral_radius, doubt } => {
-                    found.undecided.get_or_insert(Undecided { spectral_radius, at, doubt });
-                }
-                Stand::Grows { spectral_radius } => {
-                    let doubling_s = doubling_s(spectral_radius, scenario.timing.dt_s());
-                    let mode = None;
-                    let certain = Unstable { spectral_radius, from_s, doubling_s, at, mode };
-                    return Ok(GrowthAtRest { certain: Some(certain), undecided: None });
-                }
+    for (from_s, plant) in scenario.lasting_plants() {
+        if found.certain.is_none() {
+            found = found.and(growth_of_plant(scenario, (from_s, plant), controller, gains)?);
+        }
+    }
+    if held_limits::are_exceeded(scenario, controller, gains.ki) {
+        found.doubt(Undecided::beyond(Doubt::BeyondLimits));
+    }
+    Ok(found.settled())
+}
+
+/// Asks one plant, which a flight has from a time on, at every rest.
+pub(crate) fn growth_of_plant(
+    scenario: &Scenario,
+    (from_s, plant): (f64, &LinearPlant),
+    controller: &Controller,
+    gains: Gains<f64>,
+) -> Result<GrowthAtRest, SimError> {
+    let sampled = SampledPlant::of(scenario, plant)?;
+    let mut found = GrowthAtRest::default();
+    for rest in Rest::all(scenario, plant, controller, gains) {
+        let at = rest.at;
+        match rest.stand(scenario, &sampled, controller)? {
+            Stand::Holds => {}
+            Stand::Undecided { spectral_radius, doubt } => {
+                found.doubt(Undecided { spectral_radius, at, doubt });
+            }
+            Stand::Grows { spectral_radius } => {
+                let doubling_s = doubling_s(spectral_radius, scenario.timing.dt_s());
+                let mode = None;
+                let certain = Unstable { spectral_radius, from_s, doubling_s, at, mode };
+                return Ok(GrowthAtRest { certain: Some(certain), ..found });
             }
         }
     }
-    if let Some(fuelled) = aircraft.filter(|aircraft| aircraft.changing().fuel().is_some()) {
-        let empty = fuelled.without_fuel();
-        let holds = empty.map(|plant| holds(scenario, &plant, controller, gains)).transpose()?;
-        if holds != Some(true) {
-            found.undecided.get_or_insert(Undecided::beyond(Doubt::ChangedAircraft));
-        }
-    }
-    // Who leaves the trim within the few samples that are flown grows; what else cannot be asked is judged by its pitch alone.
-    let alone = match radius_alone(scenario, controller, gains) {
-        Err(SimError::LeavesTrim { .. }) => Some(f64::INFINITY),
-        other => other.ok().flatten(),
-    };
-    if let Some(spectral_radius) = alone.filter(|radius| !(*radius <= MODE_RADIUS)) {
-        let found_so = Undecided { spectral_radius, ..Undecided::beyond(Doubt::Wings) };
-        found.undecided.get_or_insert(found_so);
-    }
-    if held_limits::are_exceeded(scenario, controller, gains.ki) {
-        found.undecided.get_or_insert(Undecided::beyond(Doubt::BeyondLimits));
-    }
-    match growing_mode(scenario, controller, gains) {
-        Ok(None) => {}
-        Ok(certain) => return Ok(GrowthAtRest { certain, undecided: None }),
-        Err(SimError::LongWay { .. }) => {
-            found.undecided.get_or_insert(Undecided::beyond(Doubt::LongMode));
-        }
-        Err(error) => return Err(error),
-    }
     Ok(found)
-}
-
-/// True where every rest of a plant is shown to hold.
-fn holds(
-    scenario: &Scenario,
-    plant: &LinearPlant,
-    controller: &Controller,
-    gains: Gains<f64>,
-) -> Result<bool, SimError> {
-    let sampled = SampledPlant::of(scenario, plant)?;
-    let rests = Rest::all(scenario, plant, controller, gains).into_iter();
-    let mut stands = rests.map(|rest| rest.stand(scenario, &sampled, controller));
-    stands.try_fold(true, |all, stand| Ok(all && stand? == Stand::Holds))
 }
 
 /// Up to this spectral radius a mode of an autopilot grows nothing: above 1 by the error of the differences that found it,
 /// with room. At 50 Hz what it lets pass doubles in 38 hours.
 pub const MODE_RADIUS: f64 = 1.0 + 1e-7;
 
-/// The first mode of an autopilot in which something grows around the trim.
-fn growing_mode(
-    scenario: &Scenario,
-    controller: &Controller,
-    gains: Gains<f64>,
-) -> Result<Option<Unstable>, SimError> {
-    let Some(autopilot) = &scenario.autopilot else { return Ok(None) };
-    let found = mode_poles(scenario, controller, gains)?;
-    // Written so that NaN grows.
-    let grows = |poles: &&ModePoles| !(poles.spectral_radius <= MODE_RADIUS);
-    Ok(found.iter().find(grows).map(|poles| Unstable {
-        spectral_radius: poles.spectral_radius,
-        from_s: autopilot.modes().get(poles.mode).map_or(0.0, |mode| mode.entry.at_s),
-        doubling_s: doubling_s(poles.spectral_radius, scenario.timing.dt_s()),
-        at: RestPoint::TRIM,
-        mode: Some(poles.mode),
-    }))
-}
-
-fn doubling_s(spectral_radius: f64, dt_s: f64) -> f64 {
+pub(crate) fn doubling_s(spectral_radius: f64, dt_s: f64) -> f64 {
     let rate = libm::log(spectral_radius);
     if rate > 0.0 { dt_s * core::f64::consts::LN_2 / rate } else { f64::INFINITY }
 }

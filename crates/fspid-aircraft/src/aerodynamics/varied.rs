@@ -14,6 +14,7 @@ use crate::controls::Controls;
 use crate::error::AircraftError;
 use crate::flow::Flow;
 use crate::fuel::FuelledBody;
+use crate::mass::MassProperties;
 use crate::validity::{Range, Travel, Validity};
 use crate::vector::Vector3;
 
@@ -112,14 +113,39 @@ impl VariedModel {
         shares: impl Iterator<Item = f64>,
         fuel: Option<(&FuelledBody, f64)>,
     ) -> Aircraft<VariedNow<'_>> {
+        let (mass, aft_chords) = self.body(aircraft, fuel);
+        let standing =
+            Standing::of(&self.base, &self.deployed, &self.effects, (shares, aft_chords));
+        aircraft.with_parts(mass, VariedNow { standing, effects: &self.effects })
+    }
+
+    /// The same as the start of another flight: the [aircraft of an instant](Self::at) as a model and a body of their own.
+    pub fn starting_at<M: ForceModel>(
+        &self,
+        aircraft: &Aircraft<M>,
+        shares: impl Iterator<Item = f64>,
+        fuel: Option<(&FuelledBody, f64)>,
+    ) -> Aircraft<Self> {
+        let (mass, aft_chords) = self.body(aircraft, fuel);
+        let all = self.deployed.iter().cloned().zip(shares);
+        let deployed: Vec<_> = all.map(|(one, share)| Deployed { share, ..one }).collect();
+        let shares = deployed.iter().map(|one| one.share);
+        let start = Standing::of(&self.base, &deployed, &self.effects, (shares, aft_chords));
+        let (base, effects) = (self.base, self.effects.clone());
+        aircraft.with_parts(mass, Self { base, aft_chords, deployed, effects, start })
+    }
+
+    /// Mass properties, and chords that the centre of gravity is behind that of the data.
+    fn body<M: ForceModel>(
+        &self,
+        aircraft: &Aircraft<M>,
+        fuel: Option<(&FuelledBody, f64)>,
+    ) -> (MassProperties, f64) {
         let (mass, moved_m) = match fuel {
             Some((body, fuel_kg)) => (body.with(fuel_kg), body.cg_aft_m(fuel_kg)),
             None => (*aircraft.mass(), 0.0),
         };
-        let aft_chords = self.aft_chords + moved_m / self.chord_m();
-        let standing =
-            Standing::of(&self.base, &self.deployed, &self.effects, (shares, aft_chords));
-        aircraft.with_parts(mass, VariedNow { standing, effects: &self.effects })
+        (mass, self.aft_chords + moved_m / self.chord_m())
     }
 
     fn now(&self) -> VariedNow<'_> {

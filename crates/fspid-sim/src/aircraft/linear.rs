@@ -30,36 +30,17 @@ impl AircraftPlant {
 
     /// The plants that last: of the trim, and after each change of a configuration that of the trim at the same speed and
     /// altitude, each with the time from which on it stands, s. Nothing in the place of one that has no trim there, or no
-    /// transfer function. Burnt fuel is another question ([`without_fuel`](Self::without_fuel)).
+    /// transfer function. Burnt fuel is another question.
     ///
     /// # Errors
     /// As [`linear`](Self::linear).
     pub fn lasting(&self) -> Result<Vec<(f64, Option<LinearPlant>)>, SimError> {
         let mut plants = vec![(0.0, Some(self.linear()?))];
-        let full = self.changing().fuel().map(|fuel| fuel.left_kg(0.0));
-        for ended_s in self.changing().ended_s() {
-            plants.push((ended_s, self.changed(ended_s, full)));
+        for later in self.standings().iter().filter(|it| it.is_after_a_change()) {
+            let plant = later.plant.as_ref().and_then(|plant| plant.linear().ok());
+            plants.push((later.from_s, plant));
         }
         Ok(plants)
-    }
-
-    /// The plant with its configurations as they are at last and an empty tank; nothing where it has no trim, or nothing that
-    /// could change.
-    #[must_use]
-    pub fn without_fuel(&self) -> Option<LinearPlant> {
-        let last_s = self.changing().ended_s().last().copied().unwrap_or(0.0);
-        self.changed(last_s, Some(0.0))
-    }
-
-    /// The plant at the trim of an aircraft that has changed.
-    fn changed(&self, time_s: f64, fuel_kg: Option<f64>) -> Option<LinearPlant> {
-        let (model, changing) = (self.aircraft().model().varied()?, self.changing());
-        let fuel = changing.fuel().zip(fuel_kg).map(|(fuel, left_kg)| (&fuel.body, left_kg));
-        let aircraft = model.at(self.aircraft(), changing.shares(time_s), fuel);
-        let trim = aircraft.trim(self.trim().target).ok()?;
-        let (denominator, numerators) =
-            self.model(&aircraft.linearise(&trim)).ok()?.transfer_functions().ok()?;
-        LinearPlant::new(&numerators[0], &denominator, ElevatorSign::NoseDownPositive).ok()
     }
 
     /// States u, w, q, θ; inputs elevator, forward gust, downward gust, pitch gust.

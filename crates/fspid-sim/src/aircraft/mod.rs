@@ -34,15 +34,19 @@ mod flight;
 mod forces;
 mod leveller;
 mod linear;
+mod standing;
 
 pub(crate) use atmosphere::Atmosphere;
 pub use changing::{
     Changing, ConfigurationChange, DEPLOYMENT_COLUMNS, Deployment, Fuel, MOST_CONFIGURATIONS, Shown,
 };
 pub use column::{AIRCRAFT_COLUMNS, AircraftSample};
-pub(crate) use flight::{AircraftAbreast, AircraftFlight, AircraftMotion, NotAbreast, Wing};
+pub(crate) use flight::{
+    AircraftAbreast, AircraftFlight, AircraftMotion, NotAbreast, Wing, step_s,
+};
 pub use forces::Forces;
 pub use leveller::{LEVELLING_TIME_S, WingLeveller, YawDamper};
+pub(crate) use standing::{Change, Standing};
 
 use fspid_aircraft::{Aircraft, Spool, Trim, TrimTarget};
 

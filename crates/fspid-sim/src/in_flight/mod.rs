@@ -360,7 +360,9 @@ impl<P: Borrow<Prepared>> Course<P> {
     }
 }
 
-pub(crate) use small_motion::{AILERON, ALTITUDE, BEYOND, HEADING, POWER, radius_alone};
+pub(crate) use small_motion::{
+    AILERON, ALTITUDE, Alone, BEYOND, HEADING, POWER, Seeing, THROTTLE, poles_of_mode, radii_alone,
+};
 pub use small_motion::{ModePoles, mode_poles};
 
 /// Commands on their way, the oldest at `next`.

@@ -70,6 +70,10 @@ pub enum Doubt {
     ChangedAircraft,
     /// About the trim of an aircraft something grows that is no pitching.
     Wings,
+    /// A gyro's erection makes small motions grow, until its bounded rate holds them.
+    Erection,
+    /// About the trim of an aircraft something moves so fast that the steps of the integration do not follow.
+    FastMotion,
     /// What is held at the end of the flight takes more than a limit leaves, of a plant that is unstable by itself; or the flight
     /// of one ended at a limit with an error that grows.
     BeyondLimits,
@@ -79,7 +83,19 @@ impl Doubt {
     /// True for what is no loop of a plant at rest: a set-point that is held says nothing of it.
     #[must_use]
     pub fn is_beyond_the_loop(self) -> bool {
-        matches!(self, Self::LongMode | Self::ChangedAircraft | Self::Wings | Self::BeyondLimits)
+        match self {
+            Self::Rounding
+            | Self::OneSide
+            | Self::LongWay
+            | Self::ChangingAge
+            | Self::Commanded => false,
+            Self::LongMode
+            | Self::ChangedAircraft
+            | Self::Wings
+            | Self::Erection
+            | Self::FastMotion
+            | Self::BeyondLimits => true,
+        }
     }
 }
 

@@ -34,6 +34,7 @@ pub use memory::{SensorState, Truth};
 pub use preset::SensorPreset;
 
 use crate::error::{SimError, finite, not_negative, positive};
+use crate::in_flight::Seeing;
 use crate::loop_model::Sensing;
 use crate::signal::noise::standard_normal;
 
@@ -41,6 +42,8 @@ use crate::signal::noise::standard_normal;
 pub const STREAM: u64 = 2 << 32;
 /// Streams that each channel has.
 const STREAMS: u64 = 4;
+/// Erection that no small motion meets the end of, rad/s.
+const AT_ONCE_RAD_S: f64 = 1e6;
 
 /// Channel number of the pitch sensor in the streams of its seed.
 pub const PITCH: u32 = 0;
@@ -111,12 +114,20 @@ impl Sensor {
         &self.model
     }
 
-    /// What small motions around rest see of it: scale and age, the largest where that changes.
-    pub(crate) fn around_rest(self, dt_s: f64) -> Self {
-        let Sensing { samples, part, .. } = Sensing::through(Some(&self), dt_s);
-        let delay_s = (samples as f64 + part) * dt_s;
+    /// What small motions around rest see of it: scale and age.
+    pub(crate) fn around_rest(self, dt_s: f64, seeing: Seeing) -> Self {
+        let Sensing { samples, part, at_largest_age, .. } = Sensing::through(Some(&self), dt_s);
+        let latest_s = (samples as f64 + part) * dt_s;
+        let delay_s = match seeing {
+            Seeing::Earliest if at_largest_age => self.model.delay_s,
+            Seeing::Midway if at_largest_age => 0.5 * (self.model.delay_s + latest_s),
+            _ => latest_s,
+        };
+        let erects = seeing == Seeing::Erecting && self.model.erection_rad_s > 0.0;
+        let erection_rad_s = if erects { AT_ONCE_RAD_S } else { 0.0 };
         let SensorModel { scale_error, .. } = self.model;
-        Self { model: SensorModel { scale_error, delay_s, ..SensorModel::default() }, ..self }
+        let model = SensorModel { scale_error, delay_s, erection_rad_s, ..SensorModel::default() };
+        Self { model, ..self }
     }
 
     /// The same without an error of its scale.

@@ -29,9 +29,19 @@ impl AnalysedMode {
         controller: &Controller,
         gains: Gains<f64>,
     ) -> Result<Vec<Self>, SimError> {
-        let names = scenario.autopilot.iter().flat_map(|autopilot| autopilot.modes());
-        let found = mode_poles(scenario, controller, gains)?;
-        let named = names.zip(found).map(|(mode, poles)| Self { name: mode.name.clone(), poles });
+        let modes =
+            scenario.autopilot.as_ref().map(|autopilot| autopilot.modes()).unwrap_or_default();
+        let found = mode_poles(scenario, controller, gains)?.into_iter();
+        let named = found.filter_map(|poles| {
+            let mode = modes.get(poles.mode)?;
+            let name = match poles.from_s > mode.entry.at_s {
+                true => {
+                    format!("{}, with the aircraft from {} s on", mode.name, short(poles.from_s))
+                }
+                false => mode.name.clone(),
+            };
+            Some(Self { name, poles })
+        });
         Ok(named.collect())
     }
 

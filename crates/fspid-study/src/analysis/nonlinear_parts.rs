@@ -32,7 +32,7 @@ fn of_what_flies(scenario: &Scenario) -> [LeftOut; 8] {
         ),
         (
             scenario.plant.aircraft().is_some_and(|plant| !plant.changing().is_still()),
-            "Configurations that move and fuel that is burnt are left out: analysed is the aircraft as it is at the start.",
+            "While configurations move, and with fuel that is burnt, the aircraft is between those that are analysed: as it is at the start, and after each change of a configuration at the trim of the same speed and altitude.",
         ),
         (
             scenario.autopilot.is_some(),

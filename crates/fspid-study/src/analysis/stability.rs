@@ -86,6 +86,8 @@ fn undecided(spectral_radius: f64, doubt: Doubt) -> Absent {
         Doubt::Commanded => Absent::Commanded { spectral_radius },
         Doubt::ChangedAircraft => Absent::ChangedAircraft,
         Doubt::Wings => Absent::Wings { spectral_radius },
+        Doubt::Erection => Absent::Erection { spectral_radius },
+        Doubt::FastMotion => Absent::FastMotion,
         Doubt::BeyondLimits => Absent::BeyondLimits,
     }
 }

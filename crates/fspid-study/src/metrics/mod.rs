@@ -97,9 +97,9 @@ pub enum Absent {
         /// Spectral radius of the sampled closed loop on that side.
         spectral_radius: f64,
     },
-    /// A sensor has a clock of its own, and the loop is stable with one age of its values and not with another.
+    /// A sensor has a clock of its own, and with one age of its values the loop is unstable.
     #[error(
-        "undecided: a sensor with a clock of its own shows values of changing age, with one of which the loop is unstable (spectral radius {spectral_radius:.6}) and with another stable"
+        "undecided: a sensor with a clock of its own shows values of changing age, with one of which the loop is unstable (spectral radius {spectral_radius:.6}): while they change it may hold"
     )]
     ChangingAge {
         /// Spectral radius of the sampled closed loop with the age at which it is unstable.
@@ -131,6 +131,19 @@ pub enum Absent {
         /// Spectral radius of all small motions, sample to sample.
         spectral_radius: f64,
     },
+    /// A vertical gyro's erection makes small motions grow.
+    #[error(
+        "undecided: with the erection of the vertical gyro small motions grow (spectral radius {spectral_radius:.6}) until its bounded rate holds them, so that an oscillation stays"
+    )]
+    Erection {
+        /// Spectral radius of all small motions, sample to sample.
+        spectral_radius: f64,
+    },
+    /// The aircraft moves faster than the steps of the integration follow.
+    #[error(
+        "undecided: about the trim the airframe has a motion that is too fast for the steps of the integration, which are the sample period and 0.01 s at most: with a shorter period they follow it"
+    )]
+    FastMotion,
     /// An unstable plant is to be held where the limits leave too little for it.
     #[error(
         "undecided: the plant is unstable by itself, and at the end of the flight set-point and loads take more elevator than a limit leaves, or the command is at a limit and the error grows"

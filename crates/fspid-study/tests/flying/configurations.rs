@@ -285,10 +285,10 @@ fn what_moves_in_flight_is_said_to_be_left_out() {
     let change = "configuration_change=[{name='flaps', to=0.5, at_s=2.0, takes_s=1.0}]";
     let moves = study(NAVION, &[FLAPS, change]);
     let text = Analysis::of(&moves, Question::default()).expect("a loop").text();
-    assert!(text.contains("Configurations that move"), "{text}");
+    assert!(text.contains("While configurations move"), "{text}");
     let still = study(NAVION, &[FLAPS, "aircraft.configuration=['flaps']"]);
     let text = Analysis::of(&still, Question::default()).expect("a loop").text();
-    assert!(!text.contains("Configurations that move"), "{text}");
+    assert!(!text.contains("While configurations move"), "{text}");
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Nonlinear aircraft in the loop: against the linear model, in moving air, at their limits.
 #![allow(clippy::float_cmp, reason = "the same bits are asked for")]
 
+mod about_trims;
 mod agreement;
 mod at_rest;
 mod configurations;

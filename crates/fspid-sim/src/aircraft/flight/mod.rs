@@ -120,6 +120,11 @@ impl SubSteps {
     }
 }
 
+/// Longest step of the integration of a loop with that period, s.
+pub(crate) fn step_s(dt_s: f64) -> f64 {
+    SubSteps::of(dt_s).step_s
+}
+
 impl AircraftMotion {
     /// Change of pitch from the trim, rad.
     pub(crate) fn theta_rad(&self) -> f64 {

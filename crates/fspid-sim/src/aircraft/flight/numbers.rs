@@ -3,7 +3,7 @@
 use fspid_aircraft::{EulerAngles, Quaternion, Spool};
 
 use super::{AircraftFlight, AircraftMotion, Moving};
-use crate::in_flight::{AILERON, ALTITUDE, BEYOND, HEADING, POWER};
+use crate::in_flight::{AILERON, ALTITUDE, BEYOND, HEADING, POWER, THROTTLE};
 
 impl AircraftFlight {
     /// Change of pitch, u, w, q, deflection and, for a lag of second order, its rate; SI.
@@ -44,8 +44,9 @@ impl AircraftFlight {
         self.plant.spool() != Spool::Instant
     }
 
-    /// Altitude, heading, v, p, r, bank, power of the engine, aileron and rudder; SI. The surfaces are held from where leveller
-    /// and damper had them last, with the bank that was commanded then.
+    /// Altitude, heading, v, p, r, bank, power of the engine, aileron, rudder and throttle; SI. The surfaces are held from where
+    /// leveller and damper had them last, with the bank that was commanded then, and so is the throttle, by which an engine that
+    /// follows at once accelerates the aircraft that is looked at.
     pub(crate) fn beyond(&self, motion: &AircraftMotion) -> [f64; BEYOND] {
         let Moving { state, power, .. } = &motion.body;
         let (euler, rates_rad_s) = (state.euler(), state.rates_rad_s);
@@ -59,6 +60,7 @@ impl AircraftFlight {
             *power,
             motion.aileron_rad,
             motion.rudder_rad,
+            motion.throttle,
         ]
     }
 
@@ -81,6 +83,7 @@ impl AircraftFlight {
             }
             POWER => *power += by,
             AILERON => motion.aileron_rad += by,
+            THROTTLE => motion.throttle += by,
             _ => motion.rudder_rad += by,
         }
         self.look(motion);

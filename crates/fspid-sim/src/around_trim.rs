@@ -1,0 +1,167 @@
+//! Whether something grows about the trims of a nonlinear aircraft: pitch, everything else, and the modes of an autopilot.
+
+use fspid_core::Gains;
+use fspid_lti::{eigenvalues, modulus};
+
+use crate::aircraft::{AircraftPlant, Change, Standing, step_s};
+use crate::controller::Controller;
+use crate::error::SimError;
+use crate::in_flight::{Alone, Seeing, poles_of_mode, radii_alone};
+use crate::rest::{Doubt, RestPoint};
+use crate::scenario::Scenario;
+use crate::stability::{
+    GrowthAtRest, MODE_RADIUS, Undecided, Unstable, doubling_s, growth_of_plant,
+};
+
+/// A controller and the gains that it has at rest.
+type Held<'a> = (&'a Controller, Gains<f64>);
+
+/// Largest |λ| h of a motion that steps of the classical method of Runge and Kutta follow: there it is off by 3·10⁻⁴ a step.
+const FOLLOWED: f64 = 0.5;
+
+/// What grows about the trims of a scenario's aircraft, as it is at the start and as it comes to be.
+pub(crate) fn growth(
+    scenario: &Scenario,
+    aircraft: &AircraftPlant,
+    controller: &Controller,
+    gains: Gains<f64>,
+) -> Result<GrowthAtRest, SimError> {
+    let mut found = GrowthAtRest::default();
+    for standing in aircraft.standings() {
+        let Some(own) = standing.flown_in(scenario) else {
+            found.doubt(Undecided::beyond(Doubt::ChangedAircraft));
+            continue;
+        };
+        let of_it = match (standing.by, of_standing(&own, &standing, (controller, gains))) {
+            (Change::Nothing, of_it) => of_it?,
+            (Change::Configuration, Ok(of_it)) => of_it,
+            // How much is burnt only the flight tells.
+            (Change::Fuel, Ok(of_it)) if of_it.holds() => of_it,
+            (Change::Configuration | Change::Fuel, _) => doubted(Doubt::ChangedAircraft, f64::NAN),
+        };
+        found = found.and(of_it);
+    }
+    Ok(found)
+}
+
+fn doubted(doubt: Doubt, spectral_radius: f64) -> GrowthAtRest {
+    let undecided = Undecided { spectral_radius, at: RestPoint::TRIM, doubt };
+    GrowthAtRest { certain: None, undecided: Some(undecided) }
+}
+
+/// The same of one aircraft, which the scenario has.
+fn of_standing(
+    scenario: &Scenario,
+    standing: &Standing,
+    (controller, gains): Held<'_>,
+) -> Result<GrowthAtRest, SimError> {
+    let Some(plant) = scenario.plant.aircraft() else { return Ok(GrowthAtRest::default()) };
+    let linear = plant.linear()?;
+    let mut found = growth_of_plant(scenario, (standing.from_s, &linear), controller, gains)?;
+    if found.certain.is_some() {
+        return Ok(found);
+    }
+    if !is_followed(scenario, plant)? {
+        found.doubt(Undecided::beyond(Doubt::FastMotion));
+    }
+    Ok(found.and(match &scenario.autopilot {
+        None => alone(scenario, (controller, gains)),
+        Some(_) => of_modes(scenario, standing, (controller, gains))?,
+    }))
+}
+
+/// True where the steps of the integration are short beside every motion of the airframe.
+fn is_followed(scenario: &Scenario, plant: &AircraftPlant) -> Result<bool, SimError> {
+    let full = plant.aircraft().linearise(plant.trim()).full().map_err(|_| SimError::NotLinear)?;
+    let fastest_rad_s = eigenvalues(full.a())?.iter().map(|s| modulus(*s)).fold(0.0, f64::max);
+    // Written so that NaN is not.
+    Ok(fastest_rad_s * step_s(scenario.timing.dt_s()) <= FOLLOWED)
+}
+
+/// Written so that NaN grows.
+fn grows(spectral_radius: f64) -> bool {
+    !(spectral_radius <= MODE_RADIUS)
+}
+
+/// Small motions with nothing around the pitch loop, which is asked by itself.
+fn alone(scenario: &Scenario, held: Held<'_>) -> GrowthAtRest {
+    // Who leaves the trim within the few samples that are flown grows; what else cannot be asked is judged by its pitch alone.
+    let radii = |seeing| match radii_alone(scenario, held, seeing) {
+        Err(SimError::LeavesTrim { .. }) => {
+            Some(Alone { pitching: f64::INFINITY, all: Some(f64::INFINITY) })
+        }
+        other => other.ok().flatten(),
+    };
+    let Some(latest) = radii(Seeing::Latest) else { return GrowthAtRest::default() };
+    if let Some(spectral_radius) = latest.all.filter(|radius| grows(*radius)) {
+        return doubted(Doubt::Wings, spectral_radius);
+    }
+    let worst = |it: Alone| it.all.unwrap_or(it.pitching);
+    if grows(worst(latest)) {
+        return GrowthAtRest::default();
+    }
+    let others = Seeing::others(scenario).into_iter();
+    let mut grown = others.filter_map(|seeing| Some((seeing, worst(radii(seeing)?))));
+    let first = grown.find(|(_, radius)| grows(*radius));
+    first.map_or(GrowthAtRest::default(), |(seeing, radius)| doubted(of_seeing(seeing), radius))
+}
+
+/// Why it is not decided where sensors that show motions otherwise change the answer.
+fn of_seeing(seeing: Seeing) -> Doubt {
+    match seeing {
+        Seeing::Erecting => Doubt::Erection,
+        Seeing::Earliest | Seeing::Midway | Seeing::Latest => Doubt::ChangingAge,
+    }
+}
+
+/// The first mode of the autopilot in which something grows.
+fn of_modes(
+    scenario: &Scenario,
+    standing: &Standing,
+    held: Held<'_>,
+) -> Result<GrowthAtRest, SimError> {
+    let modes = standing.modes(scenario);
+    let last = scenario.autopilot.as_ref().map_or(0, |it| it.modes().len()).saturating_sub(1);
+    let mut found = GrowthAtRest::default();
+    for (number, begins_s) in modes {
+        let of_mode = match of_mode(scenario, number, held) {
+            Err(SimError::LongWay { .. }) => doubted(Doubt::LongMode, f64::NAN),
+            other => other?,
+        };
+        let from_s = begins_s.max(standing.from_s);
+        // When a mode ends the flight tells: what both last is certain.
+        let meets =
+            !standing.is_after_a_change() || (number == last && standing.until_s == f64::INFINITY);
+        found = found.and(match of_mode.certain {
+            Some(it) if meets => {
+                GrowthAtRest { certain: Some(Unstable { from_s, ..it }), ..of_mode }
+            }
+            Some(_) => doubted(Doubt::ChangedAircraft, f64::NAN),
+            None => of_mode,
+        });
+    }
+    Ok(found)
+}
+
+/// One mode, with sensors as they may show its motions.
+fn of_mode(scenario: &Scenario, mode: usize, held: Held<'_>) -> Result<GrowthAtRest, SimError> {
+    let radius =
+        |seeing| poles_of_mode(scenario, held, mode, seeing).map(|poles| poles.spectral_radius);
+    let spectral_radius = radius(Seeing::Latest)?;
+    for seeing in Seeing::others(scenario) {
+        let doubt = of_seeing(seeing);
+        // A loop that grows with every age may hold while it changes: such a one was flown.
+        if doubt == Doubt::ChangingAge && grows(spectral_radius) {
+            return Ok(doubted(doubt, spectral_radius));
+        }
+        if let Some(other) =
+            Some(radius(seeing)?).filter(|it| !grows(spectral_radius) && grows(*it))
+        {
+            return Ok(doubted(doubt, other));
+        }
+    }
+    let doubling_s = doubling_s(spectral_radius, scenario.timing.dt_s());
+    let (from_s, at, mode) = (0.0, RestPoint::TRIM, Some(mode));
+    let certain = Unstable { spectral_radius, from_s, doubling_s, at, mode };
+    Ok(GrowthAtRest { certain: grows(spectral_radius).then_some(certain), undecided: None })
+}

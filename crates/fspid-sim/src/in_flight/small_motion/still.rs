@@ -1,0 +1,165 @@
+//! The flights about a trim whose small motions are asked: at rest in still air, nothing limited.
+
+use fspid_core::{Gains, Pid, PidConfig};
+
+use crate::actuator::Actuator;
+use crate::autopilot::{Autopilot, Entry, GlideSlope, Mode, OuterLoop, TotalEnergy};
+use crate::controller::Controller;
+use crate::error::SimError;
+use crate::loop_model::Sensing;
+use crate::scenario::{Prepared, Scenario};
+use crate::sensor::Sensor;
+use crate::surroundings::{Surroundings, Weather};
+use crate::timing::Timing;
+
+/// Samples flown before anything is moved, beside those that sensors remember: all loops are engaged then.
+const SETTLING_SAMPLES: usize = 3;
+/// How far the antenna of a level beam is, m: from there a height is seen as it is, to 10⁻¹⁰ m.
+const FAR_M: f64 = 1e7;
+
+/// How sensors show small motions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Seeing {
+    /// As late as they ever are, gyros upright.
+    Latest,
+    /// Those with a clock of their own as early as they ever are.
+    Earliest,
+    /// Those with a clock of their own halfway between: as late as they are in the mean.
+    Midway,
+    /// As late as they ever are, with gyros that follow the apparent vertical, which is all that small motions see of
+    /// erection at a bounded rate.
+    Erecting,
+}
+
+impl Seeing {
+    /// The ways in which a scenario's sensors may show them, beside [`Latest`](Self::Latest).
+    pub(crate) fn others(scenario: &Scenario) -> Vec<Self> {
+        let dt_s = scenario.timing.dt_s();
+        let has_ages = |sensor: &Sensor| Sensing::through(Some(sensor), dt_s).at_largest_age;
+        let ages = sensors(scenario).any(has_ages).then_some([Self::Midway, Self::Earliest]);
+        let pitch = &scenario.surroundings.pitch_sensor;
+        let erects = pitch.is_some_and(|sensor| sensor.model().erection_rad_s > 0.0);
+        ages.into_iter().flatten().chain(erects.then_some(Self::Erecting)).collect()
+    }
+}
+
+/// The scenario at rest in still air, without what is around its pitch loop.
+pub(super) fn still_alone(scenario: &Scenario, seeing: Seeing) -> Result<Scenario, SimError> {
+    let mut still = scenario.clone();
+    still.autopilot = None;
+    still.disturbances.clear();
+    // Without what is wider than small motions, or keeps a surface from them.
+    still.actuator =
+        Actuator::new(scenario.actuator.lag()).with_delay(scenario.actuator.delay_samples())?;
+    let dt_s = scenario.timing.dt_s();
+    // Long enough to settle, however short the flight is.
+    let samples = settling_samples(scenario)? + 10;
+    still.timing = Timing::new(dt_s, samples as f64 * dt_s)?;
+    let course = scenario.surroundings.weather.as_ref().map(|weather| weather.course);
+    let calm = |course| Weather { course, winds: Vec::new(), turbulence: None };
+    let around_rest = |sensor: Option<Sensor>| sensor.map(|it| it.around_rest(dt_s, seeing));
+    let Surroundings { pitch_sensor, rate_sensor, .. } = scenario.surroundings;
+    still.surroundings = Surroundings {
+        weather: course.map(calm),
+        pitch_sensor: around_rest(pitch_sensor),
+        rate_sensor: around_rest(rate_sensor),
+    };
+    Ok(still)
+}
+
+/// The scenario at rest in still air with one mode engaged for good, nothing of it limited.
+pub(super) fn still(
+    scenario: &Scenario,
+    autopilot: &Autopilot,
+    mode: usize,
+    seeing: Seeing,
+) -> Result<Prepared, SimError> {
+    let mut still = still_alone(scenario, seeing)?;
+    let dt_s = scenario.timing.dt_s();
+    // A scale would move the trim of what is not counted from it.
+    let late = |sensor: Option<Sensor>| {
+        sensor.map(|it| it.around_rest(dt_s, seeing)).map(Sensor::without_scale)
+    };
+    let beam = autopilot.glide_slope().zip(scenario.plant.aircraft()).map(|(beam, plant)| {
+        let (sine, cosine) = crate::math::sin_cos(beam.course_rad);
+        GlideSlope {
+            angle_rad: 0.0,
+            antenna_m: [FAR_M * cosine, FAR_M * sine],
+            altitude_m: plant.trim().target.altitude_m,
+            angle_sensor: late(beam.angle_sensor),
+            range_sensor: late(beam.range_sensor),
+            ..*beam
+        }
+    });
+    let loops = autopilot.loops().iter().map(|outer| {
+        let gains = at_rest(&outer.controller);
+        let controller = unlimited(&outer.controller, gains)?;
+        Ok(OuterLoop { controller, sensor: late(outer.sensor), ..outer.clone() })
+    });
+    let loops = loops.collect::<Result<Vec<_>, SimError>>()?;
+    let energy = autopilot.total_energy().map(|total| {
+        Ok::<_, SimError>(TotalEnergy {
+            energy: unlimited(&total.energy, at_rest(&total.energy))?,
+            distribution: unlimited(&total.distribution, at_rest(&total.distribution))?,
+            ..*total
+        })
+    });
+    let alone = autopilot.modes().get(mode).map(|mode| Mode {
+        entry: Entry::default(),
+        targets: Vec::new(),
+        bank_rad: 0.0,
+        ..mode.clone()
+    });
+    let modes = alone.into_iter().collect();
+    still.autopilot = Some(Autopilot::new(loops, energy.transpose()?, beam, modes)?);
+    still.prepare()
+}
+
+/// Samples of commands on their way, and of what sensors show later.
+pub(super) fn on_its_way(scenario: &Scenario) -> usize {
+    let dt_s = scenario.timing.dt_s();
+    let late = |sensor| Sensing::through(Some(sensor), dt_s).remembered();
+    let samples = sensors(scenario).map(late);
+    samples.fold(scenario.actuator.delay_samples(), usize::saturating_add)
+}
+
+/// Samples after which every sensor looks at what was after the start.
+pub(super) fn settling_samples(scenario: &Scenario) -> Result<usize, SimError> {
+    let dt_s = scenario.timing.dt_s();
+    let mut samples = sensors(scenario).map(|sensor| sensor.memory_samples(dt_s));
+    let longest = samples.try_fold(0, |longest, found| found.map(|found| longest.max(found)))?;
+    Ok(SETTLING_SAMPLES + longest)
+}
+
+/// Every sensor of a scenario with an autopilot.
+fn sensors(scenario: &Scenario) -> impl Iterator<Item = &Sensor> {
+    let Surroundings { pitch_sensor, rate_sensor, .. } = &scenario.surroundings;
+    let autopilot = scenario.autopilot.as_ref();
+    let loops = autopilot.map(Autopilot::loops).unwrap_or_default();
+    let beam = autopilot.and_then(Autopilot::glide_slope).into_iter();
+    let of_beam = beam.flat_map(|beam| [&beam.angle_sensor, &beam.range_sensor]);
+    let of_loops = loops.iter().map(|outer| &outer.sensor);
+    [pitch_sensor, rate_sensor].into_iter().chain(of_loops).chain(of_beam).flatten()
+}
+
+/// The gains that a controller has with everything at zero.
+fn at_rest(controller: &Controller) -> Gains<f64> {
+    match controller {
+        Controller::Fixed(pid) => pid.gains(),
+        Controller::SelfTuning(fspid) => fspid.tuner().gains_at_rest(),
+    }
+}
+
+/// A controller with these gains that no limit acts on.
+pub(super) fn unlimited(
+    controller: &Controller,
+    gains: Gains<f64>,
+) -> Result<Controller, SimError> {
+    let config = PidConfig {
+        anti_windup: fspid_core::AntiWindup::None,
+        limits: None,
+        slew_rad_s: None,
+        ..controller.config_at(gains)
+    };
+    Ok(Controller::Fixed(Pid::new(gains, config)?))
+}
