@@ -220,6 +220,23 @@ pub fn growth_at_rest(
     Ok(found.settled())
 }
 
+/// Why a flight is undecided at rest although its loops with each plant may not be: what [`growth_at_rest`] says of an aircraft,
+/// and of limits that leave too little to a plant that is unstable by itself.
+///
+/// # Errors
+/// As [`instability`].
+pub fn doubt_beyond(
+    scenario: &Scenario,
+    controller: &Controller,
+    gains: Gains<f64>,
+) -> Result<Option<Undecided>, SimError> {
+    if scenario.plant.aircraft().is_some() {
+        return Ok(growth_at_rest(scenario, controller, gains)?.undecided);
+    }
+    let exceeds = held_limits::are_exceeded(scenario, controller, gains.ki);
+    Ok(exceeds.then(|| Undecided::beyond(Doubt::BeyondLimits)))
+}
+
 /// Asks one plant, which a flight has from a time on, at every rest.
 pub(crate) fn growth_of_plant(
     scenario: &Scenario,

@@ -192,6 +192,16 @@ impl Commands {
         }
     }
 
+    /// True where everything that `other` commands is one of these times some number.
+    #[must_use]
+    pub fn is_of_the_shape_of(&self, other: &Self) -> bool {
+        let none = (other.setpoint_rad > 0.0 && !(self.setpoint_rad > 0.0))
+            || (other.load_rad > 0.0 && !(self.load_rad > 0.0));
+        let setpoint_rad = self.setpoint_rad.max(other.setpoint_rad);
+        let load_rad = self.load_rad.max(other.load_rad);
+        !none && Self { setpoint_rad, load_rad, ..self.clone() }.covers(other)
+    }
+
     /// True where everything that `other` commands is one of these.
     #[must_use]
     pub fn covers(&self, other: &Self) -> bool {

@@ -330,6 +330,7 @@ impl Template {
     /// Everything that is wrong then, each with the value that made it so.
     pub fn check_dispersions(&self) -> Result<Vec<Vec<f64>>, Problems> {
         let mut report = self.report();
+        self.check_places(&mut report);
         let mut nominal = Vec::new();
         for (index, dispersion) in self.study().dispersions.iter().enumerate() {
             let path = format!("dispersion[{index}]");
@@ -349,6 +350,36 @@ impl Template {
             }
         }
         report.finish(self.name()).map(|_| nominal)
+    }
+
+    /// Refuses a place that is drawn twice.
+    fn check_places(&self, report: &mut Report) {
+        for (index, [path, other]) in self.drawn_twice() {
+            let at = format!("dispersion[{index}]");
+            let message = format!("`{path}` is drawn already, as `{other}`");
+            report.missing(self.place_of(&at), &at, message, "each place once");
+        }
+    }
+
+    /// Places that are drawn twice in other words, such as the name and the number of a list's entry: the number of the later
+    /// dispersion, its path, and that of the earlier one.
+    #[must_use]
+    pub fn drawn_twice(&self) -> Vec<(usize, [String; 2])> {
+        let dispersions = self.study().dispersions.iter().enumerate();
+        let paths = dispersions.flat_map(|(index, dispersion)| {
+            let paths = dispersion.targets.iter().flat_map(|target| &target.paths);
+            paths.map(move |path| (index, path))
+        });
+        let mut known: Vec<(String, &str)> = Vec::new();
+        let mut twice = Vec::new();
+        for (index, path) in paths {
+            let place = self.place_in_words(path);
+            if let Some((_, other)) = known.iter().find(|(it, _)| *it == place) {
+                twice.push((index, [path.text().to_owned(), (*other).to_owned()]));
+            }
+            known.push((place, path.text()));
+        }
+        twice
     }
 
     /// The numbers at all paths of a relative dispersion, or the path without one.

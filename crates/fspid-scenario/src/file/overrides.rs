@@ -235,6 +235,26 @@ pub(crate) fn find<'a>(at: &'a Item, steps: &'a [Step], path: &str) -> Found<'a>
     }
 }
 
+/// The steps with entries of lists by their numbers, as far as the document has them.
+pub(crate) fn numbered(at: &Item, steps: &[Step]) -> Vec<Step> {
+    let Some((step, rest)) = steps.split_first() else { return Vec::new() };
+    let next = match (&at.value, step) {
+        (Value::Table(members), Step::Name(name)) => {
+            let member = members.iter().find(|member| member.name == *name);
+            member.map(|it| (step.clone(), &it.item))
+        }
+        (Value::Array(items), step) => {
+            let found = index(items, step).ok();
+            found.and_then(|at| Some((Step::Index(at), items.get(at)?)))
+        }
+        _ => None,
+    };
+    match next {
+        Some((step, item)) => std::iter::once(step).chain(numbered(item, rest)).collect(),
+        None => steps.to_vec(),
+    }
+}
+
 fn join(path: &str, name: &str) -> String {
     let name = excerpt(name);
     if path.is_empty() { name } else { format!("{path}.{name}") }

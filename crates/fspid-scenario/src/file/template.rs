@@ -8,7 +8,7 @@ use super::extra::Extra;
 use super::files::{Files, Kept};
 use super::overrides::{self, Found, Setting};
 use crate::dispersion::Dispersion;
-use crate::setting_path::{NewValue, SettingPath, steps};
+use crate::setting_path::{NewValue, SettingPath, path_of, steps};
 use crate::tuning::TunableParameter;
 use fspid_diagnostics::{Problems, Report, Span};
 
@@ -179,6 +179,11 @@ impl Template {
             Found::Here(item) => number(item),
             _ => None,
         }
+    }
+
+    /// A path in the one way of all that lead to its place: entries of lists by their numbers.
+    pub(super) fn place_in_words(&self, path: &SettingPath) -> String {
+        path_of(&overrides::numbered(&self.document, path.steps()))
     }
 
     fn files(&self) -> Files<'_> {

@@ -104,6 +104,19 @@ fn a_dispersion_that_would_make_the_scenario_wrong_is_found_before_a_campaign() 
     let factor = "path = \"controller[0].rate_gain\"\ndistribution = \"uniform\"\nlower = 0.5\nupper = 1.0\nrelative = true";
     let problems = template(factor).check_dispersions().expect_err("nothing to scale").to_string();
     assert!(problems.contains("there is no number at `controller[0].rate_gain`"), "{problems}");
+    let draws = |path: &str| {
+        format!("path = \"{path}\"\ndistribution = \"uniform\"\nlower = 0.5\nupper = 1.0")
+    };
+    for [one, other] in [["PID", "0"], ["0", "00"]] {
+        let of = |it: &str| match it.starts_with('P') {
+            true => format!("controller.{it}.kp"),
+            false => format!("controller[{it}].kp"),
+        };
+        let twice = format!("{}\n[[dispersion]]\n{}", draws(&of(one)), draws(&of(other)));
+        let problems = template(&twice).check_dispersions().expect_err("drawn twice").to_string();
+        let said = format!("`{}` is drawn already, as `{}`", of(other), of(one));
+        assert!(problems.contains(&said) && problems.contains("dispersion[1]"), "{problems}");
+    }
     let renamed =
         "path = \"controller[0].name\"\ndistribution = \"choice\"\nvalues = [\"PID\", \"other\"]";
     let problems = template(renamed).check_dispersions().expect_err("another name").to_string();

@@ -47,8 +47,9 @@ fn controller(found: &AnalysedLoop) -> Value {
         Equilibrium::Drifts { .. } => ("none: they drift", None),
     };
     let of_several = |it: &PlantLoop| merged([json!({ "from_s": it.from_s }), plant(it)]);
-    // With a mode of an autopilot that grows the pitch loop alone may be stable, and has its margins.
-    let with_modes = (found.growing_modes() > 0).then(|| of_stability(found.stability()));
+    // With a mode of an autopilot that grows, or an aircraft that is in doubt, the pitch loop alone may be stable, and has its margins.
+    let is_around = found.growing_modes() > 0 || found.doubt.is_some();
+    let with_modes = is_around.then(|| of_stability(found.stability()));
     let plants = if found.plants.len() > 1 { found.plants.as_slice() } else { &[] };
     merged([
         json!({ "name": found.name }),
@@ -58,6 +59,7 @@ fn controller(found: &AnalysedLoop) -> Value {
         present(json!({
             "plants": unless_empty(plants, of_several),
             "modes": unless_empty(&found.modes, AnalysedMode::json),
+            "undecided": found.doubt.map(|doubt| doubt.to_string()),
             "flights": found.flights.as_ref().map(Flights::json),
         })),
     ])

@@ -4,6 +4,7 @@ use super::rank::{judged, rank, rank_without_margins};
 use fspid_core::Gains;
 use fspid_lti::{Complex, SampledLoop, SampledMargins};
 use fspid_sim::loop_model::{BreakPoint, SampledPlant};
+use fspid_sim::stability::doubt_beyond;
 use fspid_sim::{
     AircraftPlant, Controller, LinearPlant, NamedController, Rest, RestPoint, Scenario, Side,
     SimError,
@@ -15,7 +16,7 @@ use super::equilibrium::{Equilibrium, equilibrium};
 use super::flights::Flights;
 use super::frozen::{Frozen, FrozenGains, FrozenMap, FrozenPoint, FrozenReach};
 use super::modes::AnalysedMode;
-use super::stability::{Stability, of_stand};
+use super::stability::{Stability, of_stand, why_undecided};
 use crate::metrics::Absent;
 
 /// A controller's loop with a plant, at one rest of the scenario and on one side of the kinks that the rules have there.
@@ -65,6 +66,8 @@ pub struct AnalysedLoop {
     pub flights: Option<Flights>,
     /// The modes of an autopilot, with everything that they engage around this controller.
     pub modes: Vec<AnalysedMode>,
+    /// Why it is undecided whether what flies holds at rest, for all that its loops and modes say: the words of its flights.
+    pub doubt: Option<Absent>,
 }
 
 impl AnalysedLoop {
@@ -84,6 +87,7 @@ impl AnalysedLoop {
             absent: Some(reason),
             flights: flights.clone(),
             modes: Vec::new(),
+            doubt: None,
         };
         let Some(gains) = equilibrium.gains() else {
             return Ok(none(Absent::GainsDrift));
@@ -98,7 +102,8 @@ impl AnalysedLoop {
             plants.push(PlantLoop { from_s: *from_s, frozen, ..found });
         }
         let modes = AnalysedMode::all(scenario, controller, gains)?;
-        Ok(Self { name, equilibrium, plants, absent: None, flights, modes })
+        let doubt = doubt_beyond(scenario, controller, gains)?.map(|it| why_undecided(&it));
+        Ok(Self { name, equilibrium, plants, absent: None, flights, modes, doubt })
     }
 
     /// The plant with the smallest disk margin; an unstable one before all others.
@@ -131,16 +136,25 @@ impl AnalysedLoop {
         match self.plants.as_slice() {
             [] => Stability::Undecided,
             plants => {
-                let around = self.modes.iter().map(AnalysedMode::stability);
-                Stability::of_all(plants.iter().map(PlantLoop::stability).chain(around))
+                let alone = plants.iter().map(PlantLoop::stability);
+                Stability::of_all(alone.chain([self.around()]))
             }
         }
     }
 
-    /// How many modes of the autopilot grow.
+    /// Whether what stands around the loops is held at rest.
+    pub(super) fn around(&self) -> Stability {
+        match self.doubt {
+            Some(_) => Stability::Undecided,
+            None => Stability::of_all(self.modes.iter().map(AnalysedMode::stability)),
+        }
+    }
+
+    /// How many modes of the autopilot grow for certain.
     #[must_use]
     pub fn growing_modes(&self) -> usize {
-        self.modes.iter().filter(|mode| mode.stability() != Stability::Stable).count()
+        let growing = self.modes.iter().filter(|mode| mode.stability() != Stability::Stable);
+        if self.doubt.is_some() { 0 } else { growing.count() }
     }
 
     /// Margins with the worst plant.
@@ -167,7 +181,10 @@ impl AnalysedLoop {
     pub fn is_held(&self) -> bool {
         let held =
             |plant: &PlantLoop| plant.margins.is_ok() && plant.map().is_none_or(FrozenMap::is_held);
-        !self.plants.is_empty() && self.plants.iter().all(held) && self.growing_modes() == 0
+        !self.plants.is_empty()
+            && self.plants.iter().all(held)
+            && self.growing_modes() == 0
+            && self.doubt.is_none()
     }
 }
 

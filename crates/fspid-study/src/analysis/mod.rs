@@ -151,8 +151,8 @@ impl Analysis {
     #[must_use]
     pub fn stability(&self) -> Stability {
         let plants = self.loops.iter().flat_map(|found| &found.plants);
-        let modes = self.loops.iter().flat_map(|found| &found.modes).map(AnalysedMode::stability);
-        let loops = plants.map(PlantLoop::stability_at_every_gain).chain(modes);
+        let around = self.loops.iter().map(AnalysedLoop::around);
+        let loops = plants.map(PlantLoop::stability_at_every_gain).chain(around);
         let loops = Stability::of_all(loops);
         match self.externals.iter().all(FlownExternal::is_held) {
             true => loops,

@@ -28,7 +28,7 @@ impl CheckedFile {
     /// [`SimError`] where a plant has no linear model.
     pub fn compare(&mut self, study: &Study) -> Result<(), SimError> {
         let origin = &self.origin;
-        let mut differences = Vec::new();
+        let (mut differences, mut partly) = (Vec::new(), None);
         tell(&mut differences, "origin.scenario", &origin.scenario, &study.scenario.name);
         let certified = fields(&self.certificate.description);
         match flown(study, &origin.controller)? {
@@ -41,6 +41,7 @@ impl CheckedFile {
                     found
                 });
                 differences.extend(compared.min_by_key(Vec::len).unwrap_or_default());
+                partly = loops.iter().find_map(|(_, asked, _)| self.partly(asked));
                 if self.certificate.claim.is_of_stability() {
                     differences.extend(not_held(study, &origin.controller));
                 }
@@ -60,6 +61,7 @@ impl CheckedFile {
         self.against = Some(Comparison {
             scenario: study.scenario.name.clone(),
             differences,
+            partly,
             other_text: (digests[0] != digests[1]).then_some(digests),
         });
         Ok(())
@@ -155,12 +157,27 @@ impl CheckedFile {
         let dt_s = self.certificate.description.controller.config().dt_s;
         let flown = match &asked.commands {
             Ok(None) => return None,
-            Ok(Some(flown)) if certified.covers(flown) => return None,
+            // Of larger ones than are shown the certificate says that they are not.
+            Ok(Some(flown)) if certified.is_of_the_shape_of(flown) => return None,
             Ok(Some(flown)) => commands_in_words(flown, dt_s),
             Err(reason) => (*reason).to_owned(),
         };
         let path = "commanded".to_owned();
         Some(Difference { path, certified: commands_in_words(certified, dt_s), flown })
+    }
+
+    /// In words, where flights of the shape that is flown are certified up to a smaller size alone.
+    fn partly(&self, asked: &Asked) -> Option<String> {
+        let certified = &self.certificate.commanded.as_ref()?.commands;
+        let flown = asked.commands.as_ref().ok()?.as_ref()?;
+        if certified.covers(flown) || !certified.is_of_the_shape_of(flown) {
+            return None;
+        }
+        let dt_s = self.certificate.description.controller.config().dt_s;
+        let [shown, flown] = [certified, flown].map(|it| commands_in_words(it, dt_s));
+        Some(format!(
+            "flights are shown up to {shown}, and {flown} is commanded: OF LARGER ONES THAN THOSE THIS IS NOT SHOWN"
+        ))
     }
 
     /// True for a certificate that says that others are about other choices.

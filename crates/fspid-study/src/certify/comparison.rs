@@ -9,6 +9,8 @@ pub struct Comparison {
     pub scenario: String,
     /// Everything in which what flies is not what is certified.
     pub differences: Vec<Difference>,
+    /// What flies of what is certified up to a smaller size only; none where all of it is covered.
+    pub partly: Option<String>,
     /// Digests of the scenario's text, certified and now, where they differ. The text may have changed where
     /// nothing of the loop stands.
     pub other_text: Option<[String; 2]>,

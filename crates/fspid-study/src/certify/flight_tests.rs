@@ -4,6 +4,8 @@ use std::sync::OnceLock;
 
 use serde_json::{Value, json};
 
+use fspid_scenario::file::parse;
+
 use super::file::resealed;
 use super::tests::{certified, checked, load, written};
 
@@ -80,6 +82,57 @@ fn what_its_scenario_commands_is_proved_and_no_other_shape_or_time() {
         "commanded set-point of 5 deg times 1 from 12 s; load at the servo of 1 deg times 1 from 1 s"
     );
     assert!(against("disturbance[0].enters_at=elevator").contains("load at the elevator"));
+}
+
+/// A wagon that tips over by itself, with 6 deg of elevator at 12 deg/s.
+const TIPS: &str = r#"
+schema = 1
+name = "tips"
+[plant]
+numerator = [6.0, 4.0]
+denominator = [1.0, 2.0, -1.0, 0.0]
+elevator_sign = "nose-up-positive"
+[actuator]
+time_constant_s = 0.1
+position_limit_deg = 6.0
+rate_limit_deg_s = 12.0
+[loop]
+sample_period_s = 0.02
+duration_s = 30.0
+[setpoint]
+kind = "step"
+amplitude_deg = 5.0
+[[controller]]
+name = "FSPID"
+kind = "pid"
+kp = 1.5
+ki = 0.4
+kd = 0.5
+"#;
+
+/// What `certify` wrote was "about another loop than the scenario flies" for the scenario that it is of.
+#[test]
+fn a_certificate_of_a_part_of_what_is_commanded_is_that_of_its_scenario_and_says_so() {
+    let study_of = |changes: &[&str]| {
+        let changes: Vec<String> = changes.iter().map(|it| (*it).to_owned()).collect();
+        parse(TIPS, "tips.toml", None, &changes).expect("sound")
+    };
+    let large = study_of(&["setpoint.amplitude_deg=7"]);
+    let mut file = checked(&written(&certified(&large)));
+    let ended = file.result.as_ref().expect("holds").ended.expect("flights are proved");
+    let degrees = ended.setpoint_rad.to_degrees();
+    assert!(degrees > 1.0 && degrees < 6.9, "{degrees}");
+    file.compare(&large).expect("compared");
+    let against = file.against.clone().expect("compared");
+    assert!(against.is_same() && file.holds(), "{against:?}");
+    let partly = against.partly.expect("a part is shown");
+    assert!(partly.contains("OF LARGER ONES THAN THOSE THIS IS NOT SHOWN"), "{partly}");
+    assert!(file.text().contains(&partly));
+    // All of a smaller step is shown, and of another time or place nothing.
+    file.compare(&study_of(&["setpoint.amplitude_deg=3"])).expect("compared");
+    assert_eq!(file.against.clone().expect("compared").partly, None);
+    file.compare(&study_of(&["setpoint.amplitude_deg=7", "setpoint.at_s=3"])).expect("compared");
+    assert!(!file.against.expect("compared").is_same());
 }
 
 #[test]

@@ -179,6 +179,7 @@ fn comparison(against: &Comparison) -> Value {
         "scenario": against.scenario,
         "same": against.is_same(),
         "differences": against.differences,
+        "partly": against.partly,
         "digests": against.other_text,
     })
 }

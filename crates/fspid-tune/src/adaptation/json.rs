@@ -1,6 +1,7 @@
 //! The answer for programs.
 
 use fspid_core::Gains;
+use fspid_study::json::with_null_reasons;
 use serde_json::{Value, json};
 
 use super::answer::{Answer, Followed, Following, Moved, PlantRow, Row, Step};
@@ -11,7 +12,7 @@ impl Answer {
     #[must_use]
     pub fn json(&self) -> Value {
         let (seeds, seed, budget) = self.effort;
-        json!({
+        let answer = json!({
             "schema": 1,
             "scenario": self.scenario,
             "digest": self.digest,
@@ -29,9 +30,30 @@ impl Answer {
             "gains": self.moved.iter().map(moved).collect::<Vec<_>>(),
             "follows": self.following.iter().map(following).collect::<Vec<_>>(),
             "plants": self.plants.iter().map(plant).collect::<Vec<_>>(),
-        })
+        });
+        with_null_reasons(answer, &NULL)
     }
 }
+
+const FEW: &str = "of the flights that are compared too few are left";
+const STILL: &str = "what it is a share of, or follows, does not move";
+/// Why what may be missing is missing.
+const NULL: [(&str, &str); 14] = [
+    ("iae_ratio", FEW),
+    ("travel_ratio", FEW),
+    ("share", "there is no win of which it would be a share, or too few flights are left"),
+    ("interval", "one seed has no interval, and neither has a single flight"),
+    ("breaks_a_requirement", "nothing is required"),
+    ("share_between_plants", STILL),
+    ("share_between_flights", STILL),
+    ("share_within_flights", STILL),
+    ("effectiveness", STILL),
+    ("best_by_effectiveness", "no best gains of each plant were searched for, or they do not move"),
+    ("airspeed", STILL),
+    ("best", "no best gains of each plant were searched for, or they do not move"),
+    ("amplitude_per_deg", STILL),
+    ("best_gains", "no best gains of each plant were searched for"),
+];
 
 fn estimate(found: Option<Estimate>) -> Value {
     found.map_or(Value::Null, |it| json!({ "value": it.value, "interval": it.interval }))

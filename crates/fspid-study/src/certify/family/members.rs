@@ -28,6 +28,14 @@ pub enum NoFamily {
         /// Why not, and what would do.
         why: &'static str,
     },
+    /// Two dispersions of one number, of which the later one would have the say.
+    #[error("`{path}` is drawn already, as `{other}`: each place once")]
+    DrawnTwice {
+        /// The later one's.
+        path: String,
+        /// The earlier one's.
+        other: String,
+    },
     /// Too many of them.
     #[error("{0} numbers of the loop differ; allowed are up to {MOST_PARAMETERS}")]
     TooMany(usize),
@@ -65,6 +73,9 @@ impl Members {
         (template, chosen): (&Template, Chosen),
         (description, plant): (&LoopDescription, &LinearPlant),
     ) -> Result<Self, NoFamily> {
+        if let Some((_, [path, other])) = template.drawn_twice().into_iter().next() {
+            return Err(NoFamily::DrawnTwice { path, other });
+        }
         let mut drawn = Vec::new();
         let asking = Asking { template, description, plant };
         let differs = |it: &&Dispersion| chosen == Chosen::AsABox || !is_chosen_apart(it);
