@@ -55,6 +55,13 @@ impl Answer {
     }
 }
 
+impl Answer {
+    /// True where the claim does not hold, or is of something else.
+    pub(super) const fn is_refused(self) -> bool {
+        matches!(self, Self::NotProved | Self::Edited | Self::AnotherLoop)
+    }
+}
+
 impl CheckedFile {
     /// What it all comes to.
     #[must_use]

@@ -13,8 +13,9 @@ impl CheckedFile {
     #[must_use]
     pub fn text(&self) -> String {
         let (certificate, origin) = (&self.certificate, &self.origin);
+        let claims = if self.answer().is_refused() { "a claim that DOES NOT HOLD: " } else { "" };
         let mut out = format!(
-            "{} of \"{}\": {}\n",
+            "{} of \"{}\": {claims}{}\n",
             origin.controller,
             origin.scenario,
             sentence(certificate)

@@ -137,6 +137,8 @@ impl CheckedFile {
     #[must_use]
     pub fn json(&self) -> Value {
         let claim = &self.certificate.claim;
+        // What does not hold bears on nothing that flies.
+        let bearing = self.bearing().filter(|_| !self.answer().is_refused());
         let answer = merged([
             json!({
                 "schema": SCHEMA,
@@ -145,8 +147,8 @@ impl CheckedFile {
                 "claim": claim.name(),
                 "decay_per_sample": claim.rate(),
                 "output_factor": self.certificate.output_factor,
-                "bearing": self.bearing().map(Bearing::name),
-                "bearing_in_words": self.bearing().map(|bearing| bearing.to_string()),
+                "bearing": bearing.map(Bearing::name),
+                "bearing_in_words": bearing.map(|bearing| bearing.to_string()),
                 "origin": self.origin,
                 "as_written": self.seal == Seal::Whole,
             }),

@@ -47,8 +47,9 @@ pub(crate) fn barred(judged: &Judged, one: &Contestant, other: &Contestant) -> O
         return Some(Bar::Unstable);
     }
     let share = |it: &Contestant, case: usize| judged.count(it, &[case]).failed_share();
+    let evidence = judged.evidence().into_iter();
     let differences: Vec<f64> =
-        all.iter().map(|&case| share(one, case) - share(other, case)).collect();
+        evidence.map(|case| share(one, case) - share(other, case)).collect();
     let p = SignedRank::of(&differences, CONFIDENCE).map_or(1.0, |it| it.p);
     let is_more = mine.compared(theirs, |it| it.failed).is_gt();
     (is_more && p <= 1.0 - CONFIDENCE).then_some(Bar::FailsMore)
@@ -150,10 +151,15 @@ impl Pair<'_> {
     fn comparison(&self, place: usize, mine: &Contestant, together: f64) -> Comparison {
         let all = self.judged.all();
         let cases: Vec<f64> = all.iter().map(|case| self.case(mine, *case)).collect();
-        let typical = SignedRank::of(&cases, CONFIDENCE);
-        let (over, ratio) = self.ratio(mine, &all, together);
+        let evidence = self.judged.evidence();
+        let of_evidence: Vec<f64> = evidence.iter().map(|case| self.case(mine, *case)).collect();
+        let typical = SignedRank::of(&of_evidence, CONFIDENCE);
+        let (over, ratio) = self.ratio(mine, &evidence, together);
         let groups = self.judged.groups();
-        let groups = groups.iter().map(|it| self.ratio(mine, &it.cases, CONFIDENCE).1);
+        let groups = groups.into_iter().map(|it| {
+            let cases = self.judged.of_their_own(it.cases);
+            self.ratio(mine, &cases, CONFIDENCE).1
+        });
         let p = match (over, typical) {
             // Two tests that point in different directions have found nothing.
             (Some(over), Some(typical)) if over.estimate * typical.estimate >= 0.0 => {
@@ -181,7 +187,7 @@ impl Pair<'_> {
     fn lost(&self, mine: &Contestant) -> Lost {
         let share = |it: &Contestant, case: usize| self.judged.count(it, &[case]).lost_share();
         let difference = |case: usize| share(mine, case) - share(self.theirs, case);
-        let differences: Vec<f64> = self.judged.all().into_iter().map(difference).collect();
+        let differences: Vec<f64> = self.judged.evidence().into_iter().map(difference).collect();
         Lost {
             cases: differences.iter().filter(|it| **it != 0.0).count(),
             p: SignedRank::of(&differences, CONFIDENCE).map_or(1.0, |it| it.p),

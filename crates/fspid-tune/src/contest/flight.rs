@@ -79,6 +79,18 @@ pub struct Flight {
 }
 
 impl Flight {
+    /// True for a flight with the same measures to the last bit; of what is lost nobody knows.
+    pub(crate) fn has_measures_of(&self, other: &Self) -> bool {
+        let bits = |flight: &Self| flight.measures.map(|value| value.map(f64::to_bits));
+        let is_flown = !self.lost && self.measures.iter().any(Option::is_some);
+        is_flown && !other.lost && bits(self) == bits(other)
+    }
+
+    /// The same of one of which as much is required.
+    pub(crate) fn is_alike(&self, other: &Self) -> bool {
+        self.has_measures_of(other) && self.failed == other.failed
+    }
+
     pub(crate) fn refused(reason: String) -> Self {
         Self {
             measures: [None; MEASURES.len()],

@@ -53,6 +53,11 @@ pub struct Judged {
     pub cases: Vec<Case>,
     /// Place of the controller that the others are compared with.
     pub against: usize,
+    /// Of each case the place of an earlier one that everybody has flown alike to the last bit, if there is one: it is no evidence
+    /// of its own, such as one that moves a limit which never acts.
+    pub twin_of: Vec<Option<usize>>,
+    /// Of each case the name of one of the tuning that is flown alike to the last bit, if there is one.
+    pub trained_as: Vec<Option<String>>,
 }
 
 /// What controllers are compared in.
@@ -145,13 +150,90 @@ impl Count {
     }
 }
 
+impl Contestant {
+    /// Designs that differ: seeds that find the same numbers are one tuning.
+    pub(crate) fn tunings(&self) -> usize {
+        let found = self.designs.iter().filter_map(|design| design.found.as_ref());
+        let bits = found.map(|it| it.point.iter().map(|value| value.to_bits()).collect());
+        let mut all: Vec<Vec<u64>> = bits.collect();
+        let written = self.designs.len() - all.len();
+        all.sort();
+        all.dedup();
+        written + all.len()
+    }
+}
+
 impl Judged {
-    /// Whether a controller was tuned, and none more than once: then nobody knows what another seed would have found,
-    /// and there is no winner.
+    /// All flights of the contestants; which cases are flown alike is found here.
+    pub(crate) fn new(contestants: Vec<Contestant>, cases: Vec<Case>, against: usize) -> Self {
+        let trained_as = vec![None; cases.len()];
+        let mut judged = Self { contestants, cases, against, twin_of: Vec::new(), trained_as };
+        judged.twin_of = (0..judged.cases.len()).map(|case| judged.twin(case)).collect();
+        judged
+    }
+
+    /// The same with the cases that were tuned on: `training` has their names, each with its flights by the designs of one of the
+    /// contestants.
+    pub(crate) fn trained_on(
+        mut self,
+        contestant: usize,
+        training: &[(String, Vec<Vec<Flight>>)],
+    ) -> Self {
+        let designs = self.contestants.get(contestant).map_or(&[][..], |it| &it.designs);
+        let is_alike = |case: usize, flights: &[Vec<Flight>]| {
+            designs.len() == flights.len()
+                && designs.iter().zip(flights).all(|(design, theirs)| {
+                    let mine = self.flights(design, case);
+                    mine.len() == theirs.len()
+                        && mine.iter().zip(theirs).all(|(a, b)| a.has_measures_of(b))
+                })
+        };
+        let alike = |case: usize| {
+            let mut all = training.iter();
+            all.find(|(_, flights)| is_alike(case, flights)).map(|(name, _)| name.clone())
+        };
+        self.trained_as = (0..self.cases.len()).map(alike).collect();
+        self
+    }
+
+    /// The first earlier case that everybody has flown alike.
+    fn twin(&self, case: usize) -> Option<usize> {
+        let designs: Vec<&Design> = self.contestants.iter().flat_map(|it| &it.designs).collect();
+        let is_alike = |other: &usize| {
+            designs.iter().all(|design| {
+                let [mine, theirs] = [case, *other].map(|it| self.flights(design, it));
+                mine.len() == theirs.len() && mine.iter().zip(theirs).all(|(a, b)| a.is_alike(b))
+            })
+        };
+        (0..case).find(is_alike)
+    }
+
+    /// Cases that are evidence: those that are flown as an earlier one, or as one of the tuning, are not.
+    pub(crate) fn evidence(&self) -> Vec<usize> {
+        self.of_their_own(self.all())
+    }
+
+    /// The same of some cases.
+    pub(crate) fn of_their_own(&self, cases: impl IntoIterator<Item = usize>) -> Vec<usize> {
+        let is_own = |case: &usize| {
+            self.twin_of.get(*case).is_none_or(Option::is_none)
+                && self.trained_as.get(*case).is_none_or(Option::is_none)
+        };
+        cases.into_iter().filter(is_own).collect()
+    }
+
+    /// Whether a controller was tuned, and one of them not more than once, or to the same numbers each time: then nobody knows
+    /// what another tuning would have found, and there is no winner.
     #[must_use]
     pub fn is_tuned_once(&self) -> bool {
-        let tuned = || self.contestants.iter().filter(|it| it.is_tuned);
-        tuned().next().is_some() && tuned().any(|it| it.designs.len() < 2)
+        let mut tuned = self.contestants.iter().filter(|it| it.is_tuned);
+        tuned.any(|it| it.tunings() < 2)
+    }
+
+    /// Whether that is so although every controller was tuned with several seeds: one of them finds the same with each.
+    pub(crate) fn has_idle_seeds(&self) -> bool {
+        let mut tuned = self.contestants.iter().filter(|it| it.is_tuned);
+        self.is_tuned_once() && tuned.all(|it| it.designs.len() > 1)
     }
 
     /// Whether anybody was tuned.

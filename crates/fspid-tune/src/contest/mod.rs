@@ -100,6 +100,9 @@ pub struct Contest {
     against: usize,
 }
 
+/// Names of the cases of a tuning, each with its flights of some designs.
+type Training = Vec<(String, Vec<Vec<Flight>>)>;
+
 /// The part of the folder in which designs lie.
 const DESIGNS: &str = "designs";
 
@@ -257,7 +260,37 @@ impl Contest {
             })
         });
         let contestants = contestants.collect::<Result<_, TuneError>>()?;
-        Ok(Judged { contestants, cases: self.cases(), against: self.against })
+        let judged = Judged::new(contestants, self.cases(), self.against);
+        match self.trained(&judged)? {
+            Some((contestant, training)) => Ok(judged.trained_on(contestant, &training)),
+            None => Ok(judged),
+        }
+    }
+
+    /// The flights of the tuning's cases by the designs of the first who was tuned, and their place: a judged case that flies what
+    /// one of them flies was tuned on, however it is written.
+    fn trained(&self, judged: &Judged) -> Result<Option<(usize, Training)>, TuneError> {
+        let mut tuned = self.entrants.iter().enumerate();
+        let Some((place, problem)) =
+            tuned.find_map(|(place, entrant)| Some((place, entrant.problem.as_ref()?)))
+        else {
+            return Ok(None);
+        };
+        let designs = judged.contestants.get(place).map_or(&[][..], |it| &it.designs);
+        let found = designs.iter().filter_map(|design| design.found.as_ref());
+        let points: Vec<Vec<f64>> = found.map(|found| found.point.clone()).collect();
+        let flights = problem.its_flights();
+        let flown =
+            flights.flown(&points, &|flight, s| self.read(flight, s), Crew::Here(&|| false))?;
+        let mut from = 0;
+        let cases = flights.cases().iter().map(|case| {
+            let of_case = from..from + case.runs();
+            from = of_case.end;
+            let mine =
+                flown.iter().map(|all| all.get(of_case.clone()).unwrap_or_default().to_vec());
+            (case.name.clone(), mine.collect())
+        });
+        Ok(Some((place, cases.collect())))
     }
 
     fn cases(&self) -> Vec<Case> {

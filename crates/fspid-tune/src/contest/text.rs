@@ -33,7 +33,7 @@ pub(super) fn text(outcome: &Outcome) -> String {
 pub(super) fn held(outcome: &Outcome) -> String {
     let (judged, setting) = (&outcome.judged, &outcome.setting);
     let tuned = judged.contestants.iter().filter(|it| it.is_tuned).count();
-    let cases = counted(judged.cases.len(), "case", "cases");
+    let cases = counted(judged.evidence().len(), "case", "cases");
     let mut text = match setting.efforts.first().filter(|_| tuned > 0) {
         None => "Nobody was tuned; all fly as they are written".to_owned(),
         Some(effort) => format!(

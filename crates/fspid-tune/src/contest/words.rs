@@ -7,7 +7,7 @@ use fspid_scenario::tuning::{Over, Tuning};
 
 use super::compare::{Bar, CONFIDENCE, Comparison, Standing, barred};
 use super::flight::{FAR, Flight};
-use super::judged::{CaseGroup, Quantity};
+use super::judged::{CaseGroup, Judged, Quantity};
 use super::outcome::Outcome;
 use super::summary::Spread;
 
@@ -187,10 +187,18 @@ pub(super) fn headline(outcome: &Outcome) -> Headline {
     let bar = bar_of_first(outcome, first);
     if outcome.judged.is_tuned_once() {
         let bar = bar.map_or(String::new(), |words| format!("; {words}"));
-        let why = format!(
-            "{winner} is first in it, and another seed may find another order; contest.seeds = 3 or more would tell{bar}"
-        );
-        let word = "one tuning each: no winner can be named".to_owned();
+        let (word, tell) = match outcome.judged.has_idle_seeds() {
+            true => (
+                "every seed found the same: no winner can be named",
+                "another tuning may find another order; an optimiser that draws, or a larger budget, would tell",
+            ),
+            false => (
+                "one tuning each: no winner can be named",
+                "another seed may find another order; contest.seeds = 3 or more would tell",
+            ),
+        };
+        let why = format!("{winner} is first in it, and {tell}{bar}");
+        let word = word.to_owned();
         return Headline { is_decided: false, word, winner: None, why, told: None };
     }
     let (is_decided, why) = match bar {
@@ -332,7 +340,7 @@ pub(super) fn finding(outcome: &Outcome, found: &Comparison) -> String {
                 .ratio
                 .interval
                 .map_or(String::new(), |it| format!(" ({}: {})", per_cent(), interval(it)));
-            let place = match found.ratio.cases == outcome.judged.cases.len() {
+            let place = match found.ratio.cases == outcome.judged.evidence().len() {
                 true => String::new(),
                 false => format!(
                     " on the {} that neither lost",
@@ -462,20 +470,52 @@ pub(super) fn by_group(outcome: &Outcome) -> Vec<String> {
     groups.iter().enumerate().map(sentence).collect()
 }
 
+/// Cases that are flown as others are: they count in means and not in tests.
+fn no_evidence(judged: &Judged) -> Option<String> {
+    let name = |case: usize| judged.cases.get(case).map_or("", |it| it.name.as_str());
+    let of = |case: usize| match (judged.trained_as.get(case)?, judged.twin_of.get(case)?) {
+        (Some(training), _) => Some(format!("{} as {training} of the tuning", name(case))),
+        (None, Some(twin)) => Some(format!("{} as {}", name(case), name(*twin))),
+        (None, None) => None,
+    };
+    let all: Vec<String> = judged.all().into_iter().filter_map(of).collect();
+    let some: Vec<&str> = all.iter().take(TWINS_TOLD).map(String::as_str).collect();
+    let more = match all.len().saturating_sub(TWINS_TOLD) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    (!all.is_empty()).then(|| {
+        format!(
+            "{} flown to the last bit like another, and no evidence: {}{more}. They count in means and not in tests.",
+            match all.len() {
+                1 => "One case is".to_owned(),
+                count => format!("{count} cases are"),
+            },
+            some.join(", ")
+        )
+    })
+}
+
+/// Cases without evidence that are told by their names.
+const TWINS_TOLD: usize = 5;
+
 /// What is to be known before the numbers are believed.
 pub(super) fn cautions(outcome: &Outcome) -> Vec<String> {
     let (judged, setting) = (&outcome.judged, &outcome.setting);
     let mut notes = Vec::new();
     let others = judged.contestants.len().saturating_sub(1);
     // The smallest p-value of n signs is 2^(1-n).
-    let least = libm::exp2(1.0 - judged.cases.len() as f64) * others as f64;
+    let evidence = judged.evidence().len();
+    let least = libm::exp2(1.0 - evidence as f64) * others as f64;
     if least > 1.0 - CONFIDENCE {
         notes.push(format!(
-            "{} are too few for {}: no difference could be significant.",
-            counted(judged.cases.len(), "case", "cases"),
+            "{} {} too few for {}: no difference could be significant.",
+            counted(evidence, "case", "cases"),
+            if evidence == 1 { "is" } else { "are" },
             counted(others, "comparison", "comparisons")
         ));
     }
+    notes.extend(no_evidence(judged));
     if judged.is_tuned() && setting.efforts.len() < 2 {
         notes.push("Each controller was tuned once: what another seed would have found is not in the intervals.".to_owned());
     }

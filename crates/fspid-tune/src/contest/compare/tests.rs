@@ -47,7 +47,7 @@ fn contest(contestants: Vec<Contestant>) -> Judged {
         runs: 1,
         mirror_of: None,
     };
-    Judged { contestants, cases: (0..count).map(case).collect(), against: 0 }
+    Judged::new(contestants, (0..count).map(case).collect(), 0)
 }
 
 fn error(judged: &Judged) -> Vec<Comparison> {
