@@ -173,8 +173,8 @@ impl<R: Real> PidConfig<R> {
         self.guard.fault(used).map_or(Ok(used), Err)
     }
 
-    /// The answer to a sample that cannot be used: the last command, bit for bit. `gains` are
-    /// named where there was no good sample yet.
+    /// The answer to a sample that cannot be used: the last command, bit for bit. `gains`, the nominal
+    /// ones, are named where there was no good sample yet.
     pub(crate) fn hold(&self, state: &mut State<R>, fault: Faults, gains: Gains<R>) -> Step<R> {
         state.latch(fault);
         let last_rad = state.command_rad;
@@ -216,7 +216,9 @@ impl<R: Real> PidConfig<R> {
             && leave(RATE_ROOM, [model.pitch_rad, model.rate_rad_s]);
         // Before the limits, which would turn an overflow into a number.
         if !(clear && free.command_rad.is_finite()) {
-            return self.hold(state, Faults::OVERFLOW, gains);
+            // Not the gains of the moment, with which it overflowed: nothing of this sample is remembered.
+            let Memory { kp, ki, kd, .. } = *memory;
+            return self.hold(state, Faults::OVERFLOW, Gains { kp, ki, kd });
         }
         let previous = Previous { error_rad, derivative_input_rad, gains, model };
         *state = State {

@@ -13,7 +13,7 @@ use crate::second_input::ModelState;
 pub struct Step<R> {
     /// Command, rad; positive is nose up.
     pub command_rad: R,
-    /// Gains used; at a held sample those of the last good one.
+    /// Gains used; at a held sample those of the last good one, before the first good one the nominal ones.
     pub gains: Gains<R>,
     /// The command was cut by an output or slew limit.
     pub saturated: bool,

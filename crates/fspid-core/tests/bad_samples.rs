@@ -213,6 +213,17 @@ fn a_huge_sample_within_the_guard_does_not_lock_the_controller() {
     }
 }
 
+/// The gains of the moment were told, which nothing remembers and no export knows.
+#[test]
+fn a_first_sample_that_overflows_is_answered_with_the_nominal_gains() {
+    for controller in Controller::all(PidConfig::sampled_every(T)) {
+        let mut state = State { integral: f64::MAX, ..State::new() };
+        let held = controller.step(&mut state, sample(0.1, 0.02, 0.0));
+        assert_eq!(held.faults, Faults::OVERFLOW);
+        assert_eq!(held.gains, gains(NOMINAL));
+    }
+}
+
 /// Gain limits used to turn an overflow of the gains into a number.
 #[test]
 fn gains_that_overflow_are_held_even_where_their_limits_would_hide_it() {

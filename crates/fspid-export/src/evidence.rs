@@ -16,6 +16,7 @@ use std::collections::BTreeMap;
 
 use fspid_core::Controller;
 use fspid_numeric::Real;
+use sha2::{Digest, Sha256};
 
 use crate::program::Program;
 use crate::targets::File;
@@ -60,12 +61,27 @@ pub(crate) fn files<R: Real>(subject: &Subject<'_, R>) -> Vec<File> {
         .iter()
         .map(|file| File { name: format!("code/{}", file.name), bytes: file.bytes.clone() })
         .collect();
+    files.push(File::text("code.sha256", digests(subject.code)));
     files.extend(pack::tables(&findings));
     files.push(File::text("coverage.csv", pack::coverage(subject, &judge, &base.branches)));
     files.extend(proof::files(subject));
     files.extend(scripts::files(subject));
     files.push(File::text("README.md", pack::front(subject, &judge, &findings, &base)));
     files
+}
+
+/// The code as exported, as `sha256sum -c` reads it.
+fn digests(code: &[File]) -> String {
+    let mut lines: Vec<String> = code
+        .iter()
+        .map(|file| {
+            let digest = Sha256::digest(&file.bytes);
+            let digits: String = digest.iter().map(|byte| format!("{byte:02x}")).collect();
+            format!("{digits}  code/{}\n", file.name)
+        })
+        .collect();
+    lines.sort_unstable();
+    lines.concat()
 }
 
 /// Every change, asked for on all processors.
@@ -112,8 +128,8 @@ fn findings<R: Real>(subject: &Subject<'_, R>, judge: &Judge<'_>) -> Vec<Finding
 mod tests {
     use fspid_core::fuzzy::{Defuzzifier, Network, NumberTable, OutOfRange, Supervisor};
     use fspid_core::{
-        AntiWindup, Change, ControllerSetting, Fspid, Gains, Limits, Pid, PidConfig, SelfTuner,
-        TunerSettings,
+        AntiWindup, Change, ControllerSetting, Fspid, GainLimits, Gains, Law, Limits, Pid,
+        PidConfig, SelfTuner, TunerSettings,
     };
 
     use super::*;
@@ -223,6 +239,39 @@ mod tests {
             );
             assert!(left.is_empty(), "not told apart: {left:?}");
         }
+    }
+
+    /// Limits with one end were taken for limits, and a proof was hoped for.
+    #[test]
+    fn gains_that_accumulate_are_hoped_to_be_proved_only_between_two_ends() {
+        let first_line = |most: f32| {
+            let clamp = OutOfRange::Clamp;
+            let rules =
+                Supervisor::new(&fspid_core::paper::rules(), 2.0, Defuzzifier::Exact, clamp)
+                    .expect("allowed");
+            let within = Limits::new(ControllerSetting::OutputLimits, 0.1, most).expect("in order");
+            let settings = TunerSettings {
+                law: Law::Accumulating { leakage_per_s: 0.5 },
+                gain_limits: Some(GainLimits { kp: within, ki: within, kd: within }),
+                ..TunerSettings::literal()
+            };
+            let tuner = SelfTuner::new(GAINS, rules, settings).expect("allowed");
+            let fspid = Fspid::new(tuner, config()).expect("allowed");
+            let controller = Controller::SelfTuning(fspid);
+            let program = crate::program(&controller, Angles::Radians).expect("nothing is refused");
+            let (precision, angles) = (program.precision, Some(Angles::Radians));
+            let heading = Heading { name: "FSPID", digest: "0", precision, angles };
+            proof::first_line(&Subject {
+                program: &program,
+                controller: &controller,
+                prefix: "fspid",
+                heading: &heading,
+                vectors: &[],
+                code: &[],
+            })
+        };
+        assert!(first_line(2.0).starts_with("Not proved yet:"));
+        assert!(first_line(f32::INFINITY).starts_with("Not proved: gains that accumulate"));
     }
 
     #[test]

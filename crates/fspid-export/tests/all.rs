@@ -4,6 +4,7 @@ mod ardupilot;
 mod c;
 mod common;
 mod evidence;
+mod flips;
 mod fmu;
 mod fmu_system;
 mod lua;

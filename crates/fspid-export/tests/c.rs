@@ -36,7 +36,7 @@ fn built_and_run(folder: &Path, sources: &[&str]) -> String {
     String::from_utf8_lossy(&ran.stdout).into_owned()
 }
 
-fn write_all<R: Real>(
+pub(crate) fn write_all<R: Real>(
     controller: &Controller<R>,
     angles: Angles,
     folder: &Path,

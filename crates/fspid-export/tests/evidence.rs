@@ -1,5 +1,8 @@
 //! Data for a review: complete, the same each time, and honest about what the vectors do not find.
 
+use std::path::Path;
+use std::process::Command;
+
 use fspid_core::{AntiWindup, Controller, ControllerSetting, Gains, Limits, Pid, PidConfig};
 use fspid_export::program::Precision;
 use fspid_export::{Angles, Export, Request, Target, export};
@@ -80,4 +83,47 @@ fn what_goes_one_way_has_its_reason() {
 
 fn text_of(name: &str) -> String {
     text(&exported(), name).to_owned()
+}
+
+/// The exit code of the pack's script, and the first line of its page behind it.
+fn verdict(folder: &Path) -> (Option<i32>, String) {
+    let ran = Command::new("sh").arg("make-evidence.sh").current_dir(folder).output();
+    let page = std::fs::read_to_string(folder.join("README.md")).expect("the page");
+    (ran.expect("a shell").status.code(), page.lines().next().expect("a line").to_owned())
+}
+
+/// It ended with 0 and "Not proved yet" where every vector was answered otherwise.
+#[test]
+fn a_pack_whose_code_is_not_as_exported_or_answers_otherwise_says_so_first_and_ends_with_1() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let folder = folder.path();
+    for file in exported().evidence {
+        let path = folder.join(&file.name);
+        std::fs::create_dir_all(path.parent().expect("a folder")).expect("a temporary folder");
+        std::fs::write(path, &file.bytes).expect("a temporary file");
+    }
+    let said = |line: &str| (Some(1), line.to_owned());
+
+    let beside = folder.join("code/math.h");
+    std::fs::write(&beside, "").expect("a temporary file");
+    let line = "Wrong: code/ is not what was exported, beside it is code/math.h.";
+    assert_eq!(verdict(folder), said(line));
+    std::fs::remove_file(beside).expect("it was there");
+
+    let source = folder.join("code/pitch.c");
+    let text = std::fs::read_to_string(&source).expect("the code");
+    let changed = text.replacen("    1.2f,", "    1.3f,", 1);
+    assert_ne!(text, changed, "kp is a number of the design");
+    std::fs::write(&source, changed).expect("a temporary file");
+    let line = "Wrong: code/ is not what was exported, code/pitch.c: FAILED.";
+    assert_eq!(verdict(folder), said(line));
+
+    // Also where somebody makes the digests anew.
+    let anew = "find code -type f | LC_ALL=C sort | xargs sha256sum > code.sha256";
+    let ran = Command::new("sh").args(["-c", anew]).current_dir(folder).status();
+    assert!(ran.expect("a shell").success());
+    let (code, line) = verdict(folder);
+    assert_eq!(code, Some(1), "{line}");
+    let is_told = line.starts_with("Wrong: ") && line.contains("-O0: 2500 samples, ");
+    assert!(is_told && line.ends_with(" different."), "{line}");
 }

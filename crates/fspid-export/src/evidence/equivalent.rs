@@ -193,11 +193,12 @@ impl<'a> Judge<'a> {
         let Some(ranges) = &self.ranges else { return String::new() };
         let side = |it: &Expression| match ranges.of(it) {
             Some(Known::Real(it)) => format!("{:.6e} to {:.6e}", it.low, it.high),
+            Some(Known::Whole([low, high])) => format!("{low} to {high}"),
             _ => "never asked".to_owned(),
         };
         match asked {
             Expression::Binary(_, left, right)
-                if matches!(ranges.of(left), Some(Known::Real(_))) =>
+                if matches!(ranges.of(left), Some(Known::Real(_) | Known::Whole(_))) =>
             {
                 format!("{} stands against {}", side(left), side(right))
             }

@@ -276,6 +276,7 @@ const FILES: &str = "
 | file | from | what it is |
 | --- | --- | --- |
 | `code/` | fspid | the export, with its vectors and the program that asks for them |
+| `code.sha256` | fspid | digests of all files of the export, which the script compares first |
 | `trace.csv` | fspid | element of the design or the code, its lines in the C, for each change the first vector that fails |
 | `lines.csv`, `by-vector.csv` | fspid | the same the other ways: from a line, and from a vector that is the first to fail, to elements |
 | `mutants.csv` | fspid | every change: the line of the C as it then is, and the first vector that fails |

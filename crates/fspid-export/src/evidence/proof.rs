@@ -22,12 +22,13 @@ fn obstacle<R: Real>(subject: &Subject<'_, R>) -> Option<&'static str> {
     let Controller::SelfTuning(fspid) = subject.controller else {
         return literal(subject.controller);
     };
-    let (settings, supervisor) = (fspid.tuner().settings(), fspid.tuner().supervisor());
-    let accumulates = fspid.tuner_equations().structure.law == LawKind::Accumulating;
+    let (equations, supervisor) = (fspid.tuner_equations(), fspid.tuner().supervisor());
+    let accumulates = equations.structure.law == LawKind::Accumulating;
+    let are_bounded = equations.gains.iter().all(|it| it.lower.is_finite() && it.upper.is_finite());
     let has_labels = supervisor.has_labels();
-    if accumulates && settings.gain_limits.is_none() {
+    if accumulates && !are_bounded {
         return Some(
-            "gains that accumulate without limits have no bound; gain_limits would give them one",
+            "gains that accumulate have no bound on a side without a limit; both ends of gain_limits would give them one",
         );
     }
     if has_labels && supervisor.out_of_range() == OutOfRange::Evaluate {

@@ -2,7 +2,7 @@
 
 use fspid_numeric::Real;
 
-use super::Subject;
+use super::{Subject, proof};
 use crate::targets::File;
 
 pub(super) fn files<R: Real>(subject: &Subject<'_, R>) -> Vec<File> {
@@ -17,6 +17,9 @@ pub(super) fn files<R: Real>(subject: &Subject<'_, R>) -> Vec<File> {
             .replace("@SPECIFIED@", &specified)
             .replace("@SETPOINT@", &sample(subject, 0))
             .replace("@MEASUREMENT@", &sample(subject, 1))
+            .replace("@COUNT@", &subject.vectors.len().to_string())
+            // It stands between single quotation marks.
+            .replace("@FIRST@", &proof::first_line(subject).replace('\'', "'\\''"))
     };
     vec![
         File::text("make-evidence.sh", filled(include_str!("scripts/make-evidence.sh"))),

@@ -310,6 +310,22 @@ fn bad<R: Real>(flight: &mut Flight<'_, R>) {
     }
     flight.reset([f64::NAN, 0.0, 0.0]);
     flight.step(good);
+    overflow_at_first(flight);
+}
+
+/// The first sample that is believed overflows: it is answered with the nominal gains, as there are no others.
+fn overflow_at_first<R: Real>(flight: &mut Flight<'_, R>) {
+    if !flight.has_events {
+        return;
+    }
+    let [_, most] = fspid_core::largest_remembered::<R>().map(R::to_f64);
+    let good = [0.05, 0.02, 0.01];
+    for sign in [-1.0, 1.0] {
+        flight.reset([f64::NAN, 0.0, 0.0]);
+        let beyond = R::from_f64(2.0 * sign * most);
+        flight.event(Event::Memory(Remembered::Integral, beyond), good);
+        flight.event(Event::Reset, good);
+    }
 }
 
 /// Another commands: within and beyond every limit, and hands over.

@@ -401,6 +401,17 @@ static void takes_parameters(void)
     fly(it, 1, 0U, samples);
     CHECK(reset_(it) == ok);
     CHECK(entered(it, 0.0, 0, 0.0) == ok && exit_(it) == ok);
+    /* At the first communication point too: gains that accumulate began from those of before. */
+    CHECK(set_many(it, parameter_at, parameters, parameter_values) == ok);
+    fly(it, 1, 0U, samples);
+    CHECK(reset_(it) == ok);
+    CHECK(entered(it, 0.0, 0, 0.0) == ok && exit_(it) == ok);
+    /* And behind a sample that could not be used, which stays latched. */
+    CHECK(set_one(it, input_at[0], NAN) == ok && stepped(it, 0.0, period) == ok);
+    CHECK(set_many(it, parameter_at, parameters, parameter_values) == ok);
+    CHECK(whole_of(it, output_at[5]) == 1);
+    CHECK(reset_(it) == ok);
+    CHECK(entered(it, 0.0, 0, 0.0) == ok && exit_(it) == ok);
     fly(it, 0, 0U, samples / 4U);
     /* In flight as well, all at once. */
     CHECK(set_many(it, parameter_at, parameters, parameter_values) == ok);

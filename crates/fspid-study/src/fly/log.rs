@@ -98,11 +98,12 @@ impl Log {
         self.tell(&fault.to_string());
     }
 
-    /// Told once.
-    pub(super) fn estimated_rate(&mut self, time_constant_s: f64) {
+    /// Told once; what a program does with a rate is not known.
+    pub(super) fn estimated_rate(&mut self, time_constant_s: f64, is_external: bool) {
         if !self.rate_is_told {
             let how = format!("a filter of {time_constant_s:?} s estimates it");
-            self.note(&format!("no pitch rate, which this controller needs; {how}"));
+            let needs = if is_external { "may need" } else { "needs" };
+            self.note(&format!("no pitch rate, which this controller {needs}; {how}"));
         }
         self.rate_is_told = true;
     }
@@ -133,7 +134,7 @@ mod tests {
         for _ in 0..1000 {
             log.next_line();
             log.slip(-f64::MAX, f64::MIN_POSITIVE);
-            log.estimated_rate(f64::MIN_POSITIVE);
+            log.estimated_rate(f64::MIN_POSITIVE, true);
             log.held(&longest);
             log.fault(Faults::OUT_OF_RANGE);
             log.lost(&"\u{10ffff}".repeat(9999));

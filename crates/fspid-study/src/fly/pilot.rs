@@ -212,7 +212,7 @@ impl Pilot {
         }
         let estimate_rad_s = self.rate.estimate_rad_s(request.measurement_rad);
         if self.flyer.uses_rate() {
-            self.log.estimated_rate(self.rate.time_constant_s());
+            self.log.estimated_rate(self.rate.time_constant_s(), self.flyer.is_external());
         }
         estimate_rad_s
     }

@@ -68,7 +68,8 @@ pub(super) fn body<R: Real>(
     }
     body.extend(GAINS.map(|gain| Statement::Array(strengths(gain), 7)));
     body.push(Statement::Remark(
-        "A rule is as strong as the weaker of its two grades, a label as its strongest rule."
+        "A rule is as strong as the weaker of its two grades, a label as its strongest rule; what a damaged table has \
+         in the place of a label is none, and leads out of no array."
             .into(),
     ));
     body.extend(strongest_rules());
@@ -138,11 +139,13 @@ fn strongest_rules() -> [Statement; 2] {
         let label = member_element(Part::Configuration, &format!("rules_{gain}"), local("rule"));
         let name = format!("label_{gain}");
         let place = || Place::Element(strengths(gain), Box::new(local(&name)));
-        rule.push(Statement::Let(name.clone(), Kind::Whole, label));
-        rule.push(Statement::when(
+        let stronger = Statement::when(
             Expression::Read(place()).less(local("strength")),
             vec![Statement::Set(place(), local("strength"))],
-        ));
+        );
+        rule.push(Statement::Let(name.clone(), Kind::Whole, label));
+        // Two questions: not every language leaves the second one alone where the first says no.
+        rule.push(Statement::when(local(&name).less(whole(SETS)), vec![stronger]));
     }
     rule.push(Statement::set("rule", Expression::binary(Operator::Add, local("rule"), whole(1))));
     let rows = Statement::repeat("row", SETS, vec![Statement::repeat("column", SETS, rule)]);

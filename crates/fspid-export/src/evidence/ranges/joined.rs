@@ -53,6 +53,8 @@ pub(super) fn wholes(operator: Operator, a: [i32; 2], b: [i32; 2]) -> Known {
         Operator::Multiply => all(i32::saturating_mul),
         Operator::Equal => Known::Truth(equal),
         Operator::NotEqual => Known::Truth(equal.negated()),
+        Operator::Less => Known::Truth(Truth { yes: a[0] < b[1], no: a[1] >= b[0] }),
+        Operator::LessOrEqual => Known::Truth(Truth { yes: a[0] <= b[1], no: a[1] > b[0] }),
         _ => Known::Truth(Truth::ANY),
     }
 }

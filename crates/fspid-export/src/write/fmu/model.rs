@@ -50,7 +50,7 @@ fn controller(prefix: &str) -> String {
         let part = part_name(part);
         text.push_str(&format!("typedef {prefix}_{part} model_{part};\n"));
     }
-    text
+    text + "static int model_has_begun(const model_state *state)\n{\n    return state->started != 0U;\n}\n"
 }
 
 /// A fuzzy system in the place of a controller: nothing to configure, perhaps nothing to remember, nothing to hold.
@@ -76,6 +76,7 @@ fn system(program: &Program, prefix: &str) -> String {
          static void model_reset(const model_configuration *design, model_state *state)\n{{\n    (void)design;\n    {reset}\n}}\n\
          static void model_hold(const model_configuration *design, model_state *state, model_answer *answer, uint8_t fault)\n\
          {{\n    (void)design;\n    (void)state;\n    (void)answer;\n    (void)fault;\n}}\n\
+         static int model_has_begun(const model_state *state)\n{{\n    (void)state;\n    return 1;\n}}\n\
          static void model_step(const model_configuration *design, model_state *state, const model_sample *sample, model_answer *answer)\n\
          {{\n    (void)design;{unused}\n    {prefix}_infer({configuration}{asked}sample, answer);\n}}\n"
     )

@@ -62,12 +62,13 @@ static int is_allowed(struct instance *it, unsigned modes, const char *function)
     return 0;
 }
 
-/* As before the first sample, with the parameters as they are. */
+/* As before the first good sample, with the parameters as they are; faults stay latched. */
 static void settle(struct memory *memory)
 {
+    uint8_t latched = memory->answer.faults;
     model_reset(&memory->configuration, &memory->state);
     memset(&memory->answer, 0, sizeof memory->answer);
-    model_hold(&memory->configuration, &memory->state, &memory->answer, 0U);
+    model_hold(&memory->configuration, &memory->state, &memory->answer, latched);
 }
 
 static void begin(struct memory *memory)
@@ -196,7 +197,8 @@ static enum status set_reals(struct instance *it, const reference which[], size_
     order = it->now.mode == mode_stepping ? disorder(&next) : NULL;
     if (order != NULL) { return refused(it, disordered(order, message)); }
     it->now = next;
-    if (it->now.mode != mode_stepping) { settle(&it->now); }
+    /* What is remembered follows from the parameters until a good sample has written it. */
+    if (it->now.mode != mode_stepping || !model_has_begun(&it->now.state)) { settle(&it->now); }
     return status_ok;
 }
 
