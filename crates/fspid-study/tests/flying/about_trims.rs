@@ -3,7 +3,10 @@
 //! what would be said of less.
 
 use fspid_sim::Doubt;
+use fspid_study::analysis::{Analysis, Question, Stability};
 use fspid_study::simulation::{ControllerResult, Simulation};
+
+use serde_json::Value;
 
 use crate::flying::study;
 
@@ -336,4 +339,28 @@ fn an_airframe_that_is_faster_than_the_steps_of_the_integration_is_undecided() {
     // Steps that follow it find that it grows.
     let found = result(&light, &["loop.sample_period_s=0.002", "loop.duration_s=5.0"]);
     assert_ne!(doubt(&found), Some(Doubt::FastMotion));
+}
+
+/// `"stable": true` in JSON, where the flight said that nobody knows.
+#[test]
+fn everything_that_a_flight_doubts_is_in_doubt_for_analyse() {
+    let loops = |text: &str, set: &[&str]| {
+        let found = Analysis::of(&study(text, set), Question::default()).expect("a loop");
+        (found.json()["controllers"][0].clone(), found.stability(), found.text())
+    };
+    let (json, stability, text) = loops(AFT, &[]);
+    assert_eq!((json["stable"].clone(), stability), (Value::Null, Stability::Undecided));
+    assert_eq!(json["stability"], "undecided");
+    let why = json["undecided"].as_str().expect("a reason");
+    assert!(
+        why.contains("more elevator than a limit leaves") && text.contains("UNDECIDED"),
+        "{why}"
+    );
+    let (json, stability, _) = loops(AFT, &["setpoint.amplitude_deg=0.3"]);
+    assert_eq!((json["stable"].clone(), stability), (Value::Bool(true), Stability::Stable));
+    assert!(json.get("undecided").is_none());
+    // A mode that grows with the aircraft of later has a line of its own.
+    let (json, stability, text) = loops(BRAKE, &[]);
+    assert_eq!((json["stable"].clone(), stability), (Value::Bool(false), Stability::Unstable));
+    assert!(text.contains("mode hold, with the aircraft from 6 s on: UNSTABLE"), "{text}");
 }
