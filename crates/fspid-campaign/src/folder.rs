@@ -135,6 +135,8 @@ impl Folder {
     /// # Errors
     /// As [`lock`](Self::lock).
     pub fn lock_shard(&self, range: Range) -> Result<Lock, CampaignError> {
+        // A plan that was sent on may have come without its empty folder.
+        output::make_folder(&self.shards_path())?;
         let path = self.shard_path(range).with_extension("lock");
         self.hold(lock_file(&path)?, true)
     }

@@ -70,6 +70,23 @@ pub fn write(path: &Path, contents: impl AsRef<[u8]>) -> Result<(), OutputError>
     write_by(path, |file| file.write_all(contents.as_ref()).map_err(|reason| failed(path, reason)))
 }
 
+/// As [`write()`], of a file that is not there yet: of two who write it at once one is told.
+///
+/// # Errors
+/// [`OutputError`] with the path, where something has that name by then too.
+pub fn write_new(path: &Path, contents: impl AsRef<[u8]>) -> Result<(), OutputError> {
+    let write = |file: &mut BufWriter<&File>| {
+        file.write_all(contents.as_ref()).map_err(|reason| failed(path, reason))
+    };
+    let ((), whole) = begun(path, write)?;
+    if let Some(Whole { file, path }) = whole {
+        let folder = folder_of(&path).to_owned();
+        file.persist_noclobber(&path).map_err(|error| failed(&path, error.error))?;
+        flush(&folder);
+    }
+    Ok(())
+}
+
 /// Writes many files, none of them under its name before all are whole: where one cannot be written, no file has changed.
 /// Several are flushed to the disk at a time, which is what takes the time.
 ///

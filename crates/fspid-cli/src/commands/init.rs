@@ -49,7 +49,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         let path = path.display();
         return Err(Failure::input(format_args!("{path} exists; choose another name")));
     }
-    output::write(path, starter.text)?;
+    output::write_new(path, starter.text)?;
     let shown = path.display().to_string();
     let command = starter.command.replace("FILE", &shell::word(&shown));
     match arguments.format {

@@ -1,5 +1,6 @@
 //! What can be wrong with a distribution.
 
+use fspid_diagnostics::digits::shortest;
 use std::fmt;
 
 /// Why a distribution could not be built, or nothing be drawn from it. Rows, columns, entries and
@@ -148,24 +149,32 @@ impl fmt::Display for DispersionError {
                 write!(f, "the {what} is {value}; it must be a finite number")
             }
             Self::StandardDeviation { value } => {
-                write!(f, "the standard deviation is {value}; it must be above 0")
+                write!(f, "the standard deviation is {}; it must be above 0", shortest(value))
             }
             Self::EmptyRange { lower, upper } => {
+                let [lower, upper] = [lower, upper].map(shortest);
                 write!(f, "the limits are {lower} and {upper}; the lower one must come first")
             }
             Self::BeyondRange { what } => write!(
                 f,
                 "some values of the {what} lie beyond the range of 64-bit floating point numbers"
             ),
-            Self::NothingInside { mean, standard_deviation, lower, upper, probability } => write!(
-                f,
-                "of a normal distribution with mean {mean} and standard deviation {standard_deviation} the share between {lower} and {upper} is {probability:e}; to be drawn from it must be at least {:e}",
-                super::standard_normal::LEAST_INSIDE
-            ),
-            Self::TwoSigns { lower, upper } => write!(
-                f,
-                "the limits are {lower} and {upper}; for a logarithm both must be above 0 or both below"
-            ),
+            Self::NothingInside { mean, standard_deviation, lower, upper, probability } => {
+                let [mean, standard_deviation, lower, upper] =
+                    [mean, standard_deviation, lower, upper].map(shortest);
+                write!(
+                    f,
+                    "of a normal distribution with mean {mean} and standard deviation {standard_deviation} the share between {lower} and {upper} is {probability:e}; to be drawn from it must be at least {:e}",
+                    super::standard_normal::LEAST_INSIDE
+                )
+            }
+            Self::TwoSigns { lower, upper } => {
+                let [lower, upper] = [lower, upper].map(shortest);
+                write!(
+                    f,
+                    "the limits are {lower} and {upper}; for a logarithm both must be above 0 or both below"
+                )
+            }
             Self::NoValues => f.write_str("there is no value to choose; at least one is needed"),
             Self::Weights { found, allowed } => {
                 write!(f, "there are {found} weights for {allowed} values; each needs one")
