@@ -156,7 +156,7 @@ impl Pair<'_> {
             let ranked = signs(&means.parts[0], &defeats, bands);
             let bars = [(both[0], both[1]), (both[1], both[0])];
             let bars = bars.map(|(one, other)| self.everywhere.bar(one, other));
-            band.dominance = allowed(dominance(&band.ends, &ranked), bars);
+            band.dominance = allowed(&band.ends, &ranked, bars);
         }
         band
     }
@@ -216,27 +216,27 @@ fn means(cases: &[OfCase]) -> Means {
 
 /// What the signed ranks of the cases say at each place, lost cases among them: -1 for less error, 1 for more, 0 for
 /// nothing significant.
-fn signs(cases: &[Along], defeats: &[f64], bands: usize) -> [i8; PLACES] {
+fn signs(cases: &[Along], defeats: &[f64], bands: usize) -> [f64; PLACES] {
     std::array::from_fn(|place| {
         let differences: Vec<f64> =
             cases.iter().map(|it| it[place]).chain(defeats.iter().copied()).collect();
         match SignedRank::of(&differences, CONFIDENCE) {
             Some(it) if it.p <= (1.0 - CONFIDENCE) / bands.max(1) as f64 => {
                 if it.estimate < 0.0 {
-                    -1
+                    -1.0
                 } else {
-                    1
+                    1.0
                 }
             }
-            _ => 0,
+            _ => 0.0,
         }
     })
 }
 
-/// What a band amounts to where the ranks say the same.
-fn dominance([lower, upper]: &Ends, ranked: &[i8; PLACES]) -> Dominance {
-    let less = upper.iter().zip(ranked).filter(|(it, sign)| **it < 0.0 && **sign < 0).count();
-    let more = lower.iter().zip(ranked).filter(|(it, sign)| **it > 0.0 && **sign > 0).count();
+/// What a band amounts to at the places where something agrees: a side of zero, and a place.
+fn dominance([lower, upper]: &Ends, agrees: &dyn Fn(f64, usize) -> bool) -> Dominance {
+    let less = (0..PLACES).filter(|it| upper[*it] < 0.0 && agrees(-1.0, *it)).count();
+    let more = (0..PLACES).filter(|it| lower[*it] > 0.0 && agrees(1.0, *it)).count();
     match (less, more) {
         (PLACES, _) => Dominance::Dominates,
         (_, PLACES) => Dominance::Dominated,
@@ -247,13 +247,19 @@ fn dominance([lower, upper]: &Ends, ranked: &[i8; PLACES]) -> Dominance {
     }
 }
 
-/// The same where nobody is called better who is barred: the controller, and the one compared with.
-fn allowed(found: Dominance, [own, other]: [Option<FrontBar>; 2]) -> Dominance {
-    use Dominance::{BetterInPart, Crosses, Dominated, Dominates, WorseInPart};
-    match (found, own, other) {
-        (Dominates | BetterInPart | Crosses, Some(bar), _) => Dominance::Barred(bar),
-        (Dominated | WorseInPart | Crosses, _, Some(bar)) => Dominance::OtherBarred(bar),
-        _ => found,
+/// The same where the ranks agree, and nobody is called better who is barred: the controller, and the one compared with.
+/// What a bar would take from the band alone is told as that, also where the ranks would have taken it.
+fn allowed(ends: &Ends, ranked: &[f64; PLACES], [own, other]: [Option<FrontBar>; 2]) -> Dominance {
+    use Dominance::{BetterInPart, Crosses, Dominated, Dominates, Open, WorseInPart};
+    let by_band = dominance(ends, &|_, _| true);
+    match (by_band, own, other) {
+        (Dominates | BetterInPart | Crosses, Some(bar), _) => return Dominance::Barred(bar),
+        (Dominated | WorseInPart | Crosses, _, Some(bar)) => return Dominance::OtherBarred(bar),
+        _ => {}
+    }
+    match dominance(ends, &|side, place| side * ranked[place] > 0.0) {
+        Open if by_band != Open => Dominance::OpenByRanks,
+        found => found,
     }
 }
 

@@ -17,6 +17,8 @@ pub enum Dominance {
     Crosses,
     /// Nothing is significant.
     Open,
+    /// The band leaves zero, and the signed ranks of the cases, lost ones among them, say nothing.
+    OpenByRanks,
     /// Less error, on all of it or in part, of a controller that is not called better for it.
     Barred(FrontBar),
     /// The same of the one compared with.
@@ -58,6 +60,7 @@ impl Dominance {
             Self::WorseInPart => "worse on a part of the front",
             Self::Crosses => "better on one part, worse on another",
             Self::Open => "not significant anywhere",
+            Self::OpenByRanks => "not significant by the signed ranks of its cases",
             Self::Barred(FrontBar::AllFail) => {
                 "not better, for all its flights at some effort fail"
             }

@@ -64,7 +64,7 @@ pub(super) fn whole(band: &Band) -> String {
     }
     if band.cases.apart > 0 {
         told.push_str(&format!(
-            "; {} left out, for they have no common range of travel",
+            "; {} left out, for they have no common range of travel, or the efforts change none",
             cases(band.cases.apart)
         ));
     }
