@@ -50,11 +50,13 @@ use fspid_study::memory::Needed;
 use fspid_study::output;
 
 pub use crate::kept::Then;
+pub(crate) use compare::{Bar, barred};
 pub use compare::{Comparison, Lost, Ratio, Standing};
 pub use flight::{Flight, MEASURES};
 pub use judged::{Case, CaseGroup, Contestant, Count, Design, Judged, Quantity};
 pub use outcome::{First, Outcome, Setting};
 pub use signed_rank::SignedRank;
+pub(crate) use student::beyond;
 pub use summary::{Mirror, Part, Spread, Summary};
 pub use tuning::{Found, Progress};
 pub use two_way::{TwoWay, holm};
@@ -132,6 +134,11 @@ impl Contest {
         let tuned = tuned.map(|problem| problem.needed(threads));
         let judged = self.entrants.iter().map(|entrant| entrant.flights.needed(threads));
         tuned.chain(judged).fold(Needed::for_flights(0, threads), Needed::and)
+    }
+
+    /// How many tunings each controller has that is tuned.
+    pub(crate) const fn seeds(&self) -> usize {
+        self.efforts.len()
     }
 
     /// The controllers that are tuned, each with the candidates of all its tunings.

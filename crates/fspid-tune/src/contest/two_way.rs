@@ -56,14 +56,26 @@ impl TwoWay {
             designs.iter().map(|it| mean(it.iter().copied())).collect()
         };
         let parts = [differences, of_designs(mine), of_designs(theirs)];
+        Some(Self::of_parts(estimate, parts.iter().map(Vec::as_slice)))
+    }
+
+    /// Of an estimate to which several draws contribute, each by the mean of its values: the error and the degrees of
+    /// freedom of [`TwoWay::of`]. A part of one value is known, and adds nothing.
+    pub(crate) fn of_parts<'a>(
+        estimate: f64,
+        parts: impl Iterator<Item = &'a [f64]> + Clone,
+    ) -> Self {
         let (mut whole, mut weighted) = (0.0, 0.0);
-        for part in parts.iter().filter(|part| part.len() > 1) {
+        for part in parts.clone().filter(|part| part.len() > 1) {
             let share = variance(part) / part.len() as f64;
             whole += share;
             weighted += share * share / (part.len() - 1) as f64;
         }
-        let freedom = if weighted > 0.0 { whole * whole / weighted } else { (count - 1) as f64 };
-        Some(Self { estimate, error: Some(whole.sqrt()), freedom })
+        // Where nothing scatters, the first part, the cases, says how often that was seen.
+        let count = parts.map(<[f64]>::len).next().unwrap_or(0);
+        let freedom =
+            if weighted > 0.0 { whole * whole / weighted } else { count.saturating_sub(1) as f64 };
+        Self { estimate, error: Some(whole.sqrt()), freedom }
     }
 
     /// Two-sided p-value of "no difference"; 1 where nothing is known of the error.

@@ -1,32 +1,20 @@
 //! Error over travel: of each controller, case and seed, through the rungs of the ladder.
 
-use super::Rung;
-use crate::contest::{Flight, Quantity};
+use crate::contest::{Judged, Quantity};
 
-/// Logarithms of travel and error of the flights of one case and seed, by travel.
+/// Logarithms of travel and error along a ladder, by travel.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Curve(Vec<(f64, f64)>);
 
 impl Curve {
-    /// Through flights that are not lost; none of fewer than two travels.
-    pub(super) fn of<'a>(flights: impl Iterator<Item = &'a Flight>) -> Option<Self> {
-        let measure = |flight: &Flight, quantity: Quantity| match quantity {
-            Quantity::Measure(index) => flight.measures.get(index).copied().flatten(),
-            Quantity::Cost => None,
-        };
-        Self::through(flights.filter_map(|flight| {
-            let travel = measure(flight, Quantity::ACTIVITY)?;
-            Some((travel, measure(flight, Quantity::ERROR)?))
-        }))
-    }
-
     /// Through travels and errors above zero; none of fewer than two travels.
     pub(super) fn through(points: impl Iterator<Item = (f64, f64)>) -> Option<Self> {
-        let there = points.filter(|(travel, error)| *travel > 0.0 && *error > 0.0);
+        let is_there = |it: f64| it > 0.0 && it.is_finite();
+        let there = points.filter(|(travel, error)| is_there(*travel) && is_there(*error));
         let mut points: Vec<(f64, f64)> =
             there.map(|(travel, error)| (libm::log(travel), libm::log(error))).collect();
         points.sort_by(|one, other| one.0.total_cmp(&other.0));
-        // Of two flights of one travel the better one: the other effort bought nothing.
+        // Of two efforts of one travel the better one: the other effort bought nothing.
         points.dedup_by(|next, before| {
             let same = next.0 - before.0 <= 1e-9;
             if same {
@@ -43,7 +31,7 @@ impl Curve {
         [end(self.0.first()), end(self.0.last())]
     }
 
-    /// The error at a travel, in a straight line between flights.
+    /// The error at a travel, in a straight line between efforts.
     pub(super) fn at(&self, travel: f64) -> f64 {
         let next = self.0.partition_point(|point| point.0 < travel).clamp(1, self.0.len() - 1);
         let ((x0, y0), (x1, y1)) = (self.0[next - 1], self.0[next]);
@@ -51,25 +39,20 @@ impl Curve {
     }
 }
 
-/// The curves of a controller in a case, one a seed; none where one of them is none.
-pub(super) fn of_case(rungs: &[Rung], contestant: usize, case: usize) -> Option<Vec<Curve>> {
-    let contestants = || rungs.iter().map(|rung| &rung.outcome.judged.contestants[contestant]);
-    let seeds = contestants().map(|it| it.designs.len()).min().unwrap_or(0);
-    let place = flights_of(rungs, case);
-    (0..seeds)
-        .map(|seed| {
-            let flights = contestants()
-                .flat_map(|it| it.designs[seed].flights.get(place.clone()).unwrap_or_default());
-            Curve::of(flights)
-        })
-        .collect()
-}
-
-/// Where the flights of a case are among all flights of a design.
-fn flights_of(rungs: &[Rung], case: usize) -> std::ops::Range<usize> {
-    let cases = rungs.first().map_or(&[][..], |rung| rung.outcome.judged.cases.as_slice());
-    let before: usize = cases.iter().take(case).map(|it| it.runs).sum();
-    before..before + cases.get(case).map_or(0, |it| it.runs)
+/// The curves of a controller in a case, one a seed; none where one of them is none. A point is the mean over the runs of
+/// the case on a rung, as the contest has it: what travels more because its draw is harder is no other effort, and would
+/// make a curve of its own shape that says nothing of the controller.
+pub(super) fn of_case(rungs: &[&Judged], contestant: usize, case: usize) -> Option<Vec<Curve>> {
+    let held = || rungs.iter().copied();
+    let designs = |judged: &Judged| judged.contestants[contestant].designs.len();
+    let seeds = held().map(designs).min().unwrap_or(0);
+    let point = |judged: &Judged, seed: usize| {
+        let design = &judged.contestants[contestant].designs[seed];
+        let [travel, error] =
+            [Quantity::ACTIVITY, Quantity::ERROR].map(|it| judged.value(design, case, it));
+        Some((travel?, error?))
+    };
+    (0..seeds).map(|seed| Curve::through(held().filter_map(|it| point(it, seed)))).collect()
 }
 
 #[cfg(test)]
@@ -77,7 +60,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn between_flights_a_curve_is_straight_in_logarithms() {
+    fn between_efforts_a_curve_is_straight_in_logarithms() {
         let curve = Curve(vec![(0.0, 2.0), (1.0, 1.0), (3.0, 0.0)]);
         assert_eq!(
             (curve.at(0.0), curve.at(0.5), curve.at(2.0), curve.at(3.0)),

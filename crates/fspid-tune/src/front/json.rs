@@ -2,26 +2,12 @@
 
 use serde_json::{Value, json};
 
-use super::FrontOutcome;
-use super::band::{CONFIDENCE, DRAWS};
+use super::joint::{CONFIDENCE, DRAWS};
 use super::text::{change_pct, headline, share};
+use super::{Band, FrontOutcome, Travel};
 
 pub(super) fn json(outcome: &FrontOutcome) -> Value {
-    let bands = outcome.bands.iter().map(|band| {
-        let change = |values: &[f64]| values.iter().map(|it| change_pct(*it)).collect::<Vec<_>>();
-        json!({
-            "name": band.name,
-            "standing": band.dominance.words(),
-            "cases": band.cases.0,
-            "cases_of": band.cases.1,
-            "along_pct": (0..band.middle.len()).map(share).collect::<Vec<_>>(),
-            "change_pct": change(&band.middle),
-            "lower_pct": change(&band.ends[0]),
-            "upper_pct": change(&band.ends[1]),
-            "failed": band.failed[0],
-            "failed_of_against": band.failed[1],
-        })
-    });
+    let bands = outcome.bands.iter().map(of_band);
     let lines = outcome.lines().into_iter().map(|line| {
         let ends = |which: usize| line.band.iter().map(|(_, ends)| ends[which]).collect::<Vec<_>>();
         json!({
@@ -51,5 +37,33 @@ pub(super) fn json(outcome: &FrontOutcome) -> Value {
         "fronts": bands.collect::<Vec<_>>(),
         "rungs": rungs.collect::<Vec<_>>(),
         "command": outcome.command,
+    })
+}
+
+fn of_band(band: &Band) -> Value {
+    let change = |values: &[f64]| values.iter().map(|it| change_pct(*it)).collect::<Vec<_>>();
+    let travel = |which: fn(&Travel) -> [f64; 2]| {
+        band.travel.as_ref().map_or(Vec::new(), |it| which(it).to_vec())
+    };
+    let [own, against] = band.flights;
+    json!({
+        "name": band.name,
+        "standing": band.dominance.words(),
+        "cases": band.cases.compared,
+        "cases_lost": band.cases.lost,
+        "cases_apart": band.cases.apart,
+        "cases_of": band.cases.of(),
+        "travel_deg": travel(|it| it.mean_deg),
+        "narrowest_travel_deg": travel(|it| it.narrowest_deg),
+        "along_pct": (0..band.middle.len()).map(share).collect::<Vec<_>>(),
+        "change_pct": change(&band.middle),
+        "lower_pct": change(&band.ends[0]),
+        "upper_pct": change(&band.ends[1]),
+        "failed": own.failed,
+        "failed_of_against": against.failed,
+        "lost": own.lost,
+        "lost_of_against": against.lost,
+        "unstable": own.unstable,
+        "unstable_of_against": against.unstable,
     })
 }

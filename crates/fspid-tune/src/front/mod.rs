@@ -2,28 +2,32 @@
 //!
 //! A contest compares controllers that were allowed the same mean travel of the elevator; whoever chooses that travel may
 //! choose the winner. Here one contest is held for each rung of a ladder of travels, in a folder of its own, and of each
-//! controller and case the error is a curve over the travel that its flights took. Curves are compared at equal travel over
-//! the range that both have, all along it at once ([`Band`]).
+//! controller, case and seed the error is a curve over the travel that its flights took on average. Curves are compared at
+//! equal travel over the range that both have, all along it at once ([`Band`]).
 
 mod band;
 mod curves;
+mod joint;
 mod json;
 mod over_travel;
 mod page;
+mod standing;
 mod text;
 
 use std::path::Path;
 
+use fspid_diagnostics::digits::counted;
 use fspid_scenario::measure::Measure;
 use fspid_study::memory::Needed;
 use fspid_study::output;
 use fspid_study::shell::word;
 use serde_json::Value;
 
-pub use band::{Band, Dominance};
+pub use band::{Band, Cases, Travel, Unsuccessful};
 pub use over_travel::Line;
+pub use standing::{Dominance, FrontBar, Missing};
 
-use crate::contest::{Contest, Options, Outcome, Progress, Then};
+use crate::contest::{Contest, Judged, Options, Outcome, Progress, Then};
 use crate::crew::Crew;
 use crate::error::TuneError;
 use crate::limit::NearLimit;
@@ -118,7 +122,18 @@ impl Front {
     /// What is allowed and probably not meant, each once.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
-        self.rungs.first().map_or(Vec::new(), |(_, contest)| contest.warnings())
+        let Some((_, contest)) = self.rungs.first() else {
+            return Vec::new();
+        };
+        let mut warnings = contest.warnings();
+        if contest.seeds() < joint::FEWEST_SEEDS {
+            warnings.push(format!(
+                "a front of {} claims nothing: it takes {} or more",
+                counted(contest.seeds(), "seed"),
+                joint::FEWEST_SEEDS
+            ));
+        }
+        warnings
     }
 
     /// Holds all contests, each in a folder of its own below the given one, where what is there already is not searched
@@ -140,7 +155,8 @@ impl Front {
             let near = contest.near_limit(&outcome, asked.told, asked.stop)?;
             rungs.push(Rung { travel_deg: *travel_deg, outcome, near });
         }
-        let bands = band::all(&rungs);
+        let judged: Vec<&Judged> = rungs.iter().map(|rung| &rung.outcome.judged).collect();
+        let bands = band::all(&judged);
         let command = self.command(folder, &rungs);
         let outcome = FrontOutcome { rungs, bands, command };
         output::write(&folder.join("front.json"), format!("{:#}\n", outcome.json()))?;

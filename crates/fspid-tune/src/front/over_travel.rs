@@ -1,23 +1,21 @@
 //! Error over travel: a line for each controller through the means of its rungs, with a band around it, and the limit below.
 //!
-//! A point is the mean over cases and tunings of error and travel on a rung. For the band cases and seeds are drawn anew
-//! with replacement, each on its own, as for differences ([`band`](super::band)); it holds all along the line, and for all
-//! lines together. How hard a case is for everybody is no difference between controllers and would make every band as wide
+//! A point is the mean over cases and tunings of error and travel on a rung. The band has a part for cases and one for seeds,
+//! as for differences ([`joint`](super::joint)); as a line is no mean itself, the values of a part are what it is without each
+//! case, or each seed, weighed so that their scatter is that of a mean (Tukey's pseudo-values). It holds all along the line,
+//! and for all lines together. How hard a case is for everybody is no difference between controllers and would make every band as wide
 //! as cases differ, so that it is taken out: values of a case are divided by their mean over all tuned controllers, rungs and
 //! seeds, and what that makes too narrow is given back (Cousineau's normalisation with Morey's correction).
 //!
 //! # Source
 //! D. Cousineau, *Confidence intervals in within-subject designs*, Tutorials in Quantitative Methods for Psychology 1 (2005)
-//! 42; R. D. Morey, *Confidence intervals from normalized data: a correction to Cousineau (2005)*, the same 4 (2008) 61.
+//! 42; R. D. Morey, *Confidence intervals from normalized data: a correction to Cousineau (2005)*, the same 4 (2008) 61. R. G.
+//! Miller, *The jackknife — a review*, Biometrika 61 (1974) 1.
 
-use super::band::{DRAWS, FEWEST_CASES, PLACES, around};
 use super::curves::Curve;
+use super::joint::{Along, FEWEST_CASES, FEWEST_SEEDS, Means, PLACES};
 use super::{FrontOutcome, Rung};
 use crate::contest::{Judged, Quantity};
-use crate::draw::Draw;
-
-/// Seed of the draws.
-const SEED: u64 = 0x006c_696e_6573;
 
 /// Error over travel of one controller, or the limit.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,8 +26,8 @@ pub struct Line {
     pub is_tuned: bool,
     /// Mean travel, deg, and mean error, deg s, of each rung.
     pub points: Vec<(f64, f64)>,
-    /// Lower and upper end of the error, deg s, at travels along the line, deg; empty with one seed, with fewer than six
-    /// cases, and of the limit, which is proved.
+    /// Lower and upper end of the error, deg s, at travels along the line, deg; empty with fewer than three seeds
+    /// or six cases, and of the limit, which is proved.
     pub band: Vec<(f64, [f64; 2])>,
 }
 
@@ -152,6 +150,31 @@ impl Values {
         Self { weights: self.weights.clone(), rungs: self.rungs.iter().map(of_rung).collect() }
     }
 
+    /// What the line is without each case, and without each seed, so that the mean of each list is near the middle and its
+    /// scatter that of what was drawn; none where what is left has no line.
+    fn pseudo_values(
+        &self,
+        middle: &Along,
+        along: &dyn Fn(&Curve) -> Along,
+    ) -> Option<Vec<Vec<Along>>> {
+        let (seeds, cases) = (self.seeds(), self.weights.len());
+        let but = |count: usize, one: usize| (0..count).filter(|it| *it != one).collect::<Vec<_>>();
+        let line = |seeds: &[usize], cases: &[usize]| {
+            Some(along(&Curve::through(self.means(seeds, cases).into_iter())?))
+        };
+        let (all_seeds, all_cases) = (but(seeds, seeds), but(cases, cases));
+        let of_case = |one: usize| line(&all_seeds, &but(cases, one));
+        let of_seed = |one: usize| line(&but(seeds, one), &all_cases);
+        let part = |count: usize, of: &dyn Fn(usize) -> Option<Along>| -> Option<Vec<Along>> {
+            let all = count as f64;
+            let pseudo = |without: Along| {
+                std::array::from_fn(|it| all * middle[it] - (all - 1.0) * without[it])
+            };
+            (0..count).map(|one| of(one).map(pseudo)).collect()
+        };
+        Some(vec![part(cases, &of_case)?, part(seeds, &of_seed)?])
+    }
+
     /// The band around the line through its points, which holds together with those of all other tuned controllers.
     fn band(&self, hardness: &Hardness) -> Vec<(f64, [f64; 2])> {
         let (seeds, cases) = (self.seeds(), self.weights.len());
@@ -160,24 +183,20 @@ impl Values {
         let [Some(line), Some(even_line)] = lines else {
             return Vec::new();
         };
-        if seeds < 2 || cases < FEWEST_CASES {
+        if seeds < FEWEST_SEEDS || cases < FEWEST_CASES {
             return Vec::new();
         }
-        let places = |curve: &Curve| -> [f64; PLACES] {
+        let places = |curve: &Curve| -> Along {
             let [least, most] = curve.range();
             std::array::from_fn(|it| least + (most - least) * it as f64 / (PLACES - 1) as f64)
         };
         let even_places = places(&even_line);
         let along = |curve: &Curve| even_places.map(|place| curve.at(place));
-        let mut random = Draw::of(SEED, 0);
-        let mut anew = |of: usize| (0..of).map(|_| random.below(of)).collect::<Vec<usize>>();
-        let drawn = (0..DRAWS).filter_map(|_| {
-            let (seeds, cases) = (anew(seeds), anew(cases));
-            Some(along(&Curve::through(even.means(&seeds, &cases).into_iter())?))
-        });
-        let drawn: Vec<[f64; PLACES]> = drawn.collect();
         let middle = along(&even_line);
-        let ends = around(&drawn, &middle, hardness.controllers);
+        let Some(parts) = even.pseudo_values(&middle, &along) else {
+            return Vec::new();
+        };
+        let ends = Means { middle, parts }.ends(hardness.controllers);
         let ends = |it: usize, travel: f64| {
             let off = |end: f64| hardness.correction() * (end - middle[it]);
             ends.each_ref().map(|side| libm::exp(line.at(travel) + off(side[it])))
@@ -218,6 +237,7 @@ impl Hardness {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::draw::Draw;
 
     /// Two controllers on three rungs, with `seeds` tunings and eight cases of which each is twice as hard as the one before;
     /// noise of single cases and of tunings.
@@ -259,8 +279,10 @@ mod tests {
     }
 
     #[test]
-    fn one_tuning_has_no_band() {
-        let both = values(1, 0.1);
-        assert!(both[0].band(&Hardness::of(&both.each_ref())).is_empty());
+    fn one_tuning_and_two_have_no_band() {
+        for seeds in [1, 2] {
+            let both = values(seeds, 0.1);
+            assert!(both[0].band(&Hardness::of(&both.each_ref())).is_empty());
+        }
     }
 }

@@ -4,8 +4,8 @@ use fspid_page::analysis::{Chapter, DataTable, Datum, Item, Picture, Standing, V
 use fspid_page::campaign::CampaignPage;
 use fspid_plot::{LineFigure, LinePanel, Series, SeriesStyle, Svg, TradeFigure, TradeSeries};
 
-use super::band::{CONFIDENCE, DRAWS, PLACES};
-use super::text::{change_pct, headline, share};
+use super::joint::{CONFIDENCE, DRAWS, FEWEST_CASES, FEWEST_SEEDS, PLACES};
+use super::text::{change_pct, headline, share, whole};
 use super::{Dominance, FrontOutcome, over_travel};
 
 pub(super) fn page(outcome: &FrontOutcome) -> String {
@@ -50,7 +50,7 @@ pub(super) fn page(outcome: &FrontOutcome) -> String {
 fn answer(outcome: &FrontOutcome) -> Vec<Item> {
     let over = "Error over travel. A line goes through a controller's means at each effort, over its tunings and over the cases that have a limit and of which nobody lost a flight on any rung; its band says how far cases and tunings leave that open, everywhere at once and for all lines together, without how hard a case is for everybody. Who is better is decided by the differences below. The lowest line is the limit at the travel of the best design of the controller that the others are compared with; at its corners nobody gets below it.";
     let along = format!(
-        "Change of the error from {} at equal travel, %, from the least to the most travel that both have in a case. All bands hold together and everywhere at once, at {:.0} %: below 0 everywhere is better on the whole front.",
+        "Change of the error from {} at equal travel, %, from the least to the most travel that both have in a case. All bands hold together and everywhere at once, at {:.0} %: below 0 everywhere is better on the whole front, where the signed ranks of the cases say so too and nothing bars it.",
         outcome.against(),
         100.0 * CONFIDENCE
     );
@@ -66,13 +66,16 @@ fn answer(outcome: &FrontOutcome) -> Vec<Item> {
         items.push(picture("along", differences(outcome), along));
     }
     items.push(Item::Table(standings(outcome)));
+    items.push(Item::List(outcome.bands.iter().map(whole).collect()));
     items
 }
 
 fn notes() -> Vec<String> {
     vec![
-        format!("Bands: cases and seeds drawn anew with replacement, each on its own, {DRAWS} times (pigeonhole bootstrap); the mean ± a quantile of the largest standardised deviation along the front, with Bonferroni's correction for the number of controllers."),
-        "Assumed: cases and seeds are like draws of those that matter, and between two efforts error over travel is near a straight line in logarithms. With one seed, or fewer than six cases with a common range of travel, nothing is claimed.".to_owned(),
+        format!("Bands: the mean ± its error times a quantile of the largest deviation along the front. The error at each place is that of a contest, with a part for cases and one for the seeds of each controller, and Student's distribution by its degrees of freedom; the quantile comes of {DRAWS} draws of deviations that move along the front as cases and seeds do, with Bonferroni's correction for the number of controllers."),
+        "The signed ranks of the cases have to agree at every place, as in a contest, with a case of which one loses more flights as its largest defeat: with n cases no p-value is below 2^(1\u{2212}n). Weights of cases count in means and in no test.".to_owned(),
+        "Barred from being better: a controller all of whose flights fail, of which one is unstable at rest, or that loses more or, significantly by the signed ranks of the cases, fails more than the other, at an effort or over all of them.".to_owned(),
+        format!("Assumed: cases and seeds are like draws of those that matter, and between two efforts error over travel is near a straight line in logarithms. With fewer than {FEWEST_SEEDS} seeds or {FEWEST_CASES} cases without lost flights and with a common range of travel, there is no band and nothing is claimed."),
     ]
 }
 
@@ -127,18 +130,26 @@ fn differences(outcome: &FrontOutcome) -> Svg {
 }
 
 fn standings(outcome: &FrontOutcome) -> DataTable {
-    let head = ["controller", "standing", "cases", "flights that fail", "of the one compared with"];
+    let head =
+        ["controller", "standing", "cases", "lost cases", "lost", "failed", "unstable at rest"];
     let row = |band: &super::Band| {
+        let [own, against] = band.flights;
+        let both = |one: u64, other: u64| Datum::Number(format!("{one}, {other}"));
         vec![
             Datum::Text(band.name.clone()),
             Datum::Text(band.dominance.words().to_owned()),
-            Datum::Number(format!("{} of {}", band.cases.0, band.cases.1)),
-            Datum::Number(band.failed[0].to_string()),
-            Datum::Number(band.failed[1].to_string()),
+            Datum::Number(format!("{} of {}", band.cases.compared, band.cases.of())),
+            Datum::Number(band.cases.lost.to_string()),
+            both(own.lost, against.lost),
+            both(own.failed, against.failed),
+            both(own.unstable, against.unstable),
         ]
     };
     DataTable {
-        caption: format!("Fronts beside that of {}", outcome.against()),
+        caption: format!(
+            "Fronts beside that of {}; flights of all efforts, its own and of the one compared with",
+            outcome.against()
+        ),
         head: head.map(str::to_owned).to_vec(),
         rows: outcome.bands.iter().map(row).collect(),
         cards: true,

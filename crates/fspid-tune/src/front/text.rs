@@ -2,9 +2,9 @@
 
 use fspid_diagnostics::digits::counted;
 use fspid_page::columns::{Align, Columns};
-use fspid_page::number::{fixed, with_sign};
+use fspid_page::number::{fixed, short, with_sign};
 
-use super::band::{CONFIDENCE, PLACES};
+use super::joint::{CONFIDENCE, PLACES};
 use super::{Band, FrontOutcome};
 use crate::contest::Quantity;
 
@@ -28,13 +28,48 @@ pub(super) fn text(outcome: &FrontOutcome) -> String {
     for band in &outcome.bands {
         let mut row = vec![band.name.clone()];
         row.extend(places.clone().map(|place| difference(band, place)));
-        row.push(format!("{} of {}", band.cases.0, band.cases.1));
+        row.push(format!("{} of {}", band.cases.compared, band.cases.of()));
         row.push(band.dominance.words().to_owned());
         rows.row(row);
     }
     out.push_str(&rows.to_string());
+    outcome.bands.iter().for_each(|band| out.push_str(&format!("  {}\n", whole(band))));
     out.push_str(&format!("\n{}", ladder(outcome)));
     out
+}
+
+/// What the whole front of a controller is, and what is left out of it.
+pub(super) fn whole(band: &Band) -> String {
+    let range = |[least, most]: [f64; 2]| format!("{} to {} deg", short(least, 3), short(most, 3));
+    let mut told = match band.travel {
+        None => format!("{}: no case is compared", band.name),
+        Some(travel) => format!(
+            "{}: the whole front is {} of travel in the mean of its cases, {} where it is narrowest",
+            band.name,
+            range(travel.mean_deg),
+            range(travel.narrowest_deg)
+        ),
+    };
+    let cases = |count: usize| format!("{} of {} cases", count, band.cases.of());
+    if band.cases.lost > 0 {
+        let [own, against] = band.flights;
+        told.push_str(&format!(
+            "; {} left out, for a flight of one of both is lost in each ({} of its {} flights, {} of {} of the one compared with)",
+            cases(band.cases.lost),
+            own.lost,
+            own.of,
+            against.lost,
+            against.of
+        ));
+    }
+    if band.cases.apart > 0 {
+        told.push_str(&format!(
+            "; {} left out, for they have no common range of travel, or the efforts change none",
+            cases(band.cases.apart)
+        ));
+    }
+    told.push('.');
+    told
 }
 
 /// How far along a front a place is, %.
@@ -64,7 +99,14 @@ fn difference(band: &Band, place: usize) -> String {
 pub(super) fn headline(outcome: &FrontOutcome) -> String {
     use super::Dominance::Dominates;
     let better = outcome.bands.iter().filter(|band| band.dominance == Dominates);
-    let names: Vec<&str> = better.map(|band| band.name.as_str()).collect();
+    let name = |band: &Band| match band.travel {
+        None => band.name.clone(),
+        Some(travel) => {
+            let [least, most] = travel.mean_deg.map(|it| short(it, 3));
+            format!("{} ({least} to {most} deg of travel)", band.name)
+        }
+    };
+    let names: Vec<String> = better.map(name).collect();
     let rungs = counted(outcome.rungs.len(), "effort");
     match names.as_slice() {
         [] => format!("Nobody is better than {} on the whole front of {rungs}.", outcome.against()),
@@ -84,6 +126,7 @@ fn ladder(outcome: &FrontOutcome) -> String {
         ("IAE [deg s]", Align::Right),
         ("travel [deg]", Align::Right),
         ("of what is possible [%]", Align::Right),
+        ("lost", Align::Right),
         ("failed", Align::Right),
     ]);
     for rung in &outcome.rungs {
@@ -99,12 +142,14 @@ fn ladder(outcome: &FrontOutcome) -> String {
             let possible = means.get(place).copied().filter(|_| count > 0).unwrap_or(f64::NAN);
             let flights = || it.designs.iter().flat_map(|it| &it.flights);
             let failed = flights().filter(|flight| flight.failed).count();
+            let lost = flights().filter(|flight| flight.lost).count();
             rows.row(vec![
                 rung.travel_deg.to_string(),
                 it.name.clone(),
                 fixed(mean(Quantity::ERROR), 3),
                 fixed(mean(Quantity::ACTIVITY), 2),
                 fixed(100.0 * possible, 0),
+                format!("{lost} of {}", flights().count()),
                 format!("{failed} of {}", flights().count()),
             ]);
         }
