@@ -122,7 +122,7 @@ impl Pair<'_> {
         let judged = &self.everywhere.together;
         let both = [self.contestant, judged.against];
         let (lost, kept): (Vec<usize>, Vec<usize>) =
-            judged.all().into_iter().partition(|case| self.lost(*case).is_some());
+            judged.evidence().into_iter().partition(|case| self.lost(*case).is_some());
         let found: Vec<OfCase> = kept
             .iter()
             .filter_map(|&case| {
@@ -148,7 +148,9 @@ impl Pair<'_> {
         }
         let means = means(&found);
         band.middle = means.middle.to_vec();
-        let seeds = means.parts.iter().skip(1).map(Vec::len).min().unwrap_or(0);
+        // Seeds that find the same at an effort are one tuning.
+        let tunings = |judged: &&Judged| both.map(|it| judged.contestants[it].tunings());
+        let seeds = self.rungs.iter().flat_map(tunings).min().unwrap_or(0);
         if seeds < FEWEST_SEEDS {
             band.dominance = Dominance::NotTold(Missing::Seeds);
         } else if compared >= FEWEST_CASES {

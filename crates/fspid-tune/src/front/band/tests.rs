@@ -163,7 +163,13 @@ impl<F: Fn(usize, usize, usize, usize, usize) -> Flight> Ladder<F> {
     fn rung(&self, rung: usize) -> Judged {
         let design = |who: usize, seed: usize| {
             let flights = (0..self.cases).flat_map(|case| {
-                (0..self.runs).map(move |run| (self.flight)(who, rung, seed, case, run))
+                (0..self.runs).map(move |run| {
+                    let mut flight = (self.flight)(who, rung, seed, case, run);
+                    // Cases that are flown alike to the last bit are one: something tells them apart.
+                    let last = flight.measures.iter_mut().last().filter(|_| !flight.lost);
+                    last.into_iter().for_each(|it| *it = Some(case as f64));
+                    flight
+                })
             });
             Design { found: None, flights: flights.collect() }
         };
@@ -180,11 +186,8 @@ impl<F: Fn(usize, usize, usize, usize, usize) -> Flight> Ladder<F> {
             runs: self.runs,
             mirror_of: None,
         };
-        Judged {
-            contestants: vec![contestant(0), contestant(1)],
-            cases: (0..self.cases).map(case).collect(),
-            against: 0,
-        }
+        let contestants = vec![contestant(0), contestant(1)];
+        Judged::new(contestants, (0..self.cases).map(case).collect(), 0)
     }
 }
 
