@@ -1,5 +1,6 @@
 //! The answer: what is known of the probability, what it took, and the likeliest failure.
 
+use fspid_scenario::dispersion::{Dispersion, Distribution};
 use fspid_scenario::requirement::Requirement;
 use serde_json::{Value, json};
 
@@ -10,6 +11,7 @@ use super::point::Point;
 use super::question::{Method, Question};
 use super::subset::{Known, Subset};
 use super::target::Target;
+use super::teams::TEAMS;
 use crate::campaign::Campaign;
 use crate::replay::command;
 
@@ -39,6 +41,23 @@ pub struct Rare {
     pub likeliest: Option<Likeliest>,
     /// Whether a seed is drawn.
     pub draws_seeds: bool,
+    /// Probability of the values of choices that independent flights have met too seldom for anybody to know what they do: all of
+    /// it counts in every upper end.
+    pub hardly_flown: f64,
+}
+
+/// So often independent flights have to meet a value that is chosen among others, in the mean.
+const MET: f64 = 10.0;
+
+/// Probability of values that so many independent flights meet less than [`MET`] times.
+fn hardly_flown(dispersions: &[Dispersion], flights: f64) -> f64 {
+    let choices = dispersions.iter().filter_map(|it| match &it.distribution {
+        Distribution::Choice(choice) => Some(choice),
+        _ => None,
+    });
+    let shares = choices.flat_map(|choice| choice.shares());
+    // No weight is no value.
+    shares.filter(|share| *share > 0.0 && share * flights < MET).sum::<f64>().min(1.0)
 }
 
 /// A failure, as it can be flown again.
@@ -75,11 +94,17 @@ impl Rare {
             let distance = has_numbers.then(|| libm::sqrt(point.distance_squared()));
             Likeliest { changes, command, distance }
         };
+        let independent = match &found.subset {
+            Some(subset) => (TEAMS * subset.teams.count) as f64,
+            None => question.flights as f64,
+        };
+        let study = campaign.template().study();
         Self {
+            hardly_flown: hardly_flown(&study.dispersions, independent),
             question: question.clone(),
             controller: target.controller().to_owned(),
             requirement: target.requirement().clone(),
-            flight_s: campaign.template().study().scenario.timing.end_s(),
+            flight_s: study.scenario.timing.end_s(),
             likeliest: nearest.map(likeliest),
             draws_seeds: target.draws_seeds(),
             found,
@@ -91,7 +116,8 @@ impl Rare {
     pub fn known(&self) -> Vec<(Method, Known)> {
         let subset = self.found.subset.as_ref().map(|it| (Method::Subset, it.known));
         let importance = self.found.importance.as_ref().map(|it| (Method::Importance, it.known));
-        subset.into_iter().chain(importance).collect()
+        let known = subset.into_iter().chain(importance);
+        known.map(|(method, known)| (method, known.raised(self.hardly_flown))).collect()
     }
 
     /// Whether two methods with intervals agree: whether those have a number in common.

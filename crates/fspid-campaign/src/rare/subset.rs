@@ -30,6 +30,17 @@ pub enum Known {
     },
 }
 
+impl Known {
+    /// The same where so much more may fail.
+    pub(super) fn raised(self, by: f64) -> Self {
+        let raised = |high: f64| (high + by).min(1.0);
+        match self {
+            Self::Within(it) => Self::Within(Interval { high: raised(it.high), ..it }),
+            Self::Below { most, why } => Self::Below { most: raised(most), why },
+        }
+    }
+}
+
 /// Why there is no interval.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unfinished {

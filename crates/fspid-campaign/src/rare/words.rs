@@ -208,6 +208,12 @@ impl Rare {
                 number(self.at_most())
             ));
         }
+        if self.hardly_flown > 0.0 {
+            notes.push(format!(
+                "Of what is chosen among, values that come in {} of all flights were met too seldom to know what they do: all of that is in the upper end. Ask again with such a value alone (--set), or with more flights.",
+                number(self.hardly_flown)
+            ));
+        }
         notes.push("It is about the dispersions as they are written. Failures in a region that no flight came near are not in it.".to_owned());
         notes
     }

@@ -125,3 +125,23 @@ fn what_cannot_be_asked_is_refused_by_name() {
     let few = asked(STEP, &question(Method::Subset, 10)).expect_err("refused").to_string();
     assert!(few.contains("allowed is a whole number from 1000"), "{few}");
 }
+
+/// One in ten thousand steps is of 2 deg, and fails. The climb went up with the others, to "at most 1e-12".
+#[test]
+fn a_value_that_is_hardly_ever_chosen_counts_as_if_it_always_failed() {
+    let drawn = "distribution = \"normal\"\nmean = 1.0\nstandard_deviation = 0.1";
+    let of = |weights: &str| {
+        let choice = format!("distribution = \"choice\"\nvalues = [1.0, 2.0]\nweights = {weights}");
+        let text = STEP.replace(drawn, &choice);
+        assert_ne!(text, STEP);
+        asked(&text, &question(Method::Subset, 4000)).expect("answered")
+    };
+    let hardly = of("[9999, 1]");
+    assert!((hardly.hardly_flown - 1e-4).abs() < 1e-15 && hardly.at_most() >= 1e-4);
+    assert!(hardly.notes().iter().any(|note| note.contains("met too seldom")), "{hardly:?}");
+    // What is met often enough is counted, and a value without weight is none.
+    let often = of("[9, 1]");
+    assert!(often.hardly_flown.abs() < 1e-18 && often.interval().is_some_and(|it| it.low < 0.1));
+    assert!(often.interval().is_some_and(|it| it.high > 0.1 && it.high < 0.2), "{often:?}");
+    assert!(of("[1, 0]").hardly_flown.abs() < 1e-18);
+}

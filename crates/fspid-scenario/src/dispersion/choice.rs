@@ -31,6 +31,18 @@ impl Choice {
         self.count
     }
 
+    /// The share of each value.
+    pub fn shares(&self) -> impl Iterator<Item = f64> + '_ {
+        let total = self.sums.last().copied();
+        (0..self.count).map(move |place| match total {
+            Some(total) => {
+                let below = place.checked_sub(1).and_then(|it| self.sums.get(it)).copied();
+                (self.sums.get(place).copied().unwrap_or(total) - below.unwrap_or(0.0)) / total
+            }
+            None => 1.0 / self.count as f64,
+        })
+    }
+
     /// The place of the value for a coordinate.
     pub(super) fn index(&self, u: f64) -> usize {
         match self.sums.last() {
