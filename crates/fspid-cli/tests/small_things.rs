@@ -402,3 +402,51 @@ fn the_long_version_tells_commit_machine_compiler_and_the_schemas_that_are_writt
     let short = text(&fspid(&["-V"], folder.path()).stdout);
     assert_eq!(short.trim_end(), version);
 }
+
+/// Both said that they had written it, and one of the two files was gone.
+#[test]
+fn of_two_that_begin_one_file_at_once_one_is_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    for round in 0..8 {
+        let file = format!("a{round}.toml");
+        let begun = ["pitch-hold", "campaign"].map(|template| {
+            started(&["init", &file, "--template", template, "--format", "json"], folder)
+        });
+        let ended = begun.map(|child| child.wait_with_output().expect("it ends"));
+        let wrote = ended.iter().filter(|output| code(output) == 0);
+        let told: Vec<String> = wrote.map(|output| text(&output.stdout)).collect();
+        let [told] = told.as_slice() else { panic!("{ended:?}") };
+        let campaign = std::fs::read_to_string(folder.join(&file)).expect("a file");
+        assert_eq!(told.contains("\"campaign\""), campaign.contains("[[dispersion]]"), "{told}");
+    }
+}
+
+/// The whole search was flown first.
+#[test]
+fn a_folder_in_the_place_of_a_design_is_refused_before_anything_is_searched() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    assert_eq!(code(&fspid(&["init", "--template", "tuning", "a.toml"], folder)), 0);
+    std::fs::create_dir(folder.join("there")).expect("a folder");
+    let output = fspid(&["tune", "a.toml", "--budget", "10000000", "--out", "there"], folder);
+    assert_eq!(code(&output), 4);
+    assert!(text(&output.stderr).contains("it is a folder"), "{}", text(&output.stderr));
+    assert!(!folder.join("there.state.json").exists());
+}
+
+/// Git and stores do not keep empty folders.
+#[test]
+fn a_plan_that_comes_without_its_empty_folder_is_flown() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    assert_eq!(code(&fspid(&["init", "--template", "campaign", "a.toml"], folder)), 0);
+    let plan = ["campaign", "plan", "a.toml", "--runs", "4", "--shard-runs", "2", "--out", "plan"];
+    assert_eq!(code(&fspid(&plan, folder)), 0);
+    std::fs::remove_dir(folder.join("plan/shards")).expect("it is empty");
+    for number in ["1", "0"] {
+        let output = fspid(&["campaign", "shard", number, "--quiet", "--out", "plan"], folder);
+        assert_eq!(code(&output), 0, "{}", text(&output.stderr));
+    }
+    assert_eq!(code(&fspid(&["campaign", "merge", "--out", "plan"], folder)), 0);
+}

@@ -70,6 +70,15 @@ pub fn write(path: &Path, contents: impl AsRef<[u8]>) -> Result<(), OutputError>
     write_by(path, |file| file.write_all(contents.as_ref()).map_err(|reason| failed(path, reason)))
 }
 
+/// Refuses the place of a file where a folder is, before anything is computed for it.
+///
+/// # Errors
+/// [`OutputError`] with the path.
+pub fn no_folder(path: &Path) -> Result<(), OutputError> {
+    let is_folder = || io::Error::new(io::ErrorKind::IsADirectory, "it is a folder");
+    if path.is_dir() { Err(failed(path, is_folder())) } else { Ok(()) }
+}
+
 /// As [`write()`], of a file that is not there yet: of two who write it at once one is told.
 ///
 /// # Errors
@@ -170,9 +179,7 @@ fn begun<T, E: From<OutputError>>(
         let answer = filled(&standard_output().map_err(failed)?, contents, failed)?;
         return Ok((answer, None));
     }
-    if path.is_dir() {
-        return Err(failed(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder")).into());
-    }
+    no_folder(path)?;
     // A device or pipe is written as it is: it has nothing that could be lost.
     if fs::metadata(path).is_ok_and(|data| !data.is_file()) {
         let file = File::options().write(true).open(path).map_err(failed)?;

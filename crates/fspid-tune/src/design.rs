@@ -19,8 +19,9 @@ pub(crate) fn text_of(source: &Source) -> Result<String, TuneError> {
 /// Checks that a design of this scenario can lie in another folder, before anything is searched.
 ///
 /// # Errors
-/// A file that would not be found from there, or changes that the text has no room for.
+/// A folder in its place, a file that would not be found from there, or changes that the text has no room for.
 pub fn check_place(source: &Source, out: &std::path::Path) -> Result<(), TuneError> {
+    fspid_study::output::no_folder(out).map_err(TuneError::Output)?;
     let text = text_of(source)?;
     let extra = Extra { overrides: &source.overrides, ..Extra::default() };
     let name = out.display().to_string();
