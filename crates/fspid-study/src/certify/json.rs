@@ -22,7 +22,8 @@ const NO_STEPS: &str = "no step from rest is proved with limits acting; of gains
 const NO_FLIGHTS: &str = "the flights that the scenario commands are not proved with limits acting; in cases they are asked for with --steps alone";
 
 /// Why keys of these answers are null.
-pub(super) const NULLS: [(&str, &str); 25] = [
+pub(super) const NULLS: [(&str, &str); 26] = [
+    ("partly", "everything that is commanded is certified, or no flights are"),
     ("decay_per_sample", "the claim is one of growth, or no rate is proved"),
     (
         "law_keeps_to_the_rate",
