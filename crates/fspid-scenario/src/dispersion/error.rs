@@ -142,6 +142,11 @@ pub enum DispersionError {
     },
 }
 
+/// An end that is open stays what it is called in files.
+fn told(value: f64) -> String {
+    if value.is_finite() { shortest(value) } else { value.to_string() }
+}
+
 impl fmt::Display for DispersionError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
@@ -161,7 +166,7 @@ impl fmt::Display for DispersionError {
             ),
             Self::NothingInside { mean, standard_deviation, lower, upper, probability } => {
                 let [mean, standard_deviation, lower, upper] =
-                    [mean, standard_deviation, lower, upper].map(shortest);
+                    [mean, standard_deviation, lower, upper].map(told);
                 write!(
                     f,
                     "of a normal distribution with mean {mean} and standard deviation {standard_deviation} the share between {lower} and {upper} is {probability:e}; to be drawn from it must be at least {:e}",
