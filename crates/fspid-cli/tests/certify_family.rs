@@ -383,6 +383,22 @@ lower = 0.0
 upper = 4.0
 "#;
 
+/// The later draw had the say, and the earlier one's limits were told as if all between were members.
+#[test]
+fn a_number_that_is_drawn_twice_in_other_words_makes_no_family() {
+    let schedule = SCHEDULED.lines().find(|line| line.starts_with("schedule")).expect("there");
+    let once = "distribution = \"uniform\"\nlower = 0.1\nupper = 0.2\n";
+    let twice = format!(
+        "{}[[dispersion]]\npath = \"controller.PID.kp\"\n{once}[[dispersion]]\npath = \"controller[0].kp\"\n{once}",
+        SCHEDULED.replace(schedule, "")
+    );
+    let folder = folder(&twice);
+    let refused = fspid(&["certify", "drawn.toml", "--family"], folder.path());
+    let told = text(&refused.stdout) + &text(&refused.stderr);
+    assert_ne!(code(&refused), 0, "{told}");
+    assert!(told.contains("`controller[0].kp` is drawn already, as `controller.PID.kp`"), "{told}");
+}
+
 /// It was proved for all of it, and at 56 m/s and sea level it flies apart within two seconds.
 #[test]
 fn numbers_that_gains_are_scheduled_by_make_no_family() {

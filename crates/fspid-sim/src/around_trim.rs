@@ -154,9 +154,8 @@ fn of_mode(scenario: &Scenario, mode: usize, held: Held<'_>) -> Result<GrowthAtR
         if doubt == Doubt::ChangingAge && grows(spectral_radius) {
             return Ok(doubted(doubt, spectral_radius));
         }
-        if let Some(other) =
-            Some(radius(seeing)?).filter(|it| !grows(spectral_radius) && grows(*it))
-        {
+        let other = radius(seeing)?;
+        if grows(other) && !grows(spectral_radius) {
             return Ok(doubted(doubt, other));
         }
     }

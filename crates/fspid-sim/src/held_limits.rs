@@ -31,23 +31,25 @@ pub(crate) fn are_exceeded(scenario: &Scenario, controller: &Controller, ki: f64
 }
 
 fn is_unlimited(scenario: &Scenario, controller: &Controller) -> bool {
-    controller.config().limits.is_none() && limits_of_servo(scenario).is_empty()
+    controller.config().limits.is_none()
+        && limits_of_servo(scenario).next().is_none()
+        && travel_of_airframe(scenario).is_none()
 }
 
-/// What keeps the elevator from where the controller wants it, rad from its place at the trim: limits of commands and of travel.
-fn limits_of_servo(scenario: &Scenario) -> Vec<(f64, f64)> {
+/// Ends of the travel of an aircraft's own elevator, whatever moves it, rad from its place at the trim; none without an end.
+fn travel_of_airframe(scenario: &Scenario) -> Option<(f64, f64)> {
+    let plant = scenario.plant.aircraft()?;
+    let (trim_rad, travel) =
+        (plant.trim().point.elevator_rad, plant.aircraft().model().travel().elevator_rad);
+    // The trailing edge goes down where the command, nose up positive, is negative.
+    let ends = (trim_rad - travel.max, trim_rad - travel.min);
+    (ends.0.is_finite() || ends.1.is_finite()).then_some(ends)
+}
+
+/// Limits of commands and of travel of what moves the elevator, rad.
+fn limits_of_servo(scenario: &Scenario) -> impl Iterator<Item = (f64, f64)> {
     let actuator = &scenario.actuator;
-    let of_airframe = scenario.plant.aircraft().map(|plant| {
-        let (trim_rad, travel) =
-            (plant.trim().point.elevator_rad, plant.aircraft().model().travel().elevator_rad);
-        // The trailing edge goes down where the command, nose up positive, is negative.
-        (trim_rad - travel.max, trim_rad - travel.min)
-    });
-    let all = [actuator.command_limits_rad(), actuator.travel_rad(), of_airframe];
-    all.into_iter()
-        .flatten()
-        .filter(|(least, most)| least.is_finite() || most.is_finite())
-        .collect()
+    [actuator.command_limits_rad(), actuator.travel_rad()].into_iter().flatten()
 }
 
 /// The linear plant that a flight ends with; none of an aircraft that has no trim then.
@@ -96,7 +98,8 @@ impl Held {
         let commanded_rad = travelled_rad - self.at_servo_rad;
         let beyond = |(least, most): (f64, f64), value: f64| value < least || value > most;
         let ends = |limits: &Limits<f64>| (limits.lower(), limits.upper());
-        limits_of_servo(scenario).into_iter().any(|limits| beyond(limits, travelled_rad))
+        limits_of_servo(scenario).any(|limits| beyond(limits, travelled_rad))
+            || travel_of_airframe(scenario).is_some_and(|it| beyond(it, self.elevator_rad))
             || controller.config().limits.as_ref().is_some_and(|it| beyond(ends(it), commanded_rad))
     }
 }
@@ -133,5 +136,6 @@ pub fn is_lost_at_a_limit(scenario: &Scenario, controller: &Controller, trace: &
 fn is_at_a_limit(scenario: &Scenario, controller: &Controller, command_rad: f64) -> bool {
     let own = controller.config().limits.as_ref().map(|it| (it.lower(), it.upper()));
     let at_end = |(least, most): (f64, f64)| command_rad <= least || command_rad >= most;
-    own.into_iter().chain(limits_of_servo(scenario)).any(at_end)
+    let of_airframe = travel_of_airframe(scenario);
+    own.into_iter().chain(limits_of_servo(scenario)).chain(of_airframe).any(at_end)
 }

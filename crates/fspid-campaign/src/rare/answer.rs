@@ -46,10 +46,11 @@ pub struct Rare {
     pub hardly_flown: f64,
 }
 
-/// So often independent flights have to meet a value that is chosen among others, in the mean.
-const MET: f64 = 10.0;
+/// So often independent flights have to meet a value that is chosen among others, in the mean: none of them does in one of
+/// 20 000 questions ($e^{-10}$). A choice of this project.
+const FEWEST_MEETINGS: f64 = 10.0;
 
-/// Probability of values that so many independent flights meet less than [`MET`] times.
+/// Probability of values that so many independent flights meet less than [`FEWEST_MEETINGS`] times.
 fn hardly_flown(dispersions: &[Dispersion], flights: f64) -> f64 {
     let choices = dispersions.iter().filter_map(|it| match &it.distribution {
         Distribution::Choice(choice) => Some(choice),
@@ -57,7 +58,7 @@ fn hardly_flown(dispersions: &[Dispersion], flights: f64) -> f64 {
     });
     let shares = choices.flat_map(|choice| choice.shares());
     // No weight is no value.
-    shares.filter(|share| *share > 0.0 && share * flights < MET).sum::<f64>().min(1.0)
+    shares.filter(|share| *share > 0.0 && share * flights < FEWEST_MEETINGS).sum::<f64>().min(1.0)
 }
 
 /// A failure, as it can be flown again.
@@ -79,8 +80,20 @@ impl Rare {
         campaign: &Campaign,
         question: &Question,
         target: &Target<'_>,
-        found: Found,
+        mut found: Found,
     ) -> Self {
+        let independent = match &found.subset {
+            Some(subset) => (TEAMS * subset.teams.count) as f64,
+            None => question.flights as f64,
+        };
+        let study = campaign.template().study();
+        let hardly_flown = hardly_flown(&study.dispersions, independent);
+        if let Some(subset) = &mut found.subset {
+            subset.known = subset.known.raised(hardly_flown);
+        }
+        if let Some(importance) = &mut found.importance {
+            importance.known = importance.known.raised(hardly_flown);
+        }
         let of_subset = found.subset.as_ref().and_then(Subset::likeliest);
         let of_importance = found.importance.as_ref().and_then(|it| it.likeliest.as_ref());
         let nearest = of_subset
@@ -94,13 +107,8 @@ impl Rare {
             let distance = has_numbers.then(|| libm::sqrt(point.distance_squared()));
             Likeliest { changes, command, distance }
         };
-        let independent = match &found.subset {
-            Some(subset) => (TEAMS * subset.teams.count) as f64,
-            None => question.flights as f64,
-        };
-        let study = campaign.template().study();
         Self {
-            hardly_flown: hardly_flown(&study.dispersions, independent),
+            hardly_flown,
             question: question.clone(),
             controller: target.controller().to_owned(),
             requirement: target.requirement().clone(),
@@ -116,8 +124,7 @@ impl Rare {
     pub fn known(&self) -> Vec<(Method, Known)> {
         let subset = self.found.subset.as_ref().map(|it| (Method::Subset, it.known));
         let importance = self.found.importance.as_ref().map(|it| (Method::Importance, it.known));
-        let known = subset.into_iter().chain(importance);
-        known.map(|(method, known)| (method, known.raised(self.hardly_flown))).collect()
+        subset.into_iter().chain(importance).collect()
     }
 
     /// Whether two methods with intervals agree: whether those have a number in common.

@@ -1,7 +1,8 @@
 //! What can be wrong with a distribution.
 
-use fspid_diagnostics::digits::shortest;
 use std::fmt;
+
+use fspid_diagnostics::digits::shortest;
 
 /// Why a distribution could not be built, or nothing be drawn from it. Rows, columns, entries and
 /// values of lists count from 0.

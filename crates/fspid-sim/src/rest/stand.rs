@@ -59,7 +59,8 @@ pub enum Doubt {
     OneSide,
     /// A side of a kink is unstable, and so much is on its way that no motion is followed through the sides.
     LongWay,
-    /// A sensor shows values of changing age, and the loop is stable with one of them and not with another.
+    /// A sensor shows values of changing age: of the pitch loop, which is stable with one of them and not with another; of a mode
+    /// of the autopilot, which is unstable with one.
     ChangingAge,
     /// So much is on its way in a mode of the autopilot that it is not asked for its poles.
     LongMode,

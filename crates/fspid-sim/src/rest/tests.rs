@@ -115,11 +115,8 @@ fn a_held_command_adds_what_the_flown_controller_answers_beside_rest() {
             IntegralForm::Literal => dice.between(-20.0, 20.0),
         };
         let held_rad = fspid.step(&mut { state }, at_rest).command_rad;
-        let remembers = fspid.tuner().settings().law != Law::Memoryless;
-        let leakage_per_s = remembers.then_some(LEAKAGE_PER_S);
-        let holding =
-            Holding { fspid: &fspid, command_per_pitch: 0.0, gains: Gains::ZERO, leakage_per_s };
-        let holding = Holding { gains: holding.gains_at([0.0; 2]), ..holding };
+        let holding = held_by(&fspid);
+        let leakage_per_s = holding.leakage_per_s;
         let at = RestPoint { setpoint_rad, load_rad: held_rad };
         let rest = holding.with_error(at, rate_rad_s, 0.0);
         kinks += usize::from(rest.sides.len() > 1);
@@ -157,6 +154,14 @@ fn a_held_command_adds_what_the_flown_controller_answers_beside_rest() {
         assert!((found - expected).abs() <= allowed, "{round}: {found} {expected} {side:?}");
     }
     assert!(kinks > 50, "{kinks}");
+}
+
+/// What a self-tuner holds with everything at zero.
+fn held_by(fspid: &Fspid<f64>) -> Holding<'_> {
+    let remembers = fspid.tuner().settings().law != Law::Memoryless;
+    let leakage_per_s = remembers.then_some(LEAKAGE_PER_S);
+    let holding = Holding { fspid, command_per_pitch: 0.0, gains: Gains::ZERO, leakage_per_s };
+    Holding { gains: holding.gains_at([0.0; 2]), ..holding }
 }
 
 /// With everything at rest, a seen rate included.

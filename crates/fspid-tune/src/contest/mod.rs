@@ -50,7 +50,7 @@ use fspid_study::memory::Needed;
 use fspid_study::output;
 
 pub use crate::kept::Then;
-pub(crate) use compare::{Bar, barred};
+pub(crate) use compare::{Bar, CONFIDENCE, barred};
 pub use compare::{Comparison, Lost, Ratio, Standing};
 pub use flight::{Flight, MEASURES};
 pub use judged::{Case, CaseGroup, Contestant, Count, Design, Judged, Quantity};

@@ -474,8 +474,8 @@ pub(super) fn by_group(outcome: &Outcome) -> Vec<String> {
 fn no_evidence(judged: &Judged) -> Option<String> {
     let name = |case: usize| judged.cases.get(case).map_or("", |it| it.name.as_str());
     let of = |case: usize| match (judged.trained_as.get(case)?, judged.twin_of.get(case)?) {
-        (Some(training), _) => Some(format!("{} as {training} of the tuning", name(case))),
-        (None, Some(twin)) => Some(format!("{} as {}", name(case), name(*twin))),
+        (Some(training), _) => Some(format!("\"{}\" as \"{training}\" of the tuning", name(case))),
+        (None, Some(twin)) => Some(format!("\"{}\" as \"{}\"", name(case), name(*twin))),
         (None, None) => None,
     };
     let all: Vec<String> = judged.all().into_iter().filter_map(of).collect();

@@ -15,6 +15,8 @@
 //! bands*, Journal of Applied Econometrics 34 (2019) 1; for Student's distribution along it, C. W. Dunnett and M. Sobel, *A
 //! bivariate generalization of Student's t-distribution*, Biometrika 41 (1954) 153.
 
+/// How sure all bands together are: as sure as a contest.
+pub(super) use crate::contest::CONFIDENCE;
 use crate::contest::{TwoWay, beyond};
 use crate::draw::Draw;
 
@@ -26,8 +28,6 @@ pub(super) const FEWEST_CASES: usize = 6;
 pub(super) const FEWEST_SEEDS: usize = 3;
 /// How often the largest deviation is drawn.
 pub(super) const DRAWS: usize = 2000;
-/// How sure all bands together are.
-pub(super) const CONFIDENCE: f64 = 0.95;
 /// Seed of the draws.
 const SEED: u64 = 0x6672_6f6e_7473;
 

@@ -35,8 +35,8 @@ fn cases_that_are_flown_alike_are_evidence_once_and_those_of_the_tuning_never() 
     assert_eq!(judged.trained_as[at("trained")].as_deref(), Some("as written"));
     assert_eq!(judged.trained_as[at("idle 0")], None);
     let said = held.text();
-    assert!(said.contains("idle 1 as idle 0"), "{said}");
-    assert!(said.contains("trained as as written of the tuning"), "{said}");
+    assert!(said.contains("\"idle 1\" as \"idle 0\""), "{said}");
+    assert!(said.contains("\"trained\" as \"as written\" of the tuning"), "{said}");
     // The ratio is that of the contest without them.
     let alone = place(&(marked() + &idle(0))).held();
     let ratio = |outcome: &fspid_tune::contest::Outcome| outcome.comparison(1).map(|it| it.ratio);
