@@ -150,6 +150,12 @@ impl AnalysedLoop {
         }
     }
 
+    /// The doubt without the word that it is one.
+    pub(crate) fn doubt_in_words(&self) -> Option<String> {
+        let words = self.doubt?.to_string();
+        Some(words.strip_prefix("undecided: ").map_or(words.clone(), str::to_owned))
+    }
+
     /// How many modes of the autopilot grow for certain.
     #[must_use]
     pub fn growing_modes(&self) -> usize {

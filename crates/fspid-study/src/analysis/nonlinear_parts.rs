@@ -28,7 +28,7 @@ fn of_what_flies(scenario: &Scenario) -> [LeftOut; 8] {
         (is_aircraft, "The aircraft is nonlinear: analysed is its linear model at the trim."),
         (
             is_aircraft && scenario.autopilot.is_none(),
-            "Roll, yaw and bank are not in these numbers: whether they grow about the trim, with leveller and damper, is asked of flights.",
+            "Roll, yaw and bank are not in these numbers: whether they grow about the trim, with leveller and damper, is in the verdict alone.",
         ),
         (
             scenario.plant.aircraft().is_some_and(|plant| !plant.changing().is_still()),

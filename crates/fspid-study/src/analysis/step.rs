@@ -41,6 +41,8 @@ pub(crate) fn step_responses(scenario: &Scenario) -> Result<Vec<StepResponse>, S
         externals: Vec::new(),
         actuator: Actuator::new(actuator.lag()).with_delay(actuator.delay_samples())?,
         surroundings: surroundings(scenario)?,
+        // Around a linear plant there is nothing that it could hold.
+        autopilot: None,
         ..scenario.clone()
     };
     for named in &scenario.controllers {

@@ -57,8 +57,8 @@ fn verdict(found: &AnalysedLoop) -> String {
         1 => String::new(),
         all => format!(" for {bad} of {all} plants"),
     };
-    if let Some(doubt) = found.doubt.filter(|_| stability == Stability::Undecided && bad == 0) {
-        return format!("UNDECIDED {gains}: {}", doubt.to_string().replacen("undecided: ", "", 1));
+    if let (Stability::Undecided, 0, Some(doubt)) = (stability, bad, found.doubt_in_words()) {
+        return format!("UNDECIDED {gains}: {doubt}");
     }
     if stability != Stability::Stable {
         return format!("{}{} {gains}{held}", stability.word().to_uppercase(), plants(bad));

@@ -76,16 +76,30 @@ fn verdict(found: &AnalysedLoop) -> Verdict {
     let detail = match found.margins() {
         Err(reason) => format!("{reason}."),
         Ok(margins) => {
-            let at_rest = format!(
-                "At rest: gain margin {} dB, phase margin {} deg, disk margin {}.",
+            let around = around(found);
+            let of = if around.is_some() { "Of the pitch loop alone, at rest" } else { "At rest" };
+            let margins = format!(
+                "{of}: gain margin {} dB, phase margin {} deg, disk margin {}.{}",
                 decimal(margins.smaller_gain_margin_db(), 2),
                 decimal(margins.phase_margin_deg, 1),
-                fixed(margins.disk_margin, 3)
+                fixed(margins.disk_margin, 3),
+                of_frozen(found)
             );
-            format!("{at_rest}{}", of_frozen(found))
+            around.into_iter().chain([margins]).collect::<Vec<_>>().join(" ")
         }
     };
     Verdict { standing, word: word.to_owned(), name: found.name.clone(), detail }
+}
+
+/// What stands in the way although the pitch loop alone may be stable; none where nothing does.
+fn around(found: &AnalysedLoop) -> Option<String> {
+    if let Some(doubt) = found.doubt_in_words() {
+        return Some(format!("Nobody can tell: {doubt}."));
+    }
+    let growing = found.modes.iter().filter(|mode| mode.stability() != Stability::Stable);
+    let names: Vec<&str> = growing.map(|mode| mode.name.as_str()).collect();
+    (!names.is_empty())
+        .then(|| format!("With its outer loops it grows in mode {}.", names.join("; ")))
 }
 
 fn of_frozen(found: &AnalysedLoop) -> String {

@@ -4,6 +4,7 @@
 
 use fspid_sim::Doubt;
 use fspid_study::analysis::{Analysis, Question, Stability};
+use fspid_study::report;
 use fspid_study::simulation::{ControllerResult, Simulation};
 use serde_json::Value;
 
@@ -283,8 +284,11 @@ fn an_airframe_that_is_faster_than_the_steps_of_the_integration_is_undecided() {
 #[test]
 fn everything_that_a_flight_doubts_is_in_doubt_for_analyse() {
     let loops = |text: &str, set: &[&str]| {
-        let found = Analysis::of(&study(text, set), Question::default()).expect("a loop");
-        (found.json()["controllers"][0].clone(), found.stability(), found.text())
+        let study = study(text, set);
+        let found = Analysis::of(&study, Question::default()).expect("a loop");
+        // The page of an autopilot's scenario was refused, and told no reason.
+        let page = report::of_analysis(&study, &found).expect("a page");
+        (found.json()["controllers"][0].clone(), found.stability(), found.text() + &page)
     };
     let (json, stability, text) = loops(NAVION, &AFT);
     assert_eq!((json["stable"].clone(), stability), (Value::Null, Stability::Undecided));
@@ -294,6 +298,8 @@ fn everything_that_a_flight_doubts_is_in_doubt_for_analyse() {
         why.contains("more elevator than a limit leaves") && text.contains("UNDECIDED"),
         "{why}"
     );
+    let why = why.trim_start_matches("undecided: ");
+    assert!(text.contains(&format!("Nobody can tell: {why}.")), "the page");
     let (json, stability, _) = loops(NAVION, &[]);
     assert_eq!((json["stable"].clone(), stability), (Value::Bool(true), Stability::Stable));
     assert!(json.get("undecided").is_none());
@@ -301,4 +307,5 @@ fn everything_that_a_flight_doubts_is_in_doubt_for_analyse() {
     let (json, stability, text) = loops(&braked(), &[]);
     assert_eq!((json["stable"].clone(), stability), (Value::Bool(false), Stability::Unstable));
     assert!(text.contains("mode hold, with the aircraft from 6 s on: UNSTABLE"), "{text}");
+    assert!(text.contains("it grows in mode hold, with the aircraft from 6 s on"), "the page");
 }
