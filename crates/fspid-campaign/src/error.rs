@@ -53,7 +53,7 @@ pub enum CampaignError {
     Sample(#[from] SampleError),
     /// The scenario or a file that it names is not what was planned.
     #[error(
-        "{path}: a file that it names has changed since the campaign was planned; put it back, or plan anew in another folder"
+        "the text of {path} in the plan, or a file that it names, has changed since the campaign was planned; put it back, or plan anew in another folder"
     )]
     Changed {
         /// The scenario.

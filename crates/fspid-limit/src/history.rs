@@ -83,7 +83,8 @@ pub(crate) fn commands(question: &Question, solution: &Solution) -> Vec<f64> {
         .map(|k| {
             // The command of this sample arrives `delay` later; the last ones never arrive.
             let arrives = (k + delay).min(question.target_end() - 1).max(delay.min(rows - 1));
-            question.command_of(target(question, solution, arrives)) - question.at_servo(arrives)
+            let target_rad = target(question, solution, arrives);
+            question.allowed(k, question.command_of(target_rad) - question.at_servo(arrives))
         })
         .collect()
 }

@@ -264,6 +264,15 @@ impl Question {
         self.still.is_some_and(|still| k < still.until.saturating_add(self.actuator.delay_samples))
     }
 
+    /// A command as it may be given at a sample, rad. A solver keeps a range to its tolerance only, and a deadband makes a
+    /// command out of what is left over.
+    pub(crate) fn allowed(&self, k: usize, command_rad: f64) -> f64 {
+        match self.still.filter(|still| k < still.until) {
+            Some(still) => command_rad.clamp(-still.within_rad, still.within_rad),
+            None => command_rad,
+        }
+    }
+
     /// What a target of that time may be, rad, zero among it.
     fn still_target(&self, k: usize) -> (f64, f64) {
         let own = Interval::point(self.still.map_or(0.0, |still| still.within_rad));

@@ -188,7 +188,7 @@ fn who_keeps_still_until_something_happens_cannot_be_early() {
     let (early, late) = (limit_of(None), limit_of(Some(still)));
     assert!(late.proved > 1.2 * early.proved, "{} {}", late.proved, early.proved);
     assert!(late.reached.measure < late.proved * (1.0 + 1e-5));
-    assert!(late.reached.command_rad.iter().take(75).all(|u| u.abs() < 1e-9));
+    assert!(late.reached.command_rad.iter().take(75).all(|u| *u == 0.0));
     // One that only knows when it happens does as well.
     let assumed = Assumed { within_rad: 1.0, still: Some(still) };
     let question = Question::of(&scenario, asked.1, assumed).expect("allowed");
@@ -196,4 +196,20 @@ fn who_keeps_still_until_something_happens_cannot_be_early() {
         .expect("allowed")
         .expect("allowed");
     assert!(causal.reached.measure < 1.02 * late.proved);
+}
+
+#[test]
+fn a_deadband_makes_no_command_of_what_a_solver_leaves_over_before_anything_happens() {
+    let mut scenario = light();
+    scenario.disturbances.clear();
+    scenario.actuator = scenario.actuator.with_deadband(0.2 * DEG).expect("allowed");
+    let still = Still::of(&scenario, [].into_iter());
+    let assumed = Assumed { within_rad: 1.0, still };
+    for (measure, travel_deg) in [(Measure::Iae, 3.0), (Measure::Ise, 3.0), (Measure::Ise, 0.1)] {
+        let asked = (measure, Travel::Elevator);
+        let question = Question::of(&scenario, asked.1, assumed).expect("allowed");
+        let found = limit(&scenario, &question, asked, travel_deg * DEG, || false);
+        let reached = found.expect("allowed").reached;
+        assert!(reached.command_rad.iter().take(75).all(|u| *u == 0.0), "{measure:?}");
+    }
 }

@@ -2,6 +2,7 @@
 
 mod autopilot;
 mod batch;
+mod clocks;
 mod closed_loop;
 mod describing;
 mod empirical;

@@ -37,7 +37,7 @@ impl LoopSettings {
 
     /// The same loop without what is on its way.
     fn prompt(&self) -> Self {
-        let prompt = |sensing: Sensing| Sensing { samples: 0, part: 0.0, ..sensing };
+        let prompt = |sensing: Sensing| Sensing { samples: 0, part: 0.0, keeps: 0, ..sensing };
         Self {
             delay_samples: 0,
             pitch: prompt(self.pitch),

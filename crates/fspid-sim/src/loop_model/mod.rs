@@ -18,6 +18,7 @@
 
 mod assembly;
 mod break_point;
+mod clocks;
 #[cfg(test)]
 mod from_the_core;
 mod long_way;
@@ -39,6 +40,7 @@ use crate::plant::LinearPlant;
 use crate::scenario::Scenario;
 
 pub use break_point::BreakPoint;
+pub(crate) use clocks::{Clocks, Phases};
 pub use long_way::MOST_AS_STATES;
 pub use memory::Memory;
 pub(crate) use parts::LoopParts;
@@ -203,7 +205,8 @@ impl<T: Base> LoopModel<T> {
     /// True where a sensor shows values of changing age, of which the largest is in the loop.
     #[must_use]
     pub fn has_changing_ages(&self) -> bool {
-        self.settings.pitch.at_largest_age || self.settings.rate.at_largest_age
+        let rate = self.uses_rate() && self.settings.rate.at_largest_age;
+        self.settings.pitch.at_largest_age || rate
     }
 
     /// The loop as if sensors whose values change their age showed the quantity as it is.
@@ -215,6 +218,13 @@ impl<T: Base> LoopModel<T> {
             }
         }
         self
+    }
+
+    /// The loop with sensors, pitch and rate, that look otherwise.
+    #[must_use]
+    pub(crate) fn seeing(&self, [pitch, rate]: [Sensing; 2]) -> Self {
+        let settings = LoopSettings { pitch, rate, ..self.settings.clone() };
+        Self { settings, ..self.clone() }
     }
 
     /// The plant.

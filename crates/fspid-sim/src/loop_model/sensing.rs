@@ -21,12 +21,20 @@ pub struct Sensing {
     pub resolution: f64,
     /// The sensor has a clock of its own, so that the age of its values changes; taken is the largest.
     pub at_largest_age: bool,
+    /// Fewest samples of the quantity that the loop remembers, so that loops of several ages have the same states.
+    pub keeps: usize,
 }
 
 impl Sensing {
     /// The quantity as it is.
-    pub const DIRECT: Self =
-        Self { scale: 1.0, samples: 0, part: 0.0, resolution: 0.0, at_largest_age: false };
+    pub const DIRECT: Self = Self {
+        scale: 1.0,
+        samples: 0,
+        part: 0.0,
+        resolution: 0.0,
+        at_largest_age: false,
+        keeps: 0,
+    };
 
     /// Through a sensor that is read every `dt_s`, if there is one.
     #[must_use]
@@ -41,7 +49,7 @@ impl Sensing {
             let whole = (delay + SAME_SAMPLE).floor();
             let part = (delay - whole).max(0.0);
             let part = if part <= SAME_SAMPLE { 0.0 } else { part };
-            return Self { scale, samples: count(whole), part, resolution, at_largest_age: false };
+            return Self { scale, samples: count(whole), part, resolution, ..Self::DIRECT };
         }
         let period = model.period_s / dt_s;
         let aligned = (period - period.round()).abs() <= SAME_SAMPLE;
@@ -49,16 +57,17 @@ impl Sensing {
         let beyond = if aligned { period.round() - 1.0 } else { period };
         let age = (delay - SAME_SAMPLE).ceil().max(0.0) + beyond.max(0.0);
         let at_largest_age = !aligned || beyond > 0.0;
-        Self { scale, samples: count(age.ceil()), part: 0.0, resolution, at_largest_age }
+        let samples = count(age.ceil());
+        Self { scale, samples, resolution, at_largest_age, ..Self::DIRECT }
     }
 
     /// How many samples of the quantity the loop has to remember.
     pub(crate) fn remembered(&self) -> usize {
-        self.samples + usize::from(self.part > 0.0)
+        self.keeps.max(self.samples + usize::from(self.part > 0.0))
     }
 }
 
-fn count(samples: f64) -> usize {
+pub(super) fn count(samples: f64) -> usize {
     #[allow(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,

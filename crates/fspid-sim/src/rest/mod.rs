@@ -27,6 +27,7 @@
 //! Not here: accumulating laws without leakage, which have no gains at rest, and the size of a motion for which this is a
 //! good approximation.
 
+mod clocked;
 mod slopes;
 mod stand;
 #[cfg(test)]

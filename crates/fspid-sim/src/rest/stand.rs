@@ -5,7 +5,7 @@ use fspid_core::{Gains, SecondInput};
 use super::{Rest, Side, slopes};
 use crate::controller::Controller;
 use crate::error::SimError;
-use crate::loop_model::{LoopModel, SampledPlant};
+use crate::loop_model::{Clocks, LoopModel, SampledPlant};
 use crate::scenario::Scenario;
 
 /// Motions that are followed around a kink. One that grows does so by itself after a while, wherever it starts; several
@@ -30,8 +30,9 @@ const GROWN: f64 = core::f64::consts::LN_2;
 /// Where so much is on its way that it is no state ([`MOST_AS_STATES`](crate::loop_model::MOST_AS_STATES)), no motion is
 /// followed, and one unstable side is [`Doubt::LongWay`].
 ///
-/// Of a sensor with a clock of its own the age changes: the loop is asked with its largest and with none. Where the
-/// answers differ, it is [`Doubt::ChangingAge`].
+/// Of a sensor with a clock of its own the age changes: the loop is asked for what a whole time makes of it after which
+/// all ages come again. Where they do not, or a way is long, it is asked with the largest age and with none, and near a
+/// time after which they nearly come again; where the answers differ, it is [`Doubt::ChangingAge`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stand {
     /// It is stable on every side.
@@ -102,17 +103,56 @@ impl Doubt {
 
 /// The loop of one side: stable, unstable, or neither for all that is known.
 #[derive(Clone, Copy)]
-enum Found {
+pub(super) enum Found {
     Stable,
     Unstable(f64),
     Blurred(f64),
 }
 
 /// A loop and its gains.
-type Model = (LoopModel<f64>, Gains<f64>);
+pub(super) type Model = (LoopModel<f64>, Gains<f64>);
+
+/// The loops of one sample, one for each side, and what the supervisor sees in it by state: its two inputs.
+struct Phase {
+    closed: Vec<Vec<Vec<f64>>>,
+    seen: [Vec<f64>; 2],
+}
+
+/// What the loops of all sides say together; where one is unstable beside others, motions are followed.
+pub(super) fn stand_of_sides(
+    found: &[Found],
+    follow: Option<impl FnOnce() -> Option<f64>>,
+) -> Stand {
+    let unstable = found.iter().filter_map(|it| match *it {
+        Found::Unstable(radius) => Some(radius),
+        Found::Stable | Found::Blurred(_) => None,
+    });
+    // A NaN is no radius, and no stable loop.
+    let larger = |one: f64, other: f64| if other > one || other.is_nan() { other } else { one };
+    if let Some(spectral_radius) = unstable.reduce(larger) {
+        if found.len() == 1 || !spectral_radius.is_finite() {
+            return Stand::Grows { spectral_radius };
+        }
+        let Some(follow) = follow else {
+            return Stand::Undecided { spectral_radius, doubt: Doubt::LongWay };
+        };
+        return match follow() {
+            Some(spectral_radius) => Stand::Grows { spectral_radius },
+            None => Stand::Undecided { spectral_radius, doubt: Doubt::OneSide },
+        };
+    }
+    let blurred = found.iter().filter_map(|it| match *it {
+        Found::Blurred(radius) => Some(radius),
+        Found::Stable | Found::Unstable(_) => None,
+    });
+    blurred.reduce(larger).map_or(Stand::Holds, |spectral_radius| Stand::Undecided {
+        spectral_radius,
+        doubt: Doubt::Rounding,
+    })
+}
 
 /// What the poles of a loop say.
-fn found((model, gains): &Model) -> Result<Found, SimError> {
+pub(super) fn found((model, gains): &Model) -> Result<Found, SimError> {
     match model.unstable_radius(*gains) {
         Ok(None) => Ok(Found::Stable),
         Ok(Some(radius)) => Ok(Found::Unstable(radius)),
@@ -149,68 +189,46 @@ impl Rest {
         controller: &Controller,
     ) -> Result<Stand, SimError> {
         let models = self.models(scenario, plant, controller);
-        let oldest = self.stand_of(&models)?;
-        if !models.iter().any(|(model, _)| model.has_changing_ages()) {
-            return Ok(oldest);
+        let changing = models.iter().find(|(model, _)| model.has_changing_ages());
+        match changing.and_then(|(model, _)| Clocks::of(scenario, model)) {
+            Some(clocks) => self.stand_with_clocks(&models, clocks),
+            None => self.stand_of(&models),
         }
-        let models: Vec<_> =
-            models.into_iter().map(|(it, k)| (it.without_changing_ages(), k)).collect();
-        let newest = self.stand_of(&models)?;
-        Ok(match (oldest, newest) {
-            (Stand::Holds, Stand::Grows { spectral_radius })
-            | (Stand::Grows { spectral_radius }, Stand::Holds) => {
-                Stand::Undecided { spectral_radius, doubt: Doubt::ChangingAge }
-            }
-            (_, Stand::Undecided { .. }) => newest,
-            _ => oldest,
-        })
     }
 
     /// The same of loops, one for each side.
-    fn stand_of(&self, models: &[Model]) -> Result<Stand, SimError> {
+    pub(super) fn stand_of(&self, models: &[Model]) -> Result<Stand, SimError> {
         let found = models.iter().map(found).collect::<Result<Vec<Found>, _>>()?;
-        let unstable = found.iter().filter_map(|it| match *it {
-            Found::Unstable(radius) => Some(radius),
-            Found::Stable | Found::Blurred(_) => None,
-        });
-        // A NaN is no radius, and no stable loop.
-        let larger = |one: f64, other: f64| if other > one || other.is_nan() { other } else { one };
-        if let Some(spectral_radius) = unstable.reduce(larger) {
-            if models.len() == 1 || !spectral_radius.is_finite() {
-                return Ok(Stand::Grows { spectral_radius });
-            }
-            if models.iter().any(|(model, _)| model.settings().is_long()) {
-                return Ok(Stand::Undecided { spectral_radius, doubt: Doubt::LongWay });
-            }
-            return Ok(match self.growth_of_motions(models) {
-                Some(spectral_radius) => Stand::Grows { spectral_radius },
-                None => Stand::Undecided { spectral_radius, doubt: Doubt::OneSide },
-            });
-        }
-        let blurred = found.iter().filter_map(|it| match *it {
-            Found::Blurred(radius) => Some(radius),
-            Found::Stable | Found::Unstable(_) => None,
-        });
-        Ok(blurred.reduce(larger).map_or(Stand::Holds, |spectral_radius| Stand::Undecided {
-            spectral_radius,
-            doubt: Doubt::Rounding,
-        }))
+        let is_long = models.iter().any(|(model, _)| model.settings().is_long());
+        let follow = || self.growth_of_motions(&[models.to_vec()]);
+        Ok(stand_of_sides(&found, (!is_long).then_some(follow)))
     }
 
     /// The growth a sample of the motion that grows most around the kinks of this rest, through all its sides as they
-    /// come; none where no motion is seen to grow.
-    fn growth_of_motions(&self, models: &[Model]) -> Option<f64> {
-        let (first, _) = models.first()?;
-        let [error, change] = first.error_rows();
-        let second = match self.second_input {
-            SecondInput::Change => change,
-            SecondInput::Rate => first.seen_rows()[1].iter().map(|rate| -rate).collect(),
-            SecondInput::ModelError(_) => error.clone(),
-        };
-        let closed: Vec<_> = models.iter().map(|(model, gains)| model.closed(*gains)).collect();
+    /// come; none where no motion is seen to grow. Loops are those of one sample after the other, over and over, one for
+    /// each side.
+    pub(super) fn growth_of_motions(&self, phases: &[Vec<Model>]) -> Option<f64> {
+        let phases: Vec<Phase> = phases.iter().map(|models| self.phase(models)).collect();
+        let size = phases.first()?.seen[0].len();
         // Sides with other states, such as one without an integral, are not one after the other in a motion.
-        let same_states = closed.iter().all(|rows| rows.len() == error.len());
-        if same_states { self.largest_growth(&closed, [error, second]) } else { None }
+        let same_states =
+            phases.iter().flat_map(|phase| &phase.closed).all(|rows| rows.len() == size);
+        if same_states { self.largest_growth(&phases) } else { None }
+    }
+
+    /// The loops of one sample, and what the supervisor sees in it.
+    fn phase(&self, models: &[Model]) -> Phase {
+        let closed = models.iter().map(|(model, gains)| model.closed(*gains)).collect();
+        let seen = models.first().map_or_else(Default::default, |(first, _)| {
+            let [error, change] = first.error_rows();
+            let second = match self.second_input {
+                SecondInput::Change => change,
+                SecondInput::Rate => first.seen_rows()[1].iter().map(|rate| -rate).collect(),
+                SecondInput::ModelError(_) => error.clone(),
+            };
+            [error, second]
+        });
+        Phase { closed, seen }
     }
 
     /// The loop of each side.
@@ -226,23 +244,23 @@ impl Rest {
     }
 
     /// The growth a sample of the motion that grows most, if one is seen to grow.
-    fn largest_growth(&self, closed: &[Vec<Vec<f64>>], seen: [Vec<f64>; 2]) -> Option<f64> {
-        let grown = (0..MOTIONS).map(|motion| self.growth(closed, &seen, motion));
+    fn largest_growth(&self, phases: &[Phase]) -> Option<f64> {
+        let grown = (0..MOTIONS).map(|motion| self.growth(phases, motion));
         let largest = grown.fold(f64::NEG_INFINITY, f64::max);
         let samples = (SAMPLES - SAMPLES / 2) as f64;
         (largest > GROWN).then(|| libm::exp(largest / samples))
     }
 
     /// Logarithm of the growth of one motion over the second half of the samples.
-    fn growth(&self, closed: &[Vec<Vec<f64>>], seen: &[Vec<f64>; 2], motion: u64) -> f64 {
-        let order = seen[0].len();
+    fn growth(&self, phases: &[Phase], motion: u64) -> f64 {
+        let order = phases.first().map_or(0, |phase| phase.seen[0].len());
         let mut state: Vec<f64> = (0..order as u64).map(|place| scattered(motion, place)).collect();
         let mut next = vec![0.0; order];
         let mut grown = 0.0;
-        for sample in 0..SAMPLES {
+        for (sample, phase) in phases.iter().cycle().take(SAMPLES).enumerate() {
             let units =
-                [0, 1].map(|input| self.seen_per_unit[input] * product(&seen[input], &state));
-            let rows = &closed[self.of_direction[slopes::direction(units)]];
+                [0, 1].map(|input| self.seen_per_unit[input] * product(&phase.seen[input], &state));
+            let rows = &phase.closed[self.of_direction[slopes::direction(units)]];
             for (next, row) in next.iter_mut().zip(rows) {
                 *next = product(row, &state);
             }

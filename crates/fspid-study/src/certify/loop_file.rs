@@ -176,7 +176,7 @@ impl SensingFile {
             && samples <= MOST_STATES
             && resolution >= 0.0
             && resolution.is_finite();
-        let sensing = Sensing { scale, samples, part, resolution, at_largest_age: false };
+        let sensing = Sensing { scale, samples, part, resolution, ..Sensing::DIRECT };
         good.then_some(sensing).ok_or_else(|| {
             format!("allowed are a finite scale, up to {MOST_STATES} samples, a part from 0 to below 1, and a resolution of 0 or more")
         })

@@ -1,0 +1,123 @@
+//! Whether a rest holds where a sensor has a clock of its own: what a whole period of its ages makes of the loop.
+
+use fspid_lti::{Matrix, spectral_radius};
+
+use super::Rest;
+use super::stand::{Doubt, Found, Model, Stand, found, stand_of_sides};
+use crate::error::SimError;
+use crate::loop_model::{Clocks, Phases};
+
+/// Most products of numbers for the loop of a period: some tenths of a second.
+const MOST_PRODUCTS: f64 = 2e8;
+/// The loop of a period knows its outermost poles to this: the square root of the rounding of its entries, for a double
+/// pole, with room. What lies so near to the unit circle decides nothing.
+const KNOWN_TO: f64 = 1e-6;
+
+impl Rest {
+    /// Whether something grows of loops, one for each side, whose sensors have these clocks.
+    pub(super) fn stand_with_clocks(
+        &self,
+        models: &[Model],
+        clocks: Clocks,
+    ) -> Result<Stand, SimError> {
+        match clocks {
+            Clocks::Period(phases) if is_affordable(models, &phases) => {
+                self.stand_over(models, &phases)
+            }
+            Clocks::Nearly(all) if all.iter().all(|phases| is_affordable(models, phases)) => {
+                let for_a_while = all.iter().map(|phases| self.stand_over(models, phases));
+                let for_a_while = for_a_while.collect::<Result<Vec<Stand>, _>>()?;
+                if let Some(grows) = largest_growth(&for_a_while) {
+                    return Ok(grows);
+                }
+                let as_if_they_stayed = self.stand_at_each_age(models)?;
+                Ok(for_a_while.into_iter().fold(as_if_they_stayed, together))
+            }
+            Clocks::Period(_) | Clocks::Nearly(_) => self.stand_at_each_age(models),
+        }
+    }
+
+    /// With the largest age and with none, as if they stayed.
+    fn stand_at_each_age(&self, models: &[Model]) -> Result<Stand, SimError> {
+        let newest: Vec<Model> =
+            models.iter().map(|(it, k)| (it.clone().without_changing_ages(), *k)).collect();
+        Ok(together(self.stand_of(models)?, self.stand_of(&newest)?))
+    }
+
+    /// Over a time after which all ages come again.
+    fn stand_over(&self, models: &[Model], phases: &Phases) -> Result<Stand, SimError> {
+        let seeing = |sensing| -> Vec<Model> {
+            models.iter().map(|(it, k)| (it.seeing(sensing), *k)).collect()
+        };
+        let phases: Vec<Vec<Model>> = phases.iter().map(|sensing| seeing(*sensing)).collect();
+        let sides = 0..models.len();
+        let found = sides.map(|side| found_over(&models[side], phases.iter().map(|it| &it[side])));
+        let found = found.collect::<Result<Vec<Found>, _>>()?;
+        Ok(stand_of_sides(&found, Some(|| self.growth_of_motions(&phases))))
+    }
+}
+
+/// True where the loop of a period is worth its time.
+fn is_affordable(models: &[Model], phases: &Phases) -> bool {
+    let is_long = models.iter().any(|(model, _)| model.settings().is_long());
+    let size = models.iter().map(|(model, _)| model.size()).max().unwrap_or(0) as f64;
+    !is_long && size * size * size * (phases.len() * models.len()) as f64 <= MOST_PRODUCTS
+}
+
+/// The largest growth where all of them grow.
+fn largest_growth(all: &[Stand]) -> Option<Stand> {
+    let radii = all.iter().map(|it| match *it {
+        Stand::Grows { spectral_radius } => Some(spectral_radius),
+        Stand::Holds | Stand::Undecided { .. } => None,
+    });
+    let radii = radii.collect::<Option<Vec<f64>>>()?;
+    let spectral_radius = radii.into_iter().reduce(f64::max)?;
+    Some(Stand::Grows { spectral_radius })
+}
+
+/// What two ways to look at a loop say together, neither of which it is.
+fn together(one: Stand, other: Stand) -> Stand {
+    match (one, other) {
+        (Stand::Holds, Stand::Holds) => Stand::Holds,
+        (Stand::Undecided { .. }, _) => one,
+        (_, Stand::Undecided { .. }) => other,
+        (Stand::Grows { spectral_radius }, _) | (_, Stand::Grows { spectral_radius }) => {
+            Stand::Undecided { spectral_radius, doubt: Doubt::ChangingAge }
+        }
+    }
+}
+
+/// What the poles of a side's loop over a period say.
+fn found_over<'a>(
+    oldest: &Model,
+    phases: impl Iterator<Item = &'a Model>,
+) -> Result<Found, SimError> {
+    let mut whole: Option<Matrix> = None;
+    // The product is kept near one; what is taken out of it counts as a logarithm.
+    let (mut taken_out, mut samples) = (0.0, 0.0);
+    for (model, gains) in phases {
+        let next = model.closed_matrix(*gains)?;
+        let product = match whole {
+            Some(whole) => next.product(&whole)?,
+            None => next,
+        };
+        let size = product.norm_one();
+        if !size.is_finite() {
+            return Ok(Found::Unstable(f64::INFINITY));
+        }
+        let by = if size > 0.0 { size } else { 1.0 };
+        taken_out += libm::log(by);
+        samples += 1.0;
+        whole = Some(product.scaled(1.0 / by));
+    }
+    let Some(whole) = whole else { return found(oldest) };
+    let grown = taken_out + libm::log(spectral_radius(&whole)?);
+    let a_sample = libm::exp(grown / samples);
+    if grown > KNOWN_TO {
+        return Ok(Found::Unstable(a_sample));
+    }
+    if grown < -KNOWN_TO {
+        return Ok(Found::Stable);
+    }
+    Ok(Found::Blurred(a_sample))
+}
