@@ -24,6 +24,7 @@ mod error;
 mod flow;
 mod fuel;
 pub mod integrate;
+mod kink;
 pub mod linearise;
 mod mass;
 pub mod modes;

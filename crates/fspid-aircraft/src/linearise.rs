@@ -73,7 +73,8 @@ impl<M: ForceModel> Aircraft<M> {
     ///
     /// $$ \frac{\partial f}{\partial x} \approx \frac{f(x + h) - f(x - h)}{2 h}, \quad h = 10^{-5} \max(|x|, 1) $$
     ///
-    /// Controls are moved to both sides even at their stops, so nothing is ever one-sided.
+    /// Controls are moved to both sides even at their stops, so nothing is ever one-sided. Where the aircraft's data have a
+    /// kink ([`has_kink_at`](Self::has_kink_at)) these are means of two slopes.
     #[must_use]
     pub fn linearise(&self, trim: &Trim) -> Linearisation {
         let (state, controls) = (to_euler_state(&trim.state), trim.controls.to_array());
@@ -85,6 +86,24 @@ impl<M: ForceModel> Aircraft<M> {
             a: jacobian(by_state, &state),
             b: jacobian(by_controls, &controls),
         }
+    }
+
+    /// States and controls of a trim, and their rate of change.
+    pub(crate) fn rates_about(
+        &self,
+        trim: &Trim,
+    ) -> ([f64; STATES + CONTROLS], impl Fn(&[f64; STATES + CONTROLS]) -> [f64; STATES]) {
+        let (state, controls) = (to_euler_state(&trim.state), trim.controls.to_array());
+        let both = |column: usize| match column.checked_sub(STATES) {
+            None => state[column],
+            Some(control) => controls[control],
+        };
+        let rate = |values: &[f64; STATES + CONTROLS]| {
+            let state = core::array::from_fn(|row| values[row]);
+            let controls = core::array::from_fn(|row| values[STATES + row]);
+            self.euler_rate(&state, Controls::from_array(controls))
+        };
+        (core::array::from_fn(both), rate)
     }
 
     /// Rate of change of the twelve states in still air.
@@ -208,12 +227,17 @@ fn difference<const N: usize>(
     index: usize,
 ) -> [f64; STATES] {
     let (mut ahead, mut behind) = (*at, *at);
-    let step = RELATIVE_STEP * at[index].abs().max(1.0);
+    let step = half_width(at[index]);
     ahead[index] += step;
     behind[index] -= step;
     let span = ahead[index] - behind[index];
     let (above, below) = (function(&ahead), function(&behind));
     core::array::from_fn(|row| (above[row] - below[row]) / span)
+}
+
+/// Half the width of a difference by a number.
+pub(crate) fn half_width(value: f64) -> f64 {
+    RELATIVE_STEP * value.abs().max(1.0)
 }
 
 fn to_euler_state(state: &RigidState) -> [f64; STATES] {

@@ -54,6 +54,11 @@ pub enum NotProvable {
         "the vertical gyro erects to the apparent vertical at a bounded rate, so that around rest the loop is not linear and may keep an oscillation; a proof needs erection_deg_min to be 0"
     )]
     Erection,
+    /// A trim right on a kink of the aircraft's data.
+    #[error(
+        "the trim lies right on a kink of the aircraft's data, where each side has slopes of its own and no linear model is that of its small motions; a proof needs a trim beside it"
+    )]
+    Kink,
     /// A rate that is seen at rest, and gains that depend on it or multiply it.
     #[error(
         "{what}, and the rate sensor has a bias: at rest a rate is seen that is not there, so that rest is not at the nominal gains and moves with them; a proof needs a rate sensor without bias"
@@ -137,6 +142,9 @@ impl LoopDescription {
         plant: &LinearPlant,
         controller: &Controller,
     ) -> Result<Self, NotProvable> {
+        if plant.is_between_slopes() {
+            return Err(NotProvable::Kink);
+        }
         let transfer_function = plant.transfer_function();
         let surroundings = &scenario.surroundings;
         let dt_s = controller.config().dt_s;

@@ -58,7 +58,8 @@ fn of_standing(
     let Some(plant) = scenario.plant.aircraft() else { return Ok(GrowthAtRest::default()) };
     let linear = plant.linear()?;
     let mut found = growth_of_plant(scenario, (standing.from_s, &linear), controller, gains)?;
-    if found.certain.is_some() {
+    // Differences about a kink are of no motion.
+    if found.certain.is_some() || linear.is_between_slopes() {
         return Ok(found);
     }
     if !is_followed(scenario, plant)? {

@@ -102,6 +102,7 @@ pub struct LinearPlant {
     transfer_function: TransferFunction,
     elevator_sign: ElevatorSign,
     gusts: Option<GustEntry>,
+    is_between_slopes: bool,
 }
 
 impl LinearPlant {
@@ -119,7 +120,7 @@ impl LinearPlant {
         if transfer_function.relative_degree() == 0 {
             return Err(SimError::NotStrictlyProper);
         }
-        Ok(Self { transfer_function, elevator_sign, gusts: None })
+        Ok(Self { transfer_function, elevator_sign, gusts: None, is_between_slopes: false })
     }
 
     /// The plant with transfer functions from the air's motion to pitch angle: numerators for
@@ -133,6 +134,18 @@ impl LinearPlant {
         let denominator = self.transfer_function.denominator().coefficients();
         let gusts = GustEntry::new(denominator, numerators)?;
         Ok(Self { gusts: Some(gusts), ..self })
+    }
+
+    /// The plant as one that is linearised right on a kink of an aircraft's data, or not.
+    #[must_use]
+    pub(crate) fn between_slopes(self, is_between_slopes: bool) -> Self {
+        Self { is_between_slopes, ..self }
+    }
+
+    /// True where its slopes are means over a kink of an aircraft's data, so that no small motion is its.
+    #[must_use]
+    pub fn is_between_slopes(&self) -> bool {
+        self.is_between_slopes
     }
 
     /// True if the plant says how gusts act on it.

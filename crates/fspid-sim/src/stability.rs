@@ -244,8 +244,12 @@ pub(crate) fn growth_of_plant(
     controller: &Controller,
     gains: Gains<f64>,
 ) -> Result<GrowthAtRest, SimError> {
-    let sampled = SampledPlant::of(scenario, plant)?;
     let mut found = GrowthAtRest::default();
+    if plant.is_between_slopes() {
+        found.doubt(Undecided::beyond(Doubt::Kink));
+        return Ok(found);
+    }
+    let sampled = SampledPlant::of(scenario, plant)?;
     for rest in Rest::all(scenario, plant, controller, gains) {
         let at = rest.at;
         match rest.stand(scenario, &sampled, controller)? {

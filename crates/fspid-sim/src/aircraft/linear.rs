@@ -16,7 +16,8 @@ const STATES: [usize; 3] = [3, 5, 11];
 
 impl AircraftPlant {
     /// The linear model from elevator and gusts to pitch at the trim: u, w, q, θ with the air's
-    /// density constant, by central differences of the same equations that fly.
+    /// density constant, by central differences of the same equations that fly; it says so where the aircraft's data have a
+    /// kink there ([`LinearPlant::is_between_slopes`]).
     ///
     /// # Errors
     /// [`SimError`] where the model has no transfer function from elevator to pitch.
@@ -25,7 +26,8 @@ impl AircraftPlant {
         let (denominator, numerators) = self.model(&linearisation)?.transfer_functions()?;
         let [elevator, forward, down, pitch] = numerators;
         let plant = LinearPlant::new(&elevator, &denominator, ElevatorSign::NoseDownPositive)?;
-        plant.with_gusts([&forward, &down, &pitch])
+        let plant = plant.with_gusts([&forward, &down, &pitch])?;
+        Ok(plant.between_slopes(self.aircraft().has_kink_at(self.trim())))
     }
 
     /// The plants that last: of the trim, and after each change of a configuration that of the trim at the same speed and

@@ -74,6 +74,8 @@ pub enum Doubt {
     Wings,
     /// A gyro's erection makes small motions grow, until its bounded rate holds them.
     Erection,
+    /// The trim of an aircraft lies on a kink of its data, where no linear model is that of its small motions.
+    Kink,
     /// About the trim of an aircraft something moves so fast that the steps of the integration do not follow.
     FastMotion,
     /// What is held at the end of the flight takes more than a limit leaves, of a plant that is unstable by itself; or the flight
@@ -95,6 +97,7 @@ impl Doubt {
             | Self::ChangedAircraft
             | Self::Wings
             | Self::Erection
+            | Self::Kink
             | Self::FastMotion
             | Self::BeyondLimits => true,
         }

@@ -44,9 +44,15 @@ impl Trimmed {
         let altitude = quantity(units, Kind::Length, target.altitude_m);
         let climb = quantity(units, Kind::Angle, target.flight_path_rad);
         let air = self.flight.air_in_words();
+        let kink = match self.flight.aircraft.has_kink_at(&self.trim) {
+            true => {
+                "; right on a kink of the aircraft's data: slopes, and what follows from them, are means of two sides and of neither, so trim a little beside it"
+            }
+            false => "",
+        };
         match target.flight_path_rad == 0.0 {
-            true => format!("trimmed at {speed}, {altitude}; {air}"),
-            false => format!("trimmed at {speed}, {altitude}, climbing {climb}; {air}"),
+            true => format!("trimmed at {speed}, {altitude}; {air}{kink}"),
+            false => format!("trimmed at {speed}, {altitude}, climbing {climb}; {air}{kink}"),
         }
     }
 

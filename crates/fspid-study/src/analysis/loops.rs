@@ -217,15 +217,23 @@ impl RestLoop {
         };
         let mut sides = rest.sides.iter().map(of_side).collect::<Result<Vec<Self>, SimError>>()?;
         // Whether a rest holds is said of all its sides at once, as flights and requirements are told it.
-        if let Err(reason) = verdict_of(scenario, plant, rest, controller)? {
-            if let (true, Some(first)) =
-                (sides.iter().all(|it| it.margins.is_ok()), sides.first_mut())
-            {
-                first.margins = Err(reason);
+        match verdict_of(scenario, plant, rest, controller)? {
+            Err(reason) => {
+                if let (true, Some(first)) =
+                    (sides.iter().all(|it| it.margins.is_ok()), sides.first_mut())
+                {
+                    first.margins = Err(reason);
+                }
+                for side in sides.iter_mut().filter(|it| it.margins.is_err()) {
+                    side.margins = Err(reason);
+                }
             }
-            for side in sides.iter_mut().filter(|it| it.margins.is_err()) {
-                side.margins = Err(reason);
-            }
+            // Margins are of the largest age, which does not stay.
+            Ok(()) => sides.iter_mut().for_each(|side| {
+                if let Err(Absent::Unstable { spectral_radius }) = side.margins {
+                    side.margins = Err(Absent::OldestAge { spectral_radius });
+                }
+            }),
         }
         Ok(sides)
     }
@@ -345,6 +353,9 @@ fn verdict_of(
     rest: &Rest,
     controller: &Controller,
 ) -> Result<Result<(), Absent>, SimError> {
+    if plant.is_between_slopes() {
+        return Ok(Err(Absent::Kink));
+    }
     let sampled = SampledPlant::of(scenario, plant)?;
     Ok(of_stand(rest.stand(scenario, &sampled, controller)?))
 }

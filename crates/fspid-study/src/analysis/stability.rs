@@ -24,8 +24,8 @@ impl Stability {
     #[must_use]
     pub fn of(margins: &Result<Margins, Absent>) -> Self {
         match margins {
-            // Its poles tell; only how far it is from unstable is not proved.
-            Ok(_) | Err(Absent::NotProved { .. }) => Self::Stable,
+            // Its poles tell; only how far it is from unstable is not proved, or of no age that lasts.
+            Ok(_) | Err(Absent::NotProved { .. } | Absent::OldestAge { .. }) => Self::Stable,
             Err(Absent::Unstable { .. }) => Self::Unstable,
             Err(_) => Self::Undecided,
         }
@@ -87,6 +87,7 @@ fn undecided(spectral_radius: f64, doubt: Doubt) -> Absent {
         Doubt::ChangedAircraft => Absent::ChangedAircraft,
         Doubt::Wings => Absent::Wings { spectral_radius },
         Doubt::Erection => Absent::Erection { spectral_radius },
+        Doubt::Kink => Absent::Kink,
         Doubt::FastMotion => Absent::FastMotion,
         Doubt::BeyondLimits => Absent::BeyondLimits,
     }

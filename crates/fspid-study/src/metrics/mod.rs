@@ -97,12 +97,21 @@ pub enum Absent {
         /// Spectral radius of the sampled closed loop on that side.
         spectral_radius: f64,
     },
-    /// A sensor has a clock of its own, and with one age of its values the loop is unstable.
+    /// A sensor has a clock of its own, with one age of its values the loop is unstable, and no time is known after which all
+    /// ages come again.
     #[error(
-        "undecided: a sensor with a clock of its own shows values of changing age, with one of which the loop is unstable (spectral radius {spectral_radius:.6}): while they change it may hold"
+        "undecided: a sensor with a clock of its own shows values of changing age, with one of which, or over some samples, the loop is unstable (spectral radius {spectral_radius:.6}): as they come it may hold"
     )]
     ChangingAge {
         /// Spectral radius of the sampled closed loop with the age at which it is unstable.
+        spectral_radius: f64,
+    },
+    /// A loop that holds while the ages of a sensor's values change has no margins at the largest of them.
+    #[error(
+        "none: margins are taken with the largest age of what a sensor with a clock of its own shows, with which the loop is unstable (spectral radius {spectral_radius:.6}); while ages change it is stable"
+    )]
+    OldestAge {
+        /// Spectral radius of the sampled closed loop with the largest age.
         spectral_radius: f64,
     },
     /// Sensors or commands of a mode of the autopilot are so late that it is not asked for its poles.
@@ -139,6 +148,11 @@ pub enum Absent {
         /// Spectral radius of all small motions, sample to sample.
         spectral_radius: f64,
     },
+    /// The trim lies on a kink of the aircraft's data.
+    #[error(
+        "undecided: the trim lies right on a kink of the aircraft's data (a breakpoint of a table, a row of Mach numbers, a corner of a gearing), where each side has slopes of its own: a trim a little beside it has one linear model"
+    )]
+    Kink,
     /// The aircraft moves faster than the steps of the integration follow.
     #[error(
         "undecided: about the trim the airframe has a motion that is too fast for the steps of the integration, which are the sample period and 0.01 s at most: with a shorter period they follow it"

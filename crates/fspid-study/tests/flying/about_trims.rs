@@ -2,13 +2,16 @@
 //! of the aircraft that it comes to be, and with what actuators and sensors do to small motions. Flights of the program refute
 //! what would be said of less.
 
+use fspid_aircraft::AirMotion;
+use fspid_proof::Effort;
 use fspid_sim::Doubt;
 use fspid_study::analysis::{Analysis, Question, Stability};
+use fspid_study::certify::Certification;
 use fspid_study::report;
 use fspid_study::simulation::{ControllerResult, Simulation};
 use serde_json::Value;
 
-use crate::flying::{NAVION, study};
+use crate::flying::{NAVION, study, trimmed};
 
 fn result(text: &str, set: &[&str]) -> ControllerResult {
     let found = Simulation::of(&study(text, set)).expect("it flies");
@@ -278,6 +281,35 @@ fn an_airframe_that_is_faster_than_the_steps_of_the_integration_is_undecided() {
     assert_eq!(doubt(&result(NAVION, &light)), Some(Doubt::FastMotion));
     let fine = [&light[..], &["loop.sample_period_s=0.002", "loop.duration_s=5.0"]].concat();
     assert_ne!(doubt(&result(NAVION, &fine)), Some(Doubt::FastMotion));
+}
+
+/// A row of Mach numbers at the Mach number of the trim. Differences across it are the mean of two slopes: an altitude that is held
+/// by pitch was "stable", and left the range of its data from an error of a centimetre.
+#[test]
+fn a_trim_right_on_a_kink_of_the_aircrafts_data_is_undecided_and_one_beside_it_is_not() {
+    let plant = trimmed(&[]);
+    let flow = plant.aircraft().flow(&plant.trim().state, &AirMotion::STILL);
+    let rows = |by: f64| {
+        let at = |beyond: f64, drag: f64| {
+            format!("{{mach={:?}, drag={{reference={drag}}}}}", flow.mach() * (1.0 + by) + beyond)
+        };
+        let [below, here, above] = [at(-0.05, 0.049), at(0.0, 0.051), at(0.05, 0.09)];
+        format!("aircraft.name.mach_row=[{below}, {here}, {above}]")
+    };
+    let asked = |by: f64, text: &str| {
+        let rows = rows(by);
+        let set = [rows.as_str(), "aircraft.validity=warn"];
+        let study = study(text, &set);
+        let analysis = Analysis::of(&study, Question::default()).expect("a loop");
+        let found = (doubt(&result(text, &set)), analysis.loops[0].margins().is_ok());
+        let proofs = Certification::of(&study, None, &Effort::default()).expect("asked");
+        (found, proofs.all_proved())
+    };
+    let throttle = THROTTLE.replace("rate_gain = 1.0", "rate_gain = 0.4");
+    for text in [NAVION.to_owned(), format!("{NAVION}{throttle}")] {
+        assert_eq!(asked(0.0, &text), ((Some(Doubt::Kink), false), false));
+        assert_eq!(asked(1e-4, &text), ((None, true), true));
+    }
 }
 
 /// `"stable": true` in JSON, where the flight said that nobody knows.

@@ -44,7 +44,8 @@ pub struct ModePoles {
 
 /// The poles of a scenario's aircraft with a controller and, one mode after another, everything that an autopilot engages;
 /// none without an autopilot. After those of the aircraft of the start come those of the one that each change of a configuration
-/// leaves, about its own trim, for the modes that it may meet; none of one that has no trim, or does not stay there.
+/// leaves, about its own trim, for the modes that it may meet; none of one that has no trim, or does not stay
+/// there, or whose data have a kink right there.
 ///
 /// Left out are positions and, in modes that hold neither altitude nor a beam, the altitude; in modes that hold no heading, the
 /// heading: nothing pulls on them, and their poles are at 0.
@@ -60,6 +61,9 @@ pub fn mode_poles(
     let mut all = Vec::new();
     for standing in standings.iter().filter(|it| it.by != Change::Fuel) {
         let Some(own) = standing.flown_in(scenario) else { continue };
+        if own.plant.aircraft().is_some_and(|it| it.aircraft().has_kink_at(it.trim())) {
+            continue;
+        }
         for (mode, begins_s) in standing.modes(scenario) {
             let found = poles_of_mode(&own, (controller, gains), mode, Seeing::Latest);
             let from_s = begins_s.max(standing.from_s);
