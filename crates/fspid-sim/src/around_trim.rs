@@ -66,7 +66,7 @@ fn of_standing(
         found.doubt(Undecided::beyond(Doubt::FastMotion));
     }
     Ok(found.and(match &scenario.autopilot {
-        None => alone(scenario, (controller, gains)),
+        None => alone(scenario, (controller, gains)).and(held_on(scenario, (controller, gains))?),
         Some(_) => of_modes(scenario, standing, (controller, gains))?,
     }))
 }
@@ -105,6 +105,23 @@ fn alone(scenario: &Scenario, held: Held<'_>) -> GrowthAtRest {
     let mut grown = others.filter_map(|seeing| Some((seeing, worst(radii(seeing)?))));
     let first = grown.find(|(_, radius)| grows(*radius));
     first.map_or(GrowthAtRest::default(), |(seeing, radius)| doubted(of_seeing(seeing), radius))
+}
+
+/// Where the aircraft comes to with nobody at its throttle, if the set-point of the end is held on. Where it comes to nothing
+/// within its limits nothing is asked.
+fn held_on(scenario: &Scenario, (controller, gains): Held<'_>) -> Result<GrowthAtRest, SimError> {
+    let none = Ok(GrowthAtRest::default());
+    let Some(plant) = scenario.plant.aircraft() else { return none };
+    let by_rad = scenario.held_at_the_end_rad();
+    if by_rad == 0.0 {
+        return none;
+    }
+    let Some(there) = plant.at_held_pitch(by_rad) else { return none };
+    let linear = there.linear()?;
+    let found = growth_of_plant(scenario, (0.0, &linear), controller, gains)?;
+    Ok(found
+        .certain
+        .map_or(GrowthAtRest::default(), |it| doubted(Doubt::HeldOn, it.spectral_radius)))
 }
 
 /// Why it is not decided where sensors that show motions otherwise change the answer.

@@ -54,6 +54,13 @@ impl Scenario {
         Steady { setpoint_rad, ..self.steady_where(stays) }
     }
 
+    /// Set-point that stays when the flight has ended, rad from the trim; 0 of one that swings.
+    pub(crate) fn held_at_the_end_rad(&self) -> f64 {
+        let (setpoint_rad, _) = self.setpoint.sampled(self.timing);
+        let last = setpoint_rad.last().copied().unwrap_or(0.0);
+        if self.setpoint.is_sine() { 0.0 } else { last }
+    }
+
     /// Least and largest set-point that the pitch loop can be given where the autopilot's modes move pitch, rad from the trim:
     /// what they command is added to the scenario's own.
     #[must_use]

@@ -2,6 +2,7 @@
 //!
 //! Wings level, no sideslip, aileron and rudder at rest: for an aircraft that is symmetric. Not for turns.
 
+mod held;
 mod search;
 
 use std::fmt;

@@ -110,7 +110,7 @@ impl<M: ForceModel> Aircraft<M> {
     }
 }
 
-fn step_size(value: f64) -> f64 {
+pub(super) fn step_size(value: f64) -> f64 {
     1e-5 * value.abs().max(1.0)
 }
 

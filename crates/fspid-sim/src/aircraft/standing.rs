@@ -69,6 +69,13 @@ impl AircraftPlant {
         all
     }
 
+    /// The aircraft where it comes to when its pitch is held so much higher with the throttle of its trim; nothing where that
+    /// is no flight within its limits.
+    pub(crate) fn at_held_pitch(&self, by_rad: f64) -> Option<Self> {
+        let trim = self.aircraft().at_held_pitch(self.trim(), by_rad)?;
+        Some(Self { trim, ..self.clone() })
+    }
+
     /// The aircraft of a time with that much fuel, as if it stayed so; nothing where it has no trim.
     fn standing_at(&self, time_s: f64, fuel_kg: Option<f64>) -> Option<Self> {
         let (model, changing) = (self.aircraft().model().varied()?, self.changing());

@@ -74,6 +74,8 @@ pub enum Doubt {
     Wings,
     /// A gyro's erection makes small motions grow, until its bounded rate holds them.
     Erection,
+    /// The set-point of the end, held on, brings an aircraft to another airspeed, where it grows.
+    HeldOn,
     /// The trim of an aircraft lies on a kink of its data, where no linear model is that of its small motions.
     Kink,
     /// About the trim of an aircraft something moves so fast that the steps of the integration do not follow.
@@ -97,6 +99,7 @@ impl Doubt {
             | Self::ChangedAircraft
             | Self::Wings
             | Self::Erection
+            | Self::HeldOn
             | Self::Kink
             | Self::FastMotion
             | Self::BeyondLimits => true,

@@ -148,6 +148,14 @@ pub enum Absent {
         /// Spectral radius of all small motions, sample to sample.
         spectral_radius: f64,
     },
+    /// The set-point of the end brings the aircraft to another airspeed, where the loop grows.
+    #[error(
+        "undecided: held on, the set-point of the end brings the aircraft with the throttle of its trim to another airspeed, at which the loop is unstable (spectral radius {spectral_radius:.6}): a longer flight shows it"
+    )]
+    HeldOn {
+        /// Spectral radius of the sampled closed loop there.
+        spectral_radius: f64,
+    },
     /// The trim lies on a kink of the aircraft's data.
     #[error(
         "undecided: the trim lies right on a kink of the aircraft's data (a breakpoint of a table, a row of Mach numbers, a corner of a gearing), where each side has slopes of its own: a trim a little beside it has one linear model"

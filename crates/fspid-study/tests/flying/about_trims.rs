@@ -312,6 +312,37 @@ fn a_trim_right_on_a_kink_of_the_aircrafts_data_is_undecided_and_one_beside_it_i
     }
 }
 
+/// A dive of 14 deg at the throttle of 40 m/s ends at 76 m/s, where the elevator has four times its power.
+const DIVE: [&str; 6] = [
+    "aircraft.airspeed_ft_s=131.2336",
+    "aircraft.altitude_ft=13779.5",
+    "actuator={time_constant_s=0.05, delay_samples=6}",
+    "setpoint.amplitude_deg=-14.0",
+    "controller.PID={name=\"PID\", kind=\"pid\", kp=1.2, ki=2.0, kd=1.4, derivative_filter_s=0.02, setpoint_weights={proportional=0.3, derivative=0.0}}",
+    "loop.duration_s=20.0",
+];
+
+#[test]
+fn a_set_point_that_is_held_on_is_asked_at_the_airspeed_to_which_it_leads() {
+    let dive = [&DIVE[..], &["loop.duration_s=80.0"]].concat();
+    assert_eq!(doubt(&result(NAVION, &DIVE)), Some(Doubt::HeldOn));
+    let flown = result(NAVION, &dive);
+    assert_eq!(doubt(&flown), Some(Doubt::HeldOn));
+    let rates = flown.trace.theta_rad.windows(2).rev().take(500);
+    let swings = rates.fold(0.0, |most: f64, two| most.max((two[1] - two[0]).abs()));
+    assert!(swings > 20.0_f64.to_radians() * 0.01, "{swings}");
+    // A smaller dive is held, at the airspeed that is told.
+    let small = [&DIVE[..], &["setpoint.amplitude_deg=-2.0", "loop.duration_s=200.0"]].concat();
+    let flown = result(NAVION, &small);
+    assert_eq!(doubt(&flown), None);
+    let airspeed_m_s =
+        *flown.trace.column("airspeed_m_s").expect("it has one").last().expect("flown");
+    let plant = trimmed(&small);
+    let there = plant.aircraft().at_held_pitch(plant.trim(), -2.0_f64.to_radians());
+    let told_m_s = there.expect("it glides").target.airspeed_m_s;
+    assert!((airspeed_m_s / told_m_s - 1.0).abs() < 0.03, "{airspeed_m_s} {told_m_s}");
+}
+
 /// `"stable": true` in JSON, where the flight said that nobody knows.
 #[test]
 fn everything_that_a_flight_doubts_is_in_doubt_for_analyse() {
