@@ -93,7 +93,7 @@ fn alone(scenario: &Scenario, held: Held<'_>) -> GrowthAtRest {
         }
         other => other.ok().flatten(),
     };
-    let Some(latest) = radii(Seeing::Latest) else { return GrowthAtRest::default() };
+    let Some(latest) = radii(Seeing::first(scenario)) else { return GrowthAtRest::default() };
     if let Some(spectral_radius) = latest.all.filter(|radius| grows(*radius)) {
         return doubted(Doubt::Wings, spectral_radius);
     }
@@ -128,7 +128,9 @@ fn held_on(scenario: &Scenario, (controller, gains): Held<'_>) -> Result<GrowthA
 fn of_seeing(seeing: Seeing) -> Doubt {
     match seeing {
         Seeing::Erecting => Doubt::Erection,
-        Seeing::Earliest | Seeing::Midway | Seeing::Latest => Doubt::ChangingAge,
+        Seeing::Earliest | Seeing::Midway | Seeing::Latest | Seeing::AsTheyCome => {
+            Doubt::ChangingAge
+        }
     }
 }
 
@@ -165,7 +167,7 @@ fn of_modes(
 fn of_mode(scenario: &Scenario, mode: usize, held: Held<'_>) -> Result<GrowthAtRest, SimError> {
     let radius =
         |seeing| poles_of_mode(scenario, held, mode, seeing).map(|poles| poles.spectral_radius);
-    let spectral_radius = radius(Seeing::Latest)?;
+    let spectral_radius = radius(Seeing::first(scenario))?;
     for seeing in Seeing::others(scenario) {
         let doubt = of_seeing(seeing);
         // A loop that grows with every age may hold while it changes: such a one was flown.

@@ -50,6 +50,12 @@ impl Clock {
     }
 }
 
+/// Samples after which ages come again of sensors with these periods, samples of the loop; none where they do not.
+pub(crate) fn comes_again_after(periods: &[f64]) -> Option<usize> {
+    let clocks = || periods.iter().map(|&period| Clock { period, delay: 0.0 });
+    (1..=MOST_PHASES).find(|samples| clocks().all(|it| it.misses(*samples) <= COMES_AGAIN))
+}
+
 impl Clocks {
     /// Those of a loop's sensors in a scenario; none where no age changes.
     pub(crate) fn of(scenario: &Scenario, model: &LoopModel<f64>) -> Option<Self> {

@@ -40,7 +40,7 @@ use crate::plant::LinearPlant;
 use crate::scenario::Scenario;
 
 pub use break_point::BreakPoint;
-pub(crate) use clocks::{Clocks, Phases};
+pub(crate) use clocks::{Clocks, Phases, comes_again_after};
 pub use long_way::MOST_AS_STATES;
 pub use memory::Memory;
 pub(crate) use parts::LoopParts;

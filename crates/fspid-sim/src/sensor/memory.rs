@@ -1,6 +1,6 @@
 //! What a sensor remembers, and how it looks.
 
-use super::Sensor;
+use super::{Sensor, SensorModel};
 use crate::error::SimError;
 use crate::loop_model::Sensing;
 use crate::math::exp;
@@ -154,9 +154,25 @@ impl SensorState {
         self.history.get_mut(place)
     }
 
-    /// How many of them what is shown at a sample depends on.
+    /// How many of them what is looked at from a sample on depends on.
     pub(crate) fn depends_on(&self) -> usize {
+        if self.holds() {
+            // It is looked at within a sample after its delay.
+            let delay = SensorModel { period_s: 0.0, ..self.sensor.model };
+            let sensor = Sensor { model: delay, ..self.sensor };
+            return Sensing::through(Some(&sensor), self.dt_s).samples + 2;
+        }
         Sensing::through(Some(&self.sensor), self.dt_s).remembered()
+    }
+
+    /// True where it shows a value until its clock has come to the next.
+    pub(crate) fn holds(&self) -> bool {
+        self.sensor.model.period_s > 0.0
+    }
+
+    /// What it shows until then.
+    pub(crate) fn held(&mut self) -> &mut f64 {
+        &mut self.value
     }
 
     /// The gyro's axis follows the apparent vertical at its erection rate, so that a long forward

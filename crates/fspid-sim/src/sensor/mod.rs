@@ -126,7 +126,14 @@ impl Sensor {
         let erects = seeing == Seeing::Erecting && self.model.erection_rad_s > 0.0;
         let erection_rad_s = if erects { AT_ONCE_RAD_S } else { 0.0 };
         let SensorModel { scale_error, .. } = self.model;
-        let model = SensorModel { scale_error, delay_s, erection_rad_s, ..SensorModel::default() };
+        let plain = SensorModel { scale_error, erection_rad_s, ..SensorModel::default() };
+        let model = match seeing {
+            Seeing::AsTheyCome if at_largest_age => {
+                let SensorModel { period_s, delay_s, .. } = self.model;
+                SensorModel { period_s, delay_s, ..plain }
+            }
+            _ => SensorModel { delay_s, ..plain },
+        };
         Self { model, ..self }
     }
 

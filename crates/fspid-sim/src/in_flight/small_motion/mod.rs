@@ -2,8 +2,8 @@
 //!
 //! The flying code itself is asked: a flight stands at the trim with one mode engaged for good, each of its numbers is moved
 //! a little either way, and one sample is flown. Limits are left out, gains are those at rest, and the air stands still. Sensors
-//! show late what they show late, that of the pitch loop with their scale; of one with a clock of its own the largest age is
-//! taken, or the smallest ([`Seeing`]). Every target is what the trim has; a beam is level there. The actuator is its lag and its
+//! show late what they show late, that of the pitch loop with their scale. Where one has a clock of its own, samples are flown
+//! until all ages have come, or the largest age is taken, or the smallest ([`Seeing`]). Every target is what the trim has; a beam is level there. The actuator is its lag and its
 //! delay.
 
 mod numbers;
@@ -22,6 +22,7 @@ use crate::error::SimError;
 use crate::flown::Perturbation;
 use crate::loop_model::MOST_AS_STATES;
 use crate::scenario::{Prepared, Scenario};
+use crate::stability::MODE_RADIUS;
 
 pub(crate) use self::numbers::{AILERON, ALTITUDE, BEYOND, HEADING, POWER, THROTTLE};
 pub(crate) use self::still::Seeing;
@@ -65,7 +66,7 @@ pub fn mode_poles(
             continue;
         }
         for (mode, begins_s) in standing.modes(scenario) {
-            let found = poles_of_mode(&own, (controller, gains), mode, Seeing::Latest);
+            let found = poles_shown(&own, (controller, gains), mode);
             let from_s = begins_s.max(standing.from_s);
             match found {
                 Ok(poles) => all.push(ModePoles { from_s, ..poles }),
@@ -75,6 +76,24 @@ pub fn mode_poles(
         }
     }
     Ok(all)
+}
+
+/// Of one mode, with sensors as late as they ever are; whether it grows is said of them as they come. Poles that say otherwise
+/// are left out.
+fn poles_shown(
+    scenario: &Scenario,
+    held: (&Controller, Gains<f64>),
+    mode: usize,
+) -> Result<ModePoles, SimError> {
+    let latest = poles_of_mode(scenario, held, mode, Seeing::Latest)?;
+    let first = Seeing::first(scenario);
+    if first == Seeing::Latest {
+        return Ok(latest);
+    }
+    let ModePoles { spectral_radius, .. } = poles_of_mode(scenario, held, mode, first)?;
+    let agree = (spectral_radius <= MODE_RADIUS) == (latest.spectral_radius <= MODE_RADIUS);
+    let poles = if agree { latest.poles } else { Vec::new() };
+    Ok(ModePoles { poles, spectral_radius, ..latest })
 }
 
 /// The same of one mode of the autopilot that a scenario has.
@@ -91,14 +110,20 @@ pub(crate) fn poles_of_mode(
         return Err(SimError::LongWay { samples, most: MOST_AS_STATES });
     }
     let still = still(scenario, autopilot, mode, seeing)?;
-    let settling = settling_samples(scenario)?;
-    let motion = one_sample(&still, settling, autopilot.modes().get(mode), controller);
+    let samples = [settling_samples(scenario)?, seeing.samples(scenario)];
+    let motion = small_motions(&still, samples, autopilot.modes().get(mode), controller);
     let (_, matrix) = motion.map_err(|ended| ended.of(mode))?;
     let dt_s = scenario.timing.dt_s();
     let found = eigenvalues(&matrix)?;
-    let spectral_radius = found.iter().map(|z| modulus(*z)).fold(0.0, f64::max);
+    let largest = found.iter().map(|z| modulus(*z)).fold(0.0, f64::max);
     let poles = found.iter().filter(|z| modulus(**z) > GONE).map(|z| in_s(*z, dt_s)).collect();
+    let spectral_radius = a_sample(largest, samples[1]);
     Ok(ModePoles { mode, from_s: 0.0, poles, spectral_radius })
+}
+
+/// What a growth over so many samples is a sample.
+fn a_sample(radius: f64, samples: usize) -> f64 {
+    if samples == 1 { radius } else { libm::pow(radius, 1.0 / samples as f64) }
 }
 
 /// $s = \ln z / T$.
@@ -133,8 +158,10 @@ pub(crate) fn radii_alone(
     }
     let controller = unlimited(controller, gains)?;
     let still = still_alone(scenario, seeing)?.prepare()?;
-    let motion = one_sample(&still, settling_samples(scenario)?, None, &controller);
+    let samples = [settling_samples(scenario)?, seeing.samples(scenario)];
+    let motion = small_motions(&still, samples, None, &controller);
     let (places, matrix) = motion.map_err(|ended| ended.of(0))?;
+    let radius = |matrix: &Matrix| radius(matrix).map(|radius| a_sample(radius, samples[1]));
     let at = |beyond: usize| {
         places.iter().position(|place| matches!(place, Place::Beyond(at) if *at == beyond))
     };
@@ -163,10 +190,10 @@ fn part(matrix: &Matrix, places: &[usize]) -> Result<Matrix, SimError> {
 /// Half the width of the differences; what is between them is smooth, so that their error is near 10⁻¹⁰ of what they are of.
 const DIFFERENCE: f64 = 1e-5;
 
-/// What one sample makes of each number, by central differences.
-fn one_sample(
+/// What some samples make of each number, after others, by central differences.
+fn small_motions(
     prepared: &Prepared,
-    settling_samples: usize,
+    [settling_samples, samples]: [usize; 2],
     mode: Option<&Mode>,
     controller: &Controller,
 ) -> Result<(Vec<Place>, Matrix), Ended> {
@@ -183,7 +210,9 @@ fn one_sample(
         let arrive = |by: f64| {
             let mut moved = at.clone();
             moved.nudge(*place, by);
-            moved.fly(controller)?;
+            for _ in 0..samples {
+                moved.fly(controller)?;
+            }
             Ok::<_, Ended>(moved.read(&places))
         };
         let (more, less) = (arrive(half)?, arrive(-half)?);

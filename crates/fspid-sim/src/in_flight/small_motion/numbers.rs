@@ -68,6 +68,8 @@ pub(super) enum Place {
     Remembered(usize, usize),
     /// What a sensor looks at later, and how many samples before.
     Seen(usize, usize),
+    /// What a sensor with a clock of its own shows until it looks again.
+    Shown(usize),
 }
 
 /// All numbers of a flight that count: what nothing pulls on is left out.
@@ -121,7 +123,8 @@ fn seen_places(flying: &mut Flying<'_>, mode: Option<&Mode>) -> Vec<Place> {
     let sensors = flying.sensors_mut().enumerate();
     let counted = sensors.filter(|(_, (number, _))| number.is_none_or(engaged));
     let each = counted.flat_map(|(place, (_, sensor))| {
-        (1..=sensor.depends_on()).map(move |samples| Place::Seen(place, samples))
+        let shown = sensor.holds().then_some(Place::Shown(place));
+        (1..=sensor.depends_on()).map(move |samples| Place::Seen(place, samples)).chain(shown)
     });
     each.collect()
 }
@@ -139,9 +142,14 @@ impl Flying<'_> {
         self.sensors_mut().nth(sensor)?.1.past(k, samples)
     }
 
+    fn shown(&mut self, sensor: usize) -> Option<&mut f64> {
+        Some(self.sensors_mut().nth(sensor)?.1.held())
+    }
+
     pub(super) fn read(&mut self, places: &[Place]) -> Vec<f64> {
         let seen = places.iter().map(|place| match *place {
             Place::Seen(sensor, samples) => self.seen(sensor, samples).copied(),
+            Place::Shown(sensor) => self.shown(sensor).copied(),
             _ => None,
         });
         let seen: Vec<Option<f64>> = seen.collect();
@@ -159,7 +167,7 @@ impl Flying<'_> {
             Place::Remembered(number, at) => {
                 memories.get(number).and_then(|it| it.get(at)).copied()
             }
-            Place::Seen(..) => None,
+            Place::Seen(..) | Place::Shown(_) => None,
         };
         places.iter().zip(seen).map(|(place, seen)| seen.or(read(place)).unwrap_or(0.0)).collect()
     }
@@ -167,6 +175,10 @@ impl Flying<'_> {
     pub(super) fn nudge(&mut self, place: Place, by: f64) {
         if let Place::Seen(sensor, samples) = place {
             self.seen(sensor, samples).into_iter().for_each(|value| *value += by);
+            return;
+        }
+        if let Place::Shown(sensor) = place {
+            self.shown(sensor).into_iter().for_each(|value| *value += by);
             return;
         }
         let course = &mut self.course;
@@ -183,7 +195,7 @@ impl Flying<'_> {
                     nudge_memory(memory, at, by);
                 }
             }
-            Place::Seen(..) => {}
+            Place::Seen(..) | Place::Shown(_) => {}
         }
     }
 }

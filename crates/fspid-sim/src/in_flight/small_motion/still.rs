@@ -6,7 +6,7 @@ use crate::actuator::Actuator;
 use crate::autopilot::{Autopilot, Entry, GlideSlope, Mode, OuterLoop, TotalEnergy};
 use crate::controller::Controller;
 use crate::error::SimError;
-use crate::loop_model::Sensing;
+use crate::loop_model::{Sensing, comes_again_after};
 use crate::scenario::{Prepared, Scenario};
 use crate::sensor::Sensor;
 use crate::surroundings::{Surroundings, Weather};
@@ -22,6 +22,8 @@ const FAR_M: f64 = 1e7;
 pub(crate) enum Seeing {
     /// As late as they ever are, gyros upright.
     Latest,
+    /// Those with a clock of their own by it, over a time after which all ages come again; gyros upright.
+    AsTheyCome,
     /// Those with a clock of their own as early as they ever are.
     Earliest,
     /// Those with a clock of their own halfway between: as late as they are in the mean.
@@ -31,16 +33,49 @@ pub(crate) enum Seeing {
     Erecting,
 }
 
+/// Most samples that are flown to ask for all ages of the sensors in their order: some hundredths of a second.
+const MOST_FLOWN: usize = 30_000;
+/// Numbers of a flight beside what is on its way, about.
+const NUMBERS: usize = 40;
+
 impl Seeing {
-    /// The ways in which a scenario's sensors may show them, beside [`Latest`](Self::Latest).
+    /// The way in which a scenario's sensors show them: as they come, where ages change and come again soon.
+    pub(crate) fn first(scenario: &Scenario) -> Self {
+        match samples_of_all_ages(scenario) {
+            Some(_) => Self::AsTheyCome,
+            None => Self::Latest,
+        }
+    }
+
+    /// Samples over which they are asked.
+    pub(super) fn samples(self, scenario: &Scenario) -> usize {
+        match self {
+            Self::AsTheyCome => samples_of_all_ages(scenario).unwrap_or(1),
+            Self::Latest | Self::Earliest | Self::Midway | Self::Erecting => 1,
+        }
+    }
+
+    /// The ways in which they may show them beside the [`first`](Self::first).
     pub(crate) fn others(scenario: &Scenario) -> Vec<Self> {
         let dt_s = scenario.timing.dt_s();
         let has_ages = |sensor: &Sensor| Sensing::through(Some(sensor), dt_s).at_largest_age;
-        let ages = sensors(scenario).any(has_ages).then_some([Self::Midway, Self::Earliest]);
+        let is_open = sensors(scenario).any(has_ages) && Self::first(scenario) == Self::Latest;
+        let ages = is_open.then_some([Self::Midway, Self::Earliest]);
         let pitch = &scenario.surroundings.pitch_sensor;
         let erects = pitch.is_some_and(|sensor| sensor.model().erection_rad_s > 0.0);
         ages.into_iter().flatten().chain(erects.then_some(Self::Erecting)).collect()
     }
+}
+
+/// Samples after which all ages of a scenario's sensors come again; none where none changes, or it takes too long to ask.
+fn samples_of_all_ages(scenario: &Scenario) -> Option<usize> {
+    let dt_s = scenario.timing.dt_s();
+    let has_ages = |sensor: &&Sensor| Sensing::through(Some(sensor), dt_s).at_largest_age;
+    let periods = sensors(scenario).filter(has_ages).map(|sensor| sensor.model().period_s / dt_s);
+    let periods: Vec<f64> = periods.collect();
+    let samples = comes_again_after(&periods).filter(|_| !periods.is_empty())?;
+    let flown = 2 * samples * (NUMBERS + on_its_way(scenario));
+    (flown <= MOST_FLOWN).then_some(samples)
 }
 
 /// The scenario at rest in still air, without what is around its pitch loop.
@@ -53,7 +88,7 @@ pub(super) fn still_alone(scenario: &Scenario, seeing: Seeing) -> Result<Scenari
         Actuator::new(scenario.actuator.lag()).with_delay(scenario.actuator.delay_samples())?;
     let dt_s = scenario.timing.dt_s();
     // Long enough to settle, however short the flight is.
-    let samples = settling_samples(scenario)? + 10;
+    let samples = settling_samples(scenario)? + seeing.samples(scenario) + 10;
     still.timing = Timing::new(dt_s, samples as f64 * dt_s)?;
     let course = scenario.surroundings.weather.as_ref().map(|weather| weather.course);
     let calm = |course| Weather { course, winds: Vec::new(), turbulence: None };
