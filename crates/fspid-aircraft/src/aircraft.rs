@@ -190,10 +190,15 @@ impl<M: ForceModel> Aircraft<M> {
         RigidState { attitude: end.attitude.normalised(), ..end }
     }
 
-    /// First limit of the model by which the flow is outside.
+    /// First limit of the model by which the flow, or what it reads off its data, is outside.
     #[must_use]
-    pub fn departure(&self, state: &RigidState, motion: &AirMotion) -> Option<Departure> {
-        self.model.validity().departure(&self.flow(state, motion))
+    pub fn departure(
+        &self,
+        state: &RigidState,
+        controls: &Controls,
+        motion: &AirMotion,
+    ) -> Option<Departure> {
+        self.model.departure(&self.flow(state, motion), controls)
     }
 }
 

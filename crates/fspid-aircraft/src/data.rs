@@ -15,7 +15,7 @@ use crate::aircraft::Aircraft;
 use crate::atmosphere::{Air, AirModel, Environment};
 use crate::error::AircraftError;
 use crate::mass::MassProperties;
-use crate::validity::{Travel, Validity};
+use crate::validity::{Range, TableInput, Travel, Validity};
 pub use linear::{LinearCondition, LinearData, LinearElevator, LinearState};
 pub use loading::{Loading, Moment};
 pub use variations::{GroundData, Variations};
@@ -61,6 +61,10 @@ pub struct ForceData {
     pub air: Option<Air>,
     /// Forces; they say where they are valid and how far the controls go.
     pub forces: Arc<dyn ForceModel + Send + Sync>,
+    /// What enters tables beside speed, Mach number, angles of the flow and altitude, and where it has data.
+    pub table_inputs: Vec<(TableInput, Range)>,
+    /// Sentences about what a flight leaves as the files have it.
+    pub held: Vec<String>,
 }
 
 /// Forces are equal by being the same object.
@@ -73,7 +77,7 @@ impl PartialEq for ForceData {
 
 impl fmt::Debug for ForceData {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { mass, geometry, gravity_m_s2, air, forces: _ } = self;
+        let Self { mass, geometry, gravity_m_s2, air, .. } = self;
         let mut shown = formatter.debug_struct("ForceData");
         shown.field("mass", mass).field("geometry", geometry).field("gravity_m_s2", gravity_m_s2);
         shown.field("air", air);

@@ -35,6 +35,7 @@ mod transfer;
 pub mod trim;
 mod validity;
 mod vector;
+mod words;
 
 pub use aerodynamics::{ForceModel, Loads};
 pub use aircraft::{Aircraft, Instant, load_factors};
@@ -55,5 +56,6 @@ pub use quaternion::{EulerAngles, Quaternion};
 pub use rigid_body::{Accelerations, RIGID_STATES, RigidState};
 pub use transfer::transfer_function;
 pub use trim::{Trim, TrimFailure, TrimPoint, TrimTarget};
-pub use validity::{Departure, Quantity, Range, Travel, Validity};
+pub use validity::{Departure, Quantity, Range, TableInput, Travel, Validity};
 pub use vector::Vector3;
+pub use words::Words;

@@ -5,6 +5,7 @@ use std::fmt;
 use crate::controls::Controls;
 use crate::error::AircraftError;
 use crate::flow::Flow;
+use crate::words::Words;
 
 /// A closed interval; its ends may be infinite.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -80,12 +81,30 @@ pub enum Quantity {
     Throttle,
     /// Fuel in kg.
     Fuel,
+    /// What enters a table of the model and is none of these, in the unit of its file.
+    Table(TableInput),
+}
+
+/// A variable that enters tables.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct TableInput {
+    name: Words<48>,
+    unit: Words<16>,
+}
+
+impl TableInput {
+    /// The variable with an identifier and a unit of its file; both are cut where they are very long.
+    #[must_use]
+    pub fn new(id: &str, unit: &str) -> Self {
+        let unit = if unit == "nd" { "" } else { unit };
+        Self { name: Words::new(&format!("table input {id}")), unit: Words::new(unit) }
+    }
 }
 
 impl Quantity {
     /// Name for a sentence.
     #[must_use]
-    pub const fn name(self) -> &'static str {
+    pub fn name(&self) -> &str {
         match self {
             Self::Airspeed => "airspeed",
             Self::Mach => "Mach number",
@@ -97,18 +116,20 @@ impl Quantity {
             Self::Rudder => "rudder",
             Self::Throttle => "throttle",
             Self::Fuel => "fuel",
+            Self::Table(input) => input.name.as_str(),
         }
     }
 
     /// Unit of its values here.
     #[must_use]
-    pub const fn unit(self) -> &'static str {
+    pub fn unit(&self) -> &str {
         match self {
             Self::Airspeed => "m/s",
             Self::Altitude => "m",
             Self::Fuel => "kg",
             Self::Mach | Self::Throttle => "",
             Self::Alpha | Self::Beta | Self::Elevator | Self::Aileron | Self::Rudder => "rad",
+            Self::Table(input) => input.unit.as_str(),
         }
     }
 }

@@ -202,7 +202,7 @@ impl Two {
         match self {
             Self::Add => a + b,
             Self::And => truth(is_true(a) && is_true(b)),
-            Self::Arctan2 => a.atan2(b),
+            Self::Arctan2 => angle_of(a, b),
             Self::Divide => a / b,
             Self::Equal => truth(a.value() == b.value()),
             Self::Greater => truth(a.value() > b.value()),
@@ -219,6 +219,14 @@ impl Two {
             Self::Subtract => a - b,
         }
     }
+}
+
+/// The angle of the point $(x, y)$ in $[-\pi, \pi]$: behind the origin a zero below 0, as the negative of 0 is, has its own
+/// side of the cut.
+fn angle_of<N: Number>(y: N, x: N) -> N {
+    let (angle, [y, x]) = (y.atan2(x), [y.value(), x.value()]);
+    let below = y.abs() <= 0.0 && y.is_sign_negative() && x < 0.0;
+    if below { angle - N::constant(core::f64::consts::TAU) } else { angle }
 }
 
 /// The first if it is preferred or not a number, else the second.
@@ -256,6 +264,19 @@ mod tests {
             assert_eq!(two.apply(f64::NAN, 1.0), 0.0);
         }
         assert!(Two::Min.apply(f64::NAN, 1.0).is_nan() && Two::Max.apply(1.0, f64::NAN).is_nan());
+    }
+
+    /// It was π, so that the angle of the negative of 0 differed from that of other readers of the format.
+    #[test]
+    fn the_angle_of_the_negative_of_nothing_lies_below_the_cut() {
+        let pi = core::f64::consts::PI;
+        let below = One::Negate.apply(0.0);
+        assert_eq!(Two::Arctan2.apply(below, -2.0), -pi);
+        assert_eq!(Two::Arctan2.apply(0.0, -2.0), pi);
+        assert_eq!(Two::Arctan2.apply(below, 2.0).to_bits(), (-0.0_f64).to_bits());
+        let [y, x] = Dual::variables([0.0_f64, -2.0]);
+        let sloping = Two::Arctan2.apply(-y, x);
+        assert_eq!((sloping.value, sloping.derivative[0]), (-pi, 0.5));
     }
 
     #[test]

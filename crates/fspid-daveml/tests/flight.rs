@@ -121,6 +121,82 @@ fn what_does_not_fit_is_told_with_what_does() {
     assert_eq!(units, "`elevatorDeflection` is in `grad`; known units for it are rad, deg");
 }
 
+/// The aircraft with a part of its pitching moment by the rate of the angle of attack.
+fn by_the_rate(part: &str) -> String {
+    let input = "<variableDef name=\"angleOfAttackRate\" varID=\"ad\" units=\"deg_s\"><isInput/></variableDef>";
+    let first = "  <variableDef name=\"gearPosition\"";
+    let text = AERO.replacen(first, &format!("{input}{first}"), 1);
+    text.replacen("<cn>0.02</cn>", &format!("<cn>0.02</cn>{part}"), 1)
+}
+
+fn times(factors: &str) -> String {
+    format!("<apply><times/><cn>-0.0003</cn>{factors}</apply>")
+}
+
+/// A moment that is 0 at small rates and not at large ones used to be flown as another, and a limit or a dead zone too:
+/// the slope between 0 and 1 rad/s was taken at every rate.
+#[test]
+fn loads_that_are_not_linear_in_the_rate_of_the_angle_of_attack_are_refused_by_name() {
+    let refused = |part: &str| engineless(&by_the_rate(part), Vector3::ZERO).unwrap_err();
+    let size = "<apply><abs/><ci>ad</ci></apply>";
+    let held = "<apply><min/><cn>100</cn><ci>ad</ci></apply>";
+    let beyond = "<apply><max/><cn>0.1</cn><ci>ad</ci></apply>";
+    let square = "<ci>ad</ci><ci>ad</ci>";
+    let stalled = "<apply><piecewise><piece><ci>ad</ci><apply><lt/><ci>alpha</ci><cn>12</cn></apply></piece>\
+                   <otherwise><apply><abs/><ci>ad</ci></apply></otherwise></piecewise></apply>";
+    let odd = format!("<ci>ad</ci>{size}");
+    for part in [size, held, beyond, square, stalled, odd.as_str()] {
+        let error = refused(&times(part));
+        let FlightError::NotLinear { name, .. } = error else { panic!("{part}: {error}") };
+        assert_eq!(name, "aeroBodyMomentCoefficient_Pitch");
+    }
+    let told = refused(&times(&format!("<ci>ad</ci>{size}"))).to_string();
+    assert!(told.contains("not linear in `angleOfAttackRate`: at 0.001 rad/s"), "{told}");
+}
+
+#[test]
+fn the_rate_of_the_angle_of_attack_may_have_any_factor_but_a_control() {
+    let flies = |factors: &str| engineless(&by_the_rate(&times(factors)), Vector3::ZERO);
+    for factors in [
+        "<ci>ad</ci>",
+        "<ci>ad</ci><ci>alpha</ci><ci>q</ci>",
+        "<apply><divide/><ci>ad</ci><ci>V</ci></apply>",
+    ] {
+        assert!(flies(factors).is_ok(), "{factors}");
+    }
+    let error = flies("<ci>ad</ci><ci>el</ci>").unwrap_err();
+    assert!(matches!(error, FlightError::RateByControl { .. }), "{error}");
+}
+
+/// An input with another name than the standard's used to stay at its initial value without a word, and with `pitchRate` for
+/// `bodyAngularRate_Pitch` the damping was gone.
+#[test]
+fn inputs_that_a_flight_does_not_have_are_told_with_the_value_at_which_they_stay() {
+    let held = |name: &str| {
+        let text = AERO.replace(
+            "name=\"bodyAngularRate_Pitch\" varID=\"q\" units=\"deg_s\"",
+            &format!("name=\"{name}\" varID=\"q\" units=\"deg_s\" initialValue=\"0\""),
+        );
+        engineless(&text, Vector3::ZERO).unwrap().held_inputs()
+    };
+    let gear = "a flight has no `gearPosition`, which stays at its initial value, 0.0; known are trueAirspeed, ";
+    let [only] = held("bodyAngularRate_Pitch").try_into().unwrap();
+    assert!(only.starts_with(gear), "{only}");
+    let [rate, _] = held("pitchRate").try_into().unwrap();
+    assert!(
+        rate.starts_with(
+            "a flight has no `pitchRate`, which stays at its initial value, 0.0 deg_s; known are"
+        ),
+        "{rate}"
+    );
+    let [near, _] = held("bodyAngularRate_Ptich").try_into().unwrap();
+    assert!(
+        near.contains("; did you mean `bodyAngularRate_Pitch`? Known are trueAirspeed"),
+        "{near}"
+    );
+    assert!(forces(25.0).held_inputs_of_the_engine().is_empty());
+}
+
 #[test]
 fn a_body_that_is_not_symmetric_is_refused() {
     let text = BODY.replace(
@@ -243,4 +319,70 @@ fn a_number_that_is_written_out_is_worked_out_and_told() {
     let told: Vec<String> = reading.notes.iter().map(|note| format!("{note:?}")).collect();
     assert!(told.iter().any(|note| note.contains("(2/5)π")), "{told:?}");
     assert!(read(&BALL.replace(r#"initialValue="0.1""#, r#"initialValue="(2/5)x""#)).is_err());
+}
+
+/// The aircraft with a table of its pitching moment from 0 to 2, entered by a variable.
+fn with_a_table_by(id: &str, more: &str) -> String {
+    let table = format!(
+        "<breakpointDef bpID=\"K\"><bpVals>0, 2</bpVals></breakpointDef>\
+         <function name=\"cm\"><independentVarRef varID=\"{id}\"/><dependentVarRef varID=\"CmA\"/><functionDefn>\
+         <griddedTableDef><breakpointRefs><bpRef bpID=\"K\"/></breakpointRefs><dataTable>0.02, 0</dataTable>\
+         </griddedTableDef></functionDefn></function>"
+    );
+    let text = AERO.replacen("<cn>0.02</cn>", "<ci>CmA</ci>", 1);
+    let variable = "<variableDef name=\"cma\" varID=\"CmA\" units=\"nd\"/>";
+    let text =
+        text.replacen("  <breakpointDef", &format!("  {variable}{more}\n  <breakpointDef"), 1);
+    text.replacen("</DAVEfunc>", &format!("{table}</DAVEfunc>"), 1)
+}
+
+/// Ranges of tables used to count only where speed, Mach number, angles of the flow or altitude entered them themselves: a
+/// copy of the angle of attack, or a control, left them without a word.
+#[test]
+fn a_table_that_is_read_beyond_its_data_is_told_whatever_enters_it() {
+    let copy = "<variableDef name=\"copy\" varID=\"a2\" units=\"deg\"><calculation><math><apply><times/><cn>1</cn>\
+                <ci>alpha</ci></apply></math></calculation></variableDef>";
+    let controls = Controls { elevator_rad: 3.0_f64.to_radians(), ..Controls::default() };
+    let told = |id: &str, more: &str| {
+        let forces = engineless(&with_a_table_by(id, more), Vector3::ZERO).unwrap();
+        forces.departure(&flow(), &controls).map(|departure| departure.to_string())
+    };
+    // The flow is at 4 deg, pitching up by 6 deg/s.
+    for (id, more, value, unit) in
+        [("a2", copy, "4", "deg"), ("el", "", "3", "deg"), ("q", "", "6", "deg_s")]
+    {
+        let told = told(id, more).unwrap_or_else(|| panic!("{id} leaves its table"));
+        assert!(told.starts_with(&format!("table input {id} {value}")), "{told}");
+        assert!(told.ends_with(&format!(" {unit}, allowed 0 to 2 {unit}")), "{told}");
+    }
+    let told_by_the_box = told("alpha", "").unwrap();
+    assert!(told_by_the_box.starts_with("angle of attack"), "{told_by_the_box}");
+    // What no flight moves is read where its file holds it.
+    assert_eq!(told("gear", ""), None);
+}
+
+#[test]
+fn a_table_that_is_read_at_its_very_end_is_not_left() {
+    let forces = engineless(&with_a_table_by("el", ""), Vector3::ZERO).unwrap();
+    let departs = |elevator_deg: f64| {
+        let elevator_rad = elevator_deg.to_radians();
+        forces.departure(&flow(), &Controls { elevator_rad, ..Controls::default() }).is_some()
+    };
+    assert_eq!([0.0, 1.0, 2.0].map(departs), [false; 3]);
+    assert_eq!([-0.001, 2.001].map(departs), [true; 2]);
+    assert_eq!(forces.table_inputs().len(), 1);
+}
+
+/// A trim is found within the tables or refused by the one that it would leave.
+#[test]
+fn a_trim_that_would_read_a_table_beyond_its_data_is_refused_by_it() {
+    let centre_of_mass_m = body(25.0).centre_of_mass_m;
+    let forces = engineless(&with_a_table_by("el", ""), centre_of_mass_m).unwrap();
+    let environment = Environment::uniform(9.8, 1.0, 330.0);
+    let aircraft = Aircraft::new(body(25.0).mass, forces, environment).unwrap();
+    let failure = aircraft
+        .trim(TrimTarget { airspeed_m_s: 61.0, altitude_m: 0.0, flight_path_rad: 0.0 })
+        .unwrap_err();
+    let limits: Vec<_> = failure.limits.iter().map(ToString::to_string).collect();
+    assert!(limits.iter().any(|limit| limit.starts_with("table input el")), "{limits:?}");
 }

@@ -176,6 +176,16 @@ fn a_property_is_held_where_it_is_asked_for_and_nowhere_else() {
     assert!(read(&unknown, &held("fcs/lef-pos-rad", 0.1)).is_ok());
 }
 
+/// The height over the ground is held beyond its table, and no flight moves it.
+#[test]
+fn what_is_held_beyond_its_table_ends_no_flight() {
+    let forces = forces(&plain(INVENTED));
+    let flow = flow(200.0, [0.05, 0.0], [0.0; 3], air(0.002, 1100.0));
+    assert_eq!(forces.departure(&flow, &Controls::default()), None);
+    let watched = format!("{:?}", forces.table_inputs());
+    assert!(!watched.contains("h_b-mac-ft"), "{watched}");
+}
+
 #[test]
 fn a_position_that_the_file_scales_is_made_of_the_angle_of_its_surface() {
     let scale = "<aerosurface_scale><input>fcs/elevator-pos-rad</input><domain><min>-0.5</min><max>0.4</max></domain>\

@@ -77,7 +77,7 @@ fn flown(drawn: &Drawn, samples: f64) -> f64 {
     let largest = |from: usize| {
         theta_rad.iter().skip(from).take(quarter).fold(0.0, |most: f64, it| most.max(it.abs()))
     };
-    (largest(3 * quarter) / largest(2 * quarter)).ln() / quarter as f64
+    libm::log(largest(3 * quarter) / largest(2 * quarter)) / quarter as f64
 }
 
 fn draw(random: &mut Random) -> Drawn {
@@ -85,7 +85,7 @@ fn draw(random: &mut Random) -> Drawn {
     let mut one_of = |values: [f64; 4]| values[(random.bits() % 4) as usize];
     let (beyond, delay_s) = (one_of([0.0, 0.5, 0.25, 0.4]), one_of([0.0, 0.0, 0.013, 0.05]));
     let period_s = (period + beyond) * DT_S;
-    let ten = |low: f64, high: f64, random: &mut Random| 10.0_f64.powf(random.between(low, high));
+    let ten = |low: f64, high: f64, random: &mut Random| libm::exp10(random.between(low, high));
     Drawn {
         body: [random.between(0.5, 3.0), random.between(0.2, 0.8)],
         bends: [
@@ -124,7 +124,8 @@ fn a_loop_that_sees_by_a_clock_of_its_own_flies_as_it_is_told_at_rest() {
             (Some(radius), _) if radius > 1.003 && radius < 1.05 => {
                 grows += 1;
                 // It ends before it is lost.
-                let (told, flown) = (radius.ln(), flown(&drawn, 200.0 / radius.ln()));
+                let told = libm::log(radius);
+                let flown = flown(&drawn, 200.0 / told);
                 assert!((flown / told - 1.0).abs() < 0.05, "{number} {drawn:?} {told} {flown}");
             }
             (None, None) => {
@@ -159,7 +160,7 @@ fn a_loop_whose_ages_hardly_come_again_is_told_only_where_it_flies_so() {
             (None, Some(_)) => undecided += 1,
             (Some(radius), _) if radius > 1.003 && radius < 1.05 => {
                 grows += 1;
-                let flown = flown(&drawn, 200.0 / radius.ln());
+                let flown = flown(&drawn, 200.0 / libm::log(radius));
                 assert!(flown > 0.0, "{number} {drawn:?} {radius} {flown}");
             }
             _ => {}

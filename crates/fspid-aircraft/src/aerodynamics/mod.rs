@@ -9,7 +9,7 @@ pub mod varied;
 use crate::controls::Controls;
 use crate::engine::Gearing;
 use crate::flow::Flow;
-use crate::validity::{Travel, Validity};
+use crate::validity::{Departure, Travel, Validity};
 use crate::vector::Vector3;
 
 /// Force and moment about the centre of gravity in body axes, of air and engine together, without weight.
@@ -124,6 +124,17 @@ pub trait ForceModel {
 
     /// How far the controls go.
     fn travel(&self) -> &Travel;
+
+    /// Data that are read beyond their ends although the flow is where the model is worth something: tables that are
+    /// entered by the controls, by rates or by what is calculated.
+    fn beyond_data(&self, _flow: &Flow, _controls: &Controls) -> Option<Departure> {
+        None
+    }
+
+    /// The first limit by which flow or data are outside.
+    fn departure(&self, flow: &Flow, controls: &Controls) -> Option<Departure> {
+        self.validity().departure(flow).or_else(|| self.beyond_data(flow, controls))
+    }
 }
 
 impl<M: ForceModel + ?Sized> ForceModel for &M {
@@ -154,6 +165,10 @@ impl<M: ForceModel + ?Sized> ForceModel for &M {
     fn travel(&self) -> &Travel {
         (**self).travel()
     }
+
+    fn beyond_data(&self, flow: &Flow, controls: &Controls) -> Option<Departure> {
+        (**self).beyond_data(flow, controls)
+    }
 }
 
 impl<M: ForceModel + ?Sized> ForceModel for Box<M> {
@@ -183,5 +198,9 @@ impl<M: ForceModel + ?Sized> ForceModel for Box<M> {
 
     fn travel(&self) -> &Travel {
         (**self).travel()
+    }
+
+    fn beyond_data(&self, flow: &Flow, controls: &Controls) -> Option<Departure> {
+        (**self).beyond_data(flow, controls)
     }
 }

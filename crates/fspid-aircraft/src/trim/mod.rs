@@ -232,11 +232,13 @@ impl<M: ForceModel> Aircraft<M> {
         [self.model().validity().alpha_rad, elevator_rad, third]
     }
 
-    /// Limits of flow and controls that a point is beyond.
+    /// Limits of flow, controls and data that a point is beyond.
     fn trim_departures(&self, target: TrimTarget, point: &TrimPoint) -> Vec<Departure> {
         let flow = self.flow(&target.state(point.alpha_rad), &AirMotion::STILL);
-        let stops = self.model().travel().departures(&point.controls());
-        self.model().validity().departures(&flow).chain(stops).collect()
+        let (model, controls) = (self.model(), point.controls());
+        let stops = model.travel().departures(&controls);
+        let data = model.beyond_data(&flow, &controls);
+        model.validity().departures(&flow).chain(stops).chain(data).collect()
     }
 
     /// Limits that a point within them rests on, after those that it is beyond.

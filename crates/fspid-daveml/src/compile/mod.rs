@@ -6,6 +6,7 @@ mod numbers;
 mod order;
 mod shots;
 mod tables;
+mod units;
 mod variables;
 
 use crate::MAX_VARIABLES;

@@ -1,6 +1,7 @@
 //! Check cases with their variables found.
 
 use crate::compile::names::Names;
+use crate::compile::units;
 use crate::compile::variables::{Definition, Kind};
 use crate::document::{Document, Shot, Signal, Variable};
 use crate::finding::Findings;
@@ -109,9 +110,8 @@ fn resolved(
 }
 
 fn same_units(signal: &Signal, variable: &Variable, findings: &mut Findings) {
-    if !signal.units.is_empty() && signal.units != variable.units {
+    if !units::agree(&signal.units, &variable.units) {
         let message = format!("a check case in {}", signal.units);
-        let expected = format!("{}, the units of the variable", variable.units);
-        findings.problem(signal.origin, &signal.variable, message, expected);
+        findings.problem(signal.origin, &signal.variable, message, units::of_variable(variable));
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::MAX_AXES;
 use crate::compile::names::Names;
+use crate::compile::units;
 use crate::document::{
     Breakpoints, Document, Extrapolate, FunctionInput, GridTable, TableFunction,
 };
@@ -26,6 +27,7 @@ pub(super) fn resolve(
         return None;
     }
     right_size(table, &breakpoints, findings);
+    units_of_parts(function, (table, &breakpoints), (document, names), findings);
     let pairs = function.inputs.iter().zip(&breakpoints);
     let axes: Vec<_> = pairs.map(|(input, points)| axis(input, points, names, findings)).collect();
     let axes = axes.into_iter().collect::<Option<Vec<_>>>()?;
@@ -85,6 +87,28 @@ fn right_size(table: &GridTable, breakpoints: &[&Breakpoints], findings: &mut Fi
         };
         let message = format!("the number of values is {}", table.values.len());
         findings.problem(table.origin, &table.id, message, expected);
+    }
+}
+
+/// Breakpoints and values are in the units of the variables that they stand for: nothing is converted.
+fn units_of_parts(
+    function: &TableFunction,
+    (table, breakpoints): (&GridTable, &[&Breakpoints]),
+    (document, names): (&Document, &Names<'_>),
+    findings: &mut Findings,
+) {
+    let axes = function.inputs.iter().map(|input| &input.variable).zip(breakpoints);
+    let axes = axes.map(|(mention, set)| (mention, "breakpoints are", &set.id, &set.units));
+    let values = [(&function.output, "table is", &table.id, &table.units)];
+    for (mention, what, id, found) in axes.chain(values) {
+        // An identifier that is unknown is told elsewhere.
+        let slot = names.variables.get(mention.id.as_str());
+        let Some(variable) = slot.and_then(|&slot| document.variables.get(slot)) else { continue };
+        if !units::agree(found, &variable.units) {
+            let message = format!("its {what} in {found} (`{id}`)");
+            let expected = units::of_variable(variable);
+            findings.problem(mention.origin, &mention.id, message, expected);
+        }
     }
 }
 

@@ -72,6 +72,28 @@ pub enum FlightError {
         /// Units that are known for it, with commas.
         known: String,
     },
+    /// A coefficient that is no straight line over the rate of the angle of attack.
+    #[error(
+        "`{name}` is not linear in `angleOfAttackRate`: at {rate_rad_s} rad/s it is {found:.6}, where the straight line through rest and 1 rad/s has {expected:.6}; only a linear part can be flown"
+    )]
+    NotLinear {
+        /// Name of the output.
+        name: &'static str,
+        /// At which rate.
+        rate_rad_s: f64,
+        /// What it is there.
+        found: f64,
+        /// What the line has there.
+        expected: f64,
+    },
+    /// A coefficient whose slope over the rate of the angle of attack depends on the controls.
+    #[error(
+        "what `angleOfAttackRate` adds to `{name}` depends on a control surface or the throttle; it may depend on everything else that a flight has"
+    )]
+    RateByControl {
+        /// Name of the output.
+        name: &'static str,
+    },
     /// More inputs or outputs than are wired.
     #[error("{found} inputs or outputs; allowed are {allowed}")]
     TooMany {

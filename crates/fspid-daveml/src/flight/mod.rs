@@ -8,10 +8,13 @@ mod error;
 mod law;
 mod port;
 mod quantity;
+mod rate;
+mod watch;
 
 use fspid_aircraft::aerodynamics::derivatives::Geometry;
 use fspid_aircraft::{
-    Controls, Flow, ForceModel, Gearing, Loads, Quantity as Limit, Range, Travel, Validity, Vector3,
+    Controls, Departure, Flow, ForceModel, Gearing, Loads, Quantity as Limit, Range, TableInput,
+    Travel, Validity, Vector3,
 };
 
 pub use body::Body;
@@ -21,6 +24,7 @@ pub use law::{Control, ControlLaw, Heard, Wanted};
 use crate::model::Model;
 use port::{Answers, Wiring};
 use quantity::{Quantities, Quantity};
+use watch::Watch;
 
 /// Forces and moments from tables.
 #[derive(Clone, Debug)]
@@ -52,6 +56,8 @@ struct Wired<const N: usize> {
     model: Model,
     inputs: Wiring,
     answers: Answers<N>,
+    /// What enters its tables and is not in the box of a flight.
+    watched: Watch,
 }
 
 /// Along which axes a model has the coefficients of force.
@@ -101,7 +107,7 @@ impl TableForces {
     ///
     /// # Errors
     /// An input that a flight does not have and that has no initial value; an output that is missing; units that are not
-    /// known; too many inputs or outputs.
+    /// known; too many inputs or outputs; coefficients that are not linear in the rate of the angle of attack.
     pub fn new(
         aerodynamics: Model,
         engine: Option<Model>,
@@ -113,27 +119,57 @@ impl TableForces {
         let chord_m = length(&aerodynamics, CHORD, &[pitch])?;
         let axes = ForceAxes::of(&aerodynamics);
         let mut validity = Validity::EVERYWHERE;
-        for model in core::iter::once(&aerodynamics).chain(&engine) {
-            narrow(&mut validity, model)?;
-        }
+        narrow(&mut validity, &aerodynamics)?;
         let by_alpha_rate = aerodynamics
             .inputs()
             .any(|port| Quantity::named(&port.name) == Some(Quantity::AlphaRate));
-        Ok(Self {
-            by_alpha_rate,
-            aerodynamics: Wired::new(aerodynamics, axes.coefficients())?,
-            axes,
-            engine: engine.map(|engine| Wired::new(engine, &THRUST)).transpose()?,
-            reference: Geometry { area_m2, span_m, chord_m },
-            setting,
-            validity,
-        })
+        let aerodynamics = Wired::new(aerodynamics, axes.coefficients())?;
+        if by_alpha_rate {
+            rate::linear(&aerodynamics, axes.coefficients(), (&validity, &setting.travel))?;
+        }
+        let reference = Geometry { area_m2, span_m, chord_m };
+        let alone =
+            Self { aerodynamics, by_alpha_rate, axes, engine: None, reference, setting, validity };
+        match engine {
+            Some(engine) => alone.with_engine(engine),
+            None => Ok(alone),
+        }
+    }
+
+    /// The same with an engine.
+    ///
+    /// # Errors
+    /// Those of an engine in [`TableForces::new`].
+    pub fn with_engine(mut self, engine: Model) -> Result<Self, FlightError> {
+        narrow(&mut self.validity, &engine)?;
+        self.engine = Some(Wired::new(engine, &THRUST)?);
+        Ok(self)
+    }
+
+    /// Sentences about what a flight leaves as the file of the aerodynamics has it: inputs that it does not know.
+    #[must_use]
+    pub fn held_inputs(&self) -> Vec<String> {
+        port::held(&self.aerodynamics.model, false)
+    }
+
+    /// The same of the engine's file.
+    #[must_use]
+    pub fn held_inputs_of_the_engine(&self) -> Vec<String> {
+        self.engine.iter().flat_map(|engine| port::held(&engine.model, true)).collect()
     }
 
     /// Area, span and chord that make forces and moments of coefficients.
     #[must_use]
     pub fn geometry(&self) -> Geometry {
         self.reference
+    }
+
+    /// What enters tables beside the quantities of the box: controls, rates and what is calculated, each with the range in
+    /// which its tables have values, in the unit of its file.
+    #[must_use]
+    pub fn table_inputs(&self) -> Vec<(TableInput, Range)> {
+        let of_the_engine = self.engine.iter().flat_map(|engine| engine.watched.ranges());
+        self.aerodynamics.watched.ranges().chain(of_the_engine).collect()
     }
 
     /// Loads of the air about the moment reference centre.
@@ -179,7 +215,12 @@ impl<const N: usize> Wired<N> {
     fn new(model: Model, outputs: &[&'static str; N]) -> Result<Self, FlightError> {
         let inputs = Wiring::of(&model)?;
         let answers = Answers::of(&model, outputs)?;
-        Ok(Self { model, inputs, answers })
+        let watched = Watch::of(&model);
+        Ok(Self { model, inputs, answers, watched })
+    }
+
+    fn beyond_data(&self, quantities: &Quantities) -> Option<Departure> {
+        self.watched.departure(&self.model, &self.inputs, quantities)
     }
 
     fn answer(&self, quantities: &Quantities) -> [f64; N] {
@@ -197,8 +238,8 @@ impl ForceModel for TableForces {
         self.about_centre_of_mass(air.plus(self.thrust(&quantities)))
     }
 
-    /// Loads at 1 rad/s less those at rest, with the surfaces at 0: of models that are linear in `angleOfAttackRate`, none
-    /// of whose surfaces is a factor of it.
+    /// Loads at 1 rad/s less those at rest, with the surfaces at 0: models are linear in `angleOfAttackRate`, and none of
+    /// their surfaces is a factor of it, or they were refused.
     fn loads_per_alpha_rate(&self, flow: &Flow) -> Loads {
         if !self.by_alpha_rate {
             return Loads::default();
@@ -226,6 +267,13 @@ impl ForceModel for TableForces {
 
     fn travel(&self) -> &Travel {
         &self.setting.travel
+    }
+
+    fn beyond_data(&self, flow: &Flow, controls: &Controls) -> Option<Departure> {
+        let quantities = self.quantities(flow, controls);
+        let of_the_engine =
+            || self.engine.as_ref().and_then(|engine| engine.beyond_data(&quantities));
+        self.aerodynamics.beyond_data(&quantities).or_else(of_the_engine)
     }
 }
 

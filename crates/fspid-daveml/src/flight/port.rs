@@ -3,6 +3,7 @@
 use crate::flight::error::FlightError;
 use crate::flight::quantity::{Quantities, Quantity, output_factor};
 use crate::model::{Model, Port};
+use fspid_diagnostics::known_words;
 
 /// Most inputs, and most outputs, of a model that flies.
 pub(super) const ROOM: usize = 64;
@@ -27,7 +28,12 @@ impl Wiring {
         Ok(Self(wires))
     }
 
-    fn inputs(&self, quantities: &Quantities) -> [f64; ROOM] {
+    /// How many inputs there are.
+    pub(super) fn count(&self) -> usize {
+        self.0.len()
+    }
+
+    pub(super) fn inputs(&self, quantities: &Quantities) -> [f64; ROOM] {
         let mut inputs = [0.0; ROOM];
         for (input, wire) in inputs.iter_mut().zip(&self.0) {
             *input = match *wire {
@@ -46,6 +52,28 @@ fn wire(port: &Port) -> Result<Wire, FlightError> {
         (None, None) => {
             Err(FlightError::Input { name: port.name.clone(), known: Quantity::names() })
         }
+    }
+}
+
+/// Sentences about inputs that a flight leaves at the value of their file: those that it does not have, with what may be
+/// meant, and of an engine the rate of the angle of attack, by which only the loads of the air may go.
+pub(super) fn held(model: &Model, is_engine: bool) -> Vec<String> {
+    model.inputs().filter_map(|port| held_input(port, is_engine)).collect()
+}
+
+fn held_input(port: &Port, is_engine: bool) -> Option<String> {
+    let Port { name, units, initial, .. } = port;
+    let unit = if units == "nd" { String::new() } else { format!(" {units}") };
+    match Quantity::named(name) {
+        None => Some(format!(
+            "a flight has no `{name}`, which stays at its initial value, {:?}{unit}{}",
+            (*initial)?,
+            known_words(name, &Quantity::all_names())
+        )),
+        Some(Quantity::AlphaRate) if is_engine => Some(format!(
+            "`{name}` stays at 0{unit} for the engine: only loads of the air go by it"
+        )),
+        Some(_) => None,
     }
 }
 

@@ -87,9 +87,14 @@ impl Quantity {
         found.map(|&(_, quantity, _)| quantity)
     }
 
+    /// All names, in the order of the list.
+    pub(super) fn all_names() -> [&'static str; QUANTITIES.len()] {
+        QUANTITIES.map(|(name, ..)| name)
+    }
+
     /// All names, with commas.
     pub(super) fn names() -> String {
-        QUANTITIES.map(|(name, ..)| name).join(", ")
+        Self::all_names().join(", ")
     }
 
     /// SI units in one unit of a variable.
@@ -150,10 +155,20 @@ impl Quantities {
         ])
     }
 
+    /// Values in the order of the list.
+    pub(super) const fn new(values: [f64; QUANTITIES.len()]) -> Self {
+        Self(values)
+    }
+
     /// The same with the angle of attack changing at a rate; it rests otherwise.
-    pub(super) fn with_alpha_rate(mut self, alpha_rate_rad_s: f64) -> Self {
-        if let Some(rate) = self.0.get_mut(Quantity::AlphaRate as usize) {
-            *rate = alpha_rate_rad_s;
+    pub(super) fn with_alpha_rate(self, alpha_rate_rad_s: f64) -> Self {
+        self.with(Quantity::AlphaRate, alpha_rate_rad_s)
+    }
+
+    /// The same with another value of one quantity.
+    pub(super) fn with(mut self, quantity: Quantity, value: f64) -> Self {
+        if let Some(place) = self.0.get_mut(quantity as usize) {
+            *place = value;
         }
         self
     }

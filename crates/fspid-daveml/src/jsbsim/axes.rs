@@ -21,7 +21,7 @@ const WIND: [&str; 3] = ["DRAG", "SIDE", "LIFT"];
 const BODY: [&str; 3] = ["X", "Y", "Z"];
 const MOMENTS: [&str; 3] = ["ROLL", "PITCH", "YAW"];
 
-/// Inputs that the tables bound.
+/// What the box of a flight has.
 const BOXED: [&str; 4] = [ALPHA, BETA, MACH, ALTITUDE];
 
 /// A function of the file.
@@ -53,9 +53,21 @@ pub(super) fn read(
     let mut document = builder.document;
     // What is too large is told when the model is compiled.
     if document.tables.len() <= MAX_VARIABLES {
-        ends::widen(&mut document, &BOXED, findings);
+        let variables = entering(&document);
+        ends::widen(&mut document, &variables, findings);
     }
     document
+}
+
+/// Every variable that enters a table, those of the box first: the ends of their tables bound a flight.
+fn entering(document: &Document) -> Vec<String> {
+    let mut variables = BOXED.map(str::to_owned).to_vec();
+    for input in document.functions.iter().flat_map(|function| &function.inputs) {
+        if !variables.contains(&input.variable.id) {
+            variables.push(input.variable.id.clone());
+        }
+    }
+    variables
 }
 
 /// Every function, with those that it names.

@@ -8,7 +8,7 @@ use crate::document::{Breakpoints, Document, GridTable};
 use crate::finding::{Findings, Origin};
 
 /// Continues tables of two lines over the box of the others that the same variable enters.
-pub(super) fn widen(document: &mut Document, variables: &[&str], findings: &mut Findings) {
+pub(super) fn widen(document: &mut Document, variables: &[String], findings: &mut Findings) {
     for variable in variables {
         let Some((min, max)) = box_of_others(document, variable) else { continue };
         let mut continued = 0;

@@ -64,7 +64,11 @@ impl Model {
         self.answer(inputs, slots.get(..expected).unwrap_or_default(), variables)
     }
 
-    fn answer<N: Number>(
+    /// Answers the variables in these slots.
+    ///
+    /// # Errors
+    /// Slices of other lengths than the model has inputs, and than there are slots.
+    pub(crate) fn answer<N: Number>(
         &self,
         inputs: &[N],
         slots: &[usize],

@@ -176,6 +176,39 @@ impl Model {
         (!computed && !self.inputs.contains(&slot)).then(|| self.start.get(slot).copied()).flatten()
     }
 
+    /// For each variable whether it changes with an input for which `moves` holds, by itself or by a calculation or table.
+    pub(crate) fn moved_by(&self, moves: impl Fn(&Port) -> bool) -> Vec<bool> {
+        let mut moved = vec![false; self.variables.len()];
+        for &slot in &self.inputs {
+            let port = self.variables.get(slot);
+            if let (Some(place), Some(port)) = (moved.get_mut(slot), port) {
+                *place = moves(port);
+            }
+        }
+        // In the order of computing what a step needs is known before it.
+        for step in &self.steps {
+            let is_moved = self.needs(step).iter().any(|&slot| moved.get(slot) == Some(&true));
+            if let (true, Some(place)) = (is_moved, step.slot().and_then(|it| moved.get_mut(it))) {
+                *place = true;
+            }
+        }
+        moved
+    }
+
+    /// Variables that a step makes its own of.
+    fn needs(&self, step: &Step) -> Vec<usize> {
+        let code = match step {
+            Step::Formula { range, .. } => self.code.get(range.clone()).unwrap_or_default(),
+            _ => &[],
+        };
+        let named = code.iter().filter_map(|operation| match operation {
+            Operation::Variable(slot) => Some(*slot),
+            _ => None,
+        });
+        let axes = self.axes_of(step).into_iter().filter_map(|axis| self.axes.get(axis));
+        named.chain(axes.map(|axis| axis.slot)).collect()
+    }
+
     /// Values of the inputs that the file gives, 0 for the others.
     #[must_use]
     pub fn initial_inputs(&self) -> Vec<f64> {

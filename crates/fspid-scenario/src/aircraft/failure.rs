@@ -148,6 +148,7 @@ fn left_over(
 /// A limit in the units of the answer: `angle of attack 12.4 deg; allowed is -8 to 10 deg`.
 pub fn departure(limit: &Departure, units: Units) -> String {
     let kind = match limit.quantity {
+        Quantity::Table(_) => return of_a_table(limit),
         Quantity::Airspeed => Kind::Speed,
         Quantity::Altitude => Kind::Length,
         Quantity::Mach | Quantity::Throttle => Kind::Plain,
@@ -158,6 +159,15 @@ pub fn departure(limit: &Departure, units: Units) -> String {
     let min = short(units.told(kind, limit.allowed.min), 6);
     let max = quantity(units, kind, limit.allowed.max);
     format!("{name} {value}; allowed is {min} to {max}")
+}
+
+/// A limit of a table, in the unit of its file.
+fn of_a_table(limit: &Departure) -> String {
+    let [value, min, max] =
+        [limit.value, limit.allowed.min, limit.allowed.max].map(|value| short(value, 6));
+    let (name, unit) = (limit.quantity.name(), limit.quantity.unit());
+    let space = if unit.is_empty() { "" } else { " " };
+    format!("{name} {value}{space}{unit}; allowed is {min} to {max}{space}{unit}")
 }
 
 /// A value in SI with its unit.

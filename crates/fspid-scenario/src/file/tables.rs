@@ -52,13 +52,31 @@ pub(super) fn tables(
         (aerodynamics?, propulsion.map_or(Some(None), |it| it.map(Some))?),
         centre_of_mass_m,
     )?;
+    let held = held(report, part, &forces);
     Some(ForceData {
         mass: body?.mass,
         geometry: forces.geometry(),
         gravity_m_s2: quantity(section.get(keys::BODY)?, keys::GRAVITY)?,
         air: section.get(keys::AIR).and_then(air),
+        table_inputs: forces.table_inputs(),
+        held,
         forces: Arc::new(forces),
     })
+}
+
+/// What a flight leaves as a file has it, as warnings too: a misspelled input flies, and flies another aircraft.
+fn held(report: &mut Report, part: &Section, forces: &TableForces) -> Vec<String> {
+    let of = [
+        (keys::AERODYNAMICS, forces.held_inputs()),
+        (keys::PROPULSION, forces.held_inputs_of_the_engine()),
+    ];
+    let told = of.into_iter().flat_map(|(key, sentences)| {
+        let path = part.path(key);
+        sentences.into_iter().map(move |sentence| format!("{path}: {sentence}"))
+    });
+    let told: Vec<String> = told.collect();
+    told.iter().for_each(|sentence| report.warn(sentence.clone()));
+    told
 }
 
 fn air(section: &Section) -> Option<Air> {
@@ -139,13 +157,12 @@ fn forces(
         gearing: section.get(keys::ENGINE).map_or(Some(Gearing::default()), gearing)?,
         travel: surfaces(section.get(keys::TRAVEL)?)?,
     };
-    let alone = TableForces::new(aerodynamics.clone(), None, setting);
+    let alone = TableForces::new(aerodynamics, None, setting);
     let alone = fitting(report, (section, keys::AERODYNAMICS), alone)?;
-    let Some(propulsion) = propulsion else {
-        return Some(alone);
-    };
-    let both = TableForces::new(aerodynamics, Some(propulsion), setting);
-    fitting(report, (section, keys::PROPULSION), both)
+    match propulsion {
+        Some(engine) => fitting(report, (section, keys::PROPULSION), alone.with_engine(engine)),
+        None => Some(alone),
+    }
 }
 
 /// Propulsion and what its tables do not say come together, or neither does.

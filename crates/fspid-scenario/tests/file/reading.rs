@@ -24,6 +24,25 @@ fn the_first_line_of_the_starter_names_its_schema_to_an_editor() {
     assert!(file::starter().starts_with("#:schema "));
 }
 
+/// Any roughness was taken: 7 m blew 22 times as hard at height as was asked for, from the other side, and `check` was
+/// content; at 20 ft the wind was infinite.
+#[test]
+fn a_wind_over_ground_rougher_than_the_layer_is_deep_is_refused() {
+    let rough = |roughness_m: f64| {
+        let set = [format!("wind.roughness_m={roughness_m:?}")];
+        let name = "scenarios/gallery/wind-shear.toml";
+        file::parse(&text(name), name, None, &set)
+    };
+    for allowed_m in [0.045_72, 0.6096, 0.9144] {
+        assert!(rough(allowed_m).is_ok(), "{allowed_m}");
+    }
+    for refused_m in [0.92, 3.0, 6.096, 7.0, 0.0, -1.0, f64::NAN] {
+        let told = rough(refused_m).expect_err("refused").to_string();
+        assert!(told.contains("wind.roughness_m"), "{told}");
+        assert!(refused_m.is_nan() || told.contains("allowed: above 0, up to 0.9144 m"), "{told}");
+    }
+}
+
 #[test]
 fn every_commented_line_of_the_starter_may_be_uncommented() {
     for line in file::starter().lines() {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use fspid_aircraft::aerodynamics::derivatives::DerivativeModel;
 use fspid_aircraft::aerodynamics::varied::VariedModel;
-use fspid_aircraft::{Controls, Flow, ForceModel, Gearing, Loads, Travel, Validity};
+use fspid_aircraft::{Controls, Departure, Flow, ForceModel, Gearing, Loads, Travel, Validity};
 
 /// A model of the forces on an aircraft.
 ///
@@ -116,5 +116,9 @@ impl ForceModel for Forces {
 
     fn travel(&self) -> &Travel {
         self.model().travel()
+    }
+
+    fn beyond_data(&self, flow: &Flow, controls: &Controls) -> Option<Departure> {
+        self.model().beyond_data(flow, controls)
     }
 }

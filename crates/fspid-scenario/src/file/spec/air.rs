@@ -5,7 +5,7 @@ use crate::keyed::{
     FILE_PATH, Key, KeyRow, Range, TEXT, Table, choosing, defaulted, finite, not_negative, number,
     numbers, of_kinds, one_of, optional, plain, positive, required, variant, whole, word,
 };
-use fspid_sim::air::{Follows, Severity, Specification, WindTable};
+use fspid_sim::air::{Follows, LogShear, Severity, Specification, WindTable};
 
 words! {
     /// Winds.
@@ -73,8 +73,12 @@ pub(crate) const W20: [Key<f64>; 2] = [
     optional("w20_m_s", positive("m/s"), "Speed 20 ft above the ground."),
     optional("w20_kt", positive("kt"), "Speed 20 ft above the ground."),
 ];
-pub(crate) const ROUGHNESS_M: Key<f64> =
-    defaulted("roughness_m", positive("m"), 0.045_72, "Roughness length; 0.15 ft for approaches.");
+pub(crate) const ROUGHNESS_M: Key<f64> = defaulted(
+    "roughness_m",
+    number("m", Range::PositiveUpTo(LogShear::MOST_ROUGHNESS_M)),
+    0.045_72,
+    "Roughness length; 0.15 ft for approaches, 2 ft otherwise, at most the 3 ft at which the layer begins.",
+);
 pub(crate) const OUTFLOW_M_S: Key<f64> =
     required("outflow_m_s", positive("m/s"), "Largest outflow.");
 pub(crate) const RADIUS_M: Key<f64> =

@@ -177,3 +177,36 @@ fn a_centre_of_gravity_of_a_scenario_places_the_body_of_tables() {
     );
     assert!((known - file).abs() < 1e-12 && (known - elevator(&[])).abs() > 1e-4);
 }
+
+/// A flight that left a table by anything but the quantities of its box was "settled".
+#[test]
+fn a_flight_that_reads_a_table_beyond_its_data_has_left_the_range() {
+    let table = "<variableDef name=\"copy\" varID=\"a2\" units=\"deg\"><calculation><math><apply><times/><cn>1</cn>\
+                 <ci>alpha</ci></apply></math></calculation></variableDef>\
+                 <variableDef name=\"cma\" varID=\"CmA\" units=\"nd\"/>\
+                 <breakpointDef bpID=\"K\" units=\"deg\"><bpVals>0, 2.5</bpVals></breakpointDef>";
+    let function = "<function name=\"cm\"><independentVarRef varID=\"a2\"/><dependentVarRef varID=\"CmA\"/><functionDefn>\
+                    <griddedTableDef><breakpointRefs><bpRef bpID=\"K\"/></breakpointRefs><dataTable>0, 0</dataTable>\
+                    </griddedTableDef></functionDefn></function></DAVEfunc>";
+    let text = AERO.replacen("<cn>0.02</cn>", "<cn>0.02</cn><ci>CmA</ci>", 1);
+    let text = text.replacen("  <breakpointDef", &format!("  {table}\n  <breakpointDef"), 1);
+    let folder = hangar();
+    put(&folder, "aero.dml", &text.replacen("</DAVEfunc>", function, 1));
+    let steep = SCENARIO.replace("amplitude_deg = 1.0", "amplitude_deg = 8.0");
+    let study = parse(&steep, "s.toml", Some(folder.path()), &[]).expect("a study");
+    let flight = fspid_sim::simulate(&study.scenario).expect("a flight");
+    let exit = flight.traces[0].exit.expect("the table is left");
+    assert!(exit.departure.to_string().starts_with("table input a2 "), "{}", exit.departure);
+    assert!(exit.departure.value > 2.5);
+}
+
+#[test]
+fn an_input_that_no_flight_has_is_a_warning_of_every_scenario_that_flies_it() {
+    let folder = hangar();
+    let study = parse(SCENARIO, "s.toml", Some(folder.path()), &[]).expect("a study");
+    let [warning] = study.warnings.as_slice() else { panic!("{:?}", study.warnings) };
+    let held = "tables.aerodynamics: a flight has no `gearPosition`, which stays at its initial value, 0.0; known are";
+    assert!(warning.starts_with(held), "{warning}");
+    let data = read(&folder, AIRCRAFT).expect("an aircraft");
+    assert_eq!(forces(&data).held.len(), 1);
+}

@@ -34,6 +34,9 @@ impl LogShear {
     pub const CATEGORY_C_ROUGHNESS_M: f64 = 0.15 * FOOT_M;
     /// Roughness length for the other flight phases: 2 ft.
     pub const OTHER_ROUGHNESS_M: f64 = 2.0 * FOOT_M;
+    /// Largest roughness length that a file may ask for: 3 ft, where the layer begins. The law has no wind at its roughness
+    /// length and blows backwards below, and towards 20 ft it has no bound.
+    pub const MOST_ROUGHNESS_M: f64 = 0.9144;
 
     /// Wind speed at a height above the ground, m/s.
     #[must_use]

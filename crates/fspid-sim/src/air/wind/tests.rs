@@ -128,6 +128,16 @@ fn a_logarithmic_wind_has_the_ratios_of_the_specification() {
 }
 
 #[test]
+fn a_wind_over_the_roughest_ground_blows_the_way_it_is_said_to_everywhere() {
+    let roughness_m = LogShear::MOST_ROUGHNESS_M;
+    let wind = LogShear { w20_m_s: 5.0, from_rad: 0.0, roughness_m };
+    for height_m in [0.0, 0.5, 1.0, 3.0, 6.096, 50.0, 400.0] {
+        let speed_m_s = wind.speed_m_s(height_m);
+        assert!((0.0..20.0).contains(&speed_m_s), "{height_m} m: {speed_m_s} m/s");
+    }
+}
+
+#[test]
 fn a_wind_from_the_east_moves_the_air_west() {
     let from_rad = std::f64::consts::FRAC_PI_2;
     let wind = LogShear { w20_m_s: 10.0, from_rad, roughness_m: 0.05 };

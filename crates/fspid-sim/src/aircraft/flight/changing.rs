@@ -42,17 +42,17 @@ impl AircraftFlight {
         Some(Shown::of(varying.model, varying.changing, at, [mass_kg, body.burnt_kg]))
     }
 
-    /// The first limit that the flow leaves, or an empty tank.
+    /// The first limit that the flow or what is read off tables leaves, or an empty tank.
     pub(super) fn departure(
         &self,
         body: &Moving,
-        flow: &Flow,
+        (flow, controls): (&Flow, &Controls),
     ) -> Option<fspid_aircraft::Departure> {
         let Some(varying) = self.varying() else {
-            return self.aircraft().model().validity().departure(flow);
+            return self.aircraft().model().departure(flow, controls);
         };
         let now = varying.at(self, body.time_s, body.burnt_kg);
-        let left = now.model().validity().departure(flow);
+        let left = now.model().departure(flow, controls);
         let dry = || varying.changing.fuel().and_then(|fuel| fuel.departure(body.burnt_kg));
         left.or_else(dry)
     }

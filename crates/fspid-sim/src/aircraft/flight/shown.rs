@@ -62,7 +62,7 @@ impl AircraftFlight {
             air_rad_s: air.gust_rates_rad_s.to_array(),
             energy_height_m: self.energy_height_m(flow),
             apparent_vertical_rad: apparent_vertical_rad(state, attitude.psi_rad, felt),
-            departure: self.departure(&motion.body, flow),
+            departure: self.departure(&motion.body, (flow, controls)),
             shown: self.shown(&motion.body),
         }
     }
