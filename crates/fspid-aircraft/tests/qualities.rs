@@ -205,6 +205,35 @@ fn motions_that_are_no_modes_say_why() {
     assert_eq!(Phugoid::of(&small), Err(Absent::OtherModel { found: 1 }));
 }
 
+/// Nothing was said of one that short period and phugoid share, and only a reason without a level of a fast one.
+#[test]
+fn a_divergence_is_judged_whichever_half_of_the_motion_it_belongs_to() {
+    // (s + 1.5) (s - 0.25) (s² + 0.4 s + 0.13)
+    let shared = model(&[-1.0, -0.5], &[1.0, 1.65, 0.255, 0.0125, -0.04875], 300.0);
+    let fast = model(&[-1.0, -0.5], &[1.0, 1.0, -0.75, 0.0], 300.0);
+    // (s + 2) (s - 0.5) (s² + 0.02 s + 0.01)
+    let with_phugoid = model(&[-1.0, -0.5], &[1.0, 1.52, -0.96, -0.005, -0.01], 300.0);
+    // (s² + 1.2 s + 1.5) (s + 0.1) (s - 0.05): a slow one, told once.
+    let slow = model(&[-1.0, -0.5], &[1.0, 1.25, 1.555, 0.069, -0.0075], 300.0);
+    for (model, real_rad_s, level) in [
+        (shared, 0.25, Level::Worse),
+        (fast, 0.5, Level::Worse),
+        (with_phugoid, 0.5, Level::Worse),
+        (slow, 0.05, Level::Three),
+    ] {
+        let qualities = Qualities::of(&model, Category::B);
+        let found = qualities.divergence.expect("it diverges");
+        assert!((found.real_rad_s - real_rad_s).abs() < 1e-9, "{found:?}");
+        assert!((found.doubles_s - core::f64::consts::LN_2 / real_rad_s).abs() < 1e-6);
+        let mut told = qualities.judgements();
+        let of_speed = told.find(|level| level.requirement.title == "speed stability");
+        assert_eq!(of_speed.map(|it| it.level), Some(level), "{real_rad_s}");
+        assert!(told.all(|level| level.requirement.title != "speed stability"), "told twice");
+    }
+    assert_eq!(Qualities::of(&b747(), Category::B).divergence, None);
+    assert_eq!(Qualities::of(&navion(), Category::B).divergence, None);
+}
+
 #[test]
 fn two_real_fast_poles_are_a_short_period_of_high_damping() {
     let heavy = model(&[1.0, 0.8], &[1.0, 5.0, 4.0, 0.0], 300.0);

@@ -3,6 +3,7 @@
 mod analysis;
 mod certify;
 mod designs;
+mod envelope;
 mod fly;
 mod flying;
 mod fuzzy_system;

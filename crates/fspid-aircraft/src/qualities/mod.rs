@@ -7,6 +7,7 @@ mod absent;
 mod bandwidth;
 mod c_star;
 mod delay;
+mod divergence;
 mod dropback;
 mod lateral;
 mod level;
@@ -18,6 +19,7 @@ pub use absent::Absent;
 pub use bandwidth::{Bandwidth, BandwidthLimit, bandwidth_level};
 pub use c_star::{CROSSOVER_SPEED_M_S, c_star};
 pub use delay::EquivalentDelay;
+pub use divergence::Divergence;
 pub use dropback::Dropback;
 pub use lateral::lateral_level;
 pub use level::{Category, Class, Confidence, Judgement, Level, Requirement};
@@ -69,6 +71,8 @@ pub struct Qualities {
     pub short_period: Result<ShortPeriod, Absent>,
     /// Phugoid.
     pub phugoid: Result<Phugoid, Absent>,
+    /// What runs away without a swing, if anything does.
+    pub divergence: Option<Divergence>,
     /// Bandwidth and phase delay, with servo and dead time.
     pub bandwidth: Result<Bandwidth, Absent>,
     /// Delay of servo and dead time.
@@ -85,6 +89,7 @@ impl Qualities {
             category,
             short_period: ShortPeriod::of(model, category),
             phugoid: Phugoid::of(model),
+            divergence: Divergence::of(model),
             bandwidth: Bandwidth::of(model, category),
             equivalent_delay: EquivalentDelay::of(model),
             dropback: Dropback::of(model),
@@ -96,10 +101,14 @@ impl Qualities {
         let short_period = self.short_period.ok().into_iter();
         let short_period = short_period
             .flat_map(|found| [found.damping_level, found.frequency_level, found.cap_level]);
-        let phugoid = self.phugoid.ok().map(|found| found.level());
+        let divergence = self.divergence.map(|found| found.level);
+        // One requirement is told once, by the worst that it is about.
+        let is_told =
+            |level: &Judgement| divergence.is_some_and(|it| it.requirement == level.requirement);
+        let phugoid = self.phugoid.ok().map(|found| found.level()).filter(|level| !is_told(level));
         let bandwidth = self.bandwidth.ok().and_then(|found| found.level.ok());
         let delay = self.equivalent_delay.ok().map(|found| found.level);
-        short_period.chain(phugoid).chain(bandwidth).chain(delay)
+        short_period.chain(phugoid).chain(divergence).chain(bandwidth).chain(delay)
     }
 
     /// The worst level that was given, if any was.

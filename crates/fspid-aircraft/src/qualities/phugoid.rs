@@ -90,11 +90,16 @@ fn oscillation(mode: &AircraftMode) -> Result<Phugoid, Absent> {
 
 fn creep(mode: &AircraftMode) -> Phugoid {
     let (real_rad_s, growth) = (mode.pole.re, mode.growth());
-    let level = Level::best(|level| match level {
-        0 | 1 => real_rad_s <= 0.0,
-        _ => doubles_after(growth, DIVERGENCE_DOUBLES_S),
-    });
-    Phugoid::Creep { real_rad_s, growth, level: Judgement::new(&SPEED, real_rad_s, level) }
+    let level = Judgement::new(&SPEED, real_rad_s, speed_stability(mode));
+    Phugoid::Creep { real_rad_s, growth, level }
+}
+
+/// What a motion that does not swing is worth.
+pub(super) fn speed_stability(mode: &AircraftMode) -> Level {
+    Level::best(|level| match level {
+        0 | 1 => mode.pole.re <= 0.0,
+        _ => doubles_after(mode.growth(), DIVERGENCE_DOUBLES_S),
+    })
 }
 
 fn doubles_after(growth: Growth, least_s: f64) -> bool {

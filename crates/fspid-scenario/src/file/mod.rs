@@ -58,7 +58,7 @@ pub use crate::requirement::Requirement;
 pub use crate::setting_path::{NewValue, SettingPath};
 pub use aircraft::parse_aircraft_at;
 pub use aircraft::{aircraft, parse_aircraft};
-pub use build::{Airframe, DerivedGains, FlownDerivatives, GainSource, RangeRule};
+pub use build::{Airframe, DerivedGains, FlownDerivatives, GainSource, RangeRule, Schedule};
 pub use changed_text::changed_text;
 pub use extra::Extra;
 pub use fspid_diagnostics::{Problem, Problems, known_words};

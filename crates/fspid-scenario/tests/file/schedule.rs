@@ -53,7 +53,7 @@ fn problems(text: &str, set: &[&str]) -> String {
 /// The factor and pressure of the first controller.
 fn factor(study: &Study) -> (f64, f64) {
     match study.derived_gains.first().expect("it is scheduled").source {
-        GainSource::Schedule { dynamic_pressure_pa, factor } => (factor, dynamic_pressure_pa),
+        GainSource::Schedule { dynamic_pressure_pa, factor, .. } => (factor, dynamic_pressure_pa),
         GainSource::Regulator => panic!("it is a schedule"),
     }
 }

@@ -7,19 +7,22 @@ use fspid_sim::stability::Unstable;
 use fspid_sim::{ControllerLoss, Exit, Outcome, PlantLoss, Timing, Trace};
 
 use super::{
-    Absent, CommandEffort, ErrorIntegrals, Measured, StepMetrics, StepWindow, left_validity, short,
+    Absent, CommandEffort, ErrorIntegrals, Measured, StepMetrics, StepWindow, is_seen_to_stay,
+    left_validity, short,
 };
 use fspid_diagnostics::digits::to_digits;
 
 /// What a flight comes to, in one word.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict {
-    /// Every step of the command was settled.
+    /// Every step of the command was settled, and seen to stay so for a tenth of the time that it took.
     Settled,
     /// Some step was not settled in its window.
     NotSettled {
         /// Length of that window, s.
         window_s: f64,
+        /// From when on it was in its band after all, too late to be seen to stay there, s after the step.
+        since_s: Option<f64>,
     },
     /// There was no step to settle.
     Flown,
@@ -126,7 +129,11 @@ impl fmt::Display for Verdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Settled => f.write_str("settled"),
-            Self::NotSettled { window_s } => write!(f, "not settled within {} s", short(*window_s)),
+            Self::NotSettled { window_s, since_s } => {
+                write!(f, "not settled within {} s", short(*window_s))?;
+                let Some(since_s) = since_s else { return Ok(()) };
+                write!(f, ": in its band after {since_s:.3} s, too late to see it stay")
+            }
             Self::Flown => f.write_str("flown"),
             Self::Diverged { at_s } => write!(f, "diverged at t = {} s", short(*at_s)),
             Self::HitGround { at_s } => write!(f, "hit the ground at t = {} s", short(*at_s)),
@@ -160,6 +167,8 @@ pub struct EdgeMetrics {
     pub from_rad: f64,
     /// Set-point after, rad.
     pub to_rad: f64,
+    /// Time from the step to the last sample before the next one, s.
+    pub window_s: f64,
     /// Measures up to the next step.
     pub step: StepMetrics,
     /// When a disturbance first begins within that time or with the step, s: the measures are those of both.
@@ -290,6 +299,8 @@ fn edge_metrics(
         .zip(ends)
         .map(|(edge, end)| {
             let window = edge.sample..end.min(trace.rows());
+            let last = edge.sample + window.len().saturating_sub(1);
+            let window_s = timing.time_s(last) - timing.time_s(edge.sample);
             let step =
                 match (absence, trace.time_s.get(window.clone()), trace.theta_rad.get(window)) {
                     (None, Some(time_s), Some(response)) => {
@@ -306,7 +317,7 @@ fn edge_metrics(
             };
             let disturbed_from_s = pushes_s.iter().find(within).copied();
             let (from_rad, to_rad) = (edge.from_rad, edge.to_rad);
-            EdgeMetrics { at_s, from_rad, to_rad, step, disturbed_from_s }
+            EdgeMetrics { at_s, from_rad, to_rad, window_s, step, disturbed_from_s }
         })
         .collect()
 }
@@ -318,7 +329,13 @@ fn verdict(edges: &[EdgeMetrics]) -> Verdict {
     edges
         .iter()
         .find_map(|edge| match edge.step.settling_time_s {
-            Err(Absent::NotSettled { window_s }) => Some(Verdict::NotSettled { window_s }),
+            Err(Absent::NotSettled { window_s }) => {
+                Some(Verdict::NotSettled { window_s, since_s: None })
+            }
+            // A swing that goes on is in the band at its last sample by chance.
+            Ok(since_s) if !is_seen_to_stay(since_s, edge.window_s) => {
+                Some(Verdict::NotSettled { window_s: edge.window_s, since_s: Some(since_s) })
+            }
             _ => None,
         })
         .unwrap_or(Verdict::Settled)

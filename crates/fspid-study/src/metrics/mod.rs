@@ -9,6 +9,7 @@ mod step;
 pub use effort::{CommandEffort, ErrorIntegrals, largest_error_rad};
 pub use exit::{LEFT_RANGE, left_validity};
 pub use flight::{EdgeMetrics, FlightMetrics, Verdict};
+pub(crate) use step::is_seen_to_stay;
 pub use step::{StepMetrics, StepWindow};
 
 use fspid_diagnostics::digits::without_zeros;

@@ -14,6 +14,17 @@ const RISEN: f64 = 0.9;
 /// Settled is within 2 % of the step.
 const SETTLING_BAND: f64 = 0.02;
 
+/// Of the time that it took to settle so much has to be flown after it, to call it settled. A choice: what leaves its band more
+/// slowly is a matter of the loop at rest, which is asked for itself.
+const STAYS: f64 = 0.1;
+
+/// Whether a window goes on for long enough after the time that it took to settle, or to recover, to show that it stays.
+pub(crate) fn is_seen_to_stay(settled_s: f64, window_s: f64) -> bool {
+    // Written so that NaN, which no limit allows, is not refused.
+    let ends_early = window_s - settled_s < STAYS * settled_s;
+    !ends_early
+}
+
 /// A response after a step: samples in order of time, from the step to the next.
 #[derive(Clone, Copy, Debug)]
 pub struct StepWindow<'a> {

@@ -129,7 +129,7 @@ mod tests {
                [[disturbance]]\nkind = \"sine\"\nenters_at = \"servo\"\namplitude_deg = 2.0\nfrequency_hz = 2.0\n";
         assert_eq!(
             disturbance_forms(&settings(&text)),
-            ["step (at 5 s)", "pulse (at 10 s, width 0.5 s)", "sine (at 0 s, frequency 2 Hz)"]
+            ["step (at 4 s)", "pulse (at 10 s, width 0.5 s)", "sine (at 0 s, frequency 2 Hz)"]
         );
     }
 }

@@ -83,7 +83,12 @@ fn outcome(verdict: Verdict) -> Value {
     let kind = verdict.kind();
     match verdict {
         Verdict::Settled | Verdict::Flown => json!({ "kind": kind }),
-        Verdict::NotSettled { window_s } => json!({ "kind": kind, "window_s": finite(window_s) }),
+        Verdict::NotSettled { window_s, since_s: None } => {
+            json!({ "kind": kind, "window_s": finite(window_s) })
+        }
+        Verdict::NotSettled { window_s, since_s: Some(since_s) } => {
+            json!({ "kind": kind, "window_s": finite(window_s), "since_s": finite(since_s) })
+        }
         Verdict::Diverged { at_s } | Verdict::HitGround { at_s } => {
             json!({ "kind": kind, "at_s": finite(at_s) })
         }

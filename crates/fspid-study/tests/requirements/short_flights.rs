@@ -2,7 +2,7 @@
 
 use fspid_scenario::file::{self, Study};
 use fspid_study::judgement::NotEvaluated;
-use fspid_study::metrics::Absent;
+use fspid_study::metrics::{Absent, Verdict};
 use fspid_study::simulation::Simulation;
 
 /// A lag that comes to its set-point without overshoot, and settles some 3.9 s after the step.
@@ -77,6 +77,24 @@ fn a_time_to_settle_counts_where_the_flight_goes_on() {
             assert_eq!(is_short, !met, "{duration_s} {most_s}: {:?}", judgement.found);
         }
     }
+}
+
+/// A swing that goes on was "settled", for its last sample lay in the band.
+#[test]
+fn a_step_that_is_not_seen_to_stay_in_its_band_is_not_called_settled() {
+    for (duration_s, settled) in [(4.0, false), (4.25, false), (4.4, true), (10.0, true)] {
+        let found = judged(&[&format!("loop.duration_s={duration_s}")]);
+        let verdict = found.results[0].metrics.verdict;
+        assert_eq!(verdict == Verdict::Settled, settled, "{duration_s}: {verdict}");
+        if !settled {
+            assert!(matches!(verdict, Verdict::NotSettled { since_s: Some(_), .. }), "{verdict:?}");
+            assert!(verdict.to_string().ends_with("s, too late to see it stay"), "{verdict}");
+        }
+    }
+    assert!(matches!(
+        judged(&["loop.duration_s=3.0"]).results[0].metrics.verdict,
+        Verdict::NotSettled { since_s: None, .. }
+    ));
 }
 
 /// At its last sample an error within the band had "recovered in 0 s", and left it again.

@@ -13,7 +13,8 @@ use fspid_study::output;
 /// Trim and linearise an aircraft at every speed and altitude of a grid.
 ///
 /// The summary goes to standard output. --csv has every point, and why one cannot be flown; --svg draws a map of each
-/// quantity. With --scenario, the sampled loop of its controller is judged around the linear model of every point.
+/// quantity. With --scenario, the sampled loop of its controller, with the gains that its schedule makes there, is judged
+/// around the linear model of every point: of the aircraft, loading and air that are asked for, not of the scenario's.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(flatten)]

@@ -3,7 +3,7 @@
 use fspid_core::Gains;
 use fspid_sim::Controller;
 
-use super::schedule::{self, Pressure};
+use super::schedule::{self, Pressure, Schedule};
 use crate::file::spec::controller as keys;
 use crate::file::spec::controller::ControllerKind;
 use crate::file::spec::schedule::SCHEDULE;
@@ -32,6 +32,8 @@ pub enum GainSource {
         dynamic_pressure_pa: f64,
         /// The factor.
         factor: f64,
+        /// What it is at any pressure.
+        schedule: Schedule,
     },
     /// A linear-quadratic regulator of a model and weights.
     Regulator,
@@ -40,7 +42,7 @@ pub enum GainSource {
 impl std::fmt::Display for GainSource {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::Schedule { dynamic_pressure_pa, factor } => write!(
+            Self::Schedule { dynamic_pressure_pa, factor, .. } => write!(
                 f,
                 "those of the file times {factor:.6}: schedule at a dynamic pressure of {dynamic_pressure_pa:.2} Pa"
             ),
@@ -77,12 +79,14 @@ fn source(section: &Section, pressure: Pressure) -> Option<GainSource> {
     if section.variant() == Some(ControllerKind::Lqi) {
         return Some(GainSource::Regulator);
     }
-    section.get(SCHEDULE)?;
+    let part = section.get(SCHEDULE)?;
     // It was sound when the controller was built.
-    let factor = schedule::factor(&mut Report::default(), section, pressure)?;
+    let report = &mut Report::default();
+    let factor = schedule::factor(report, section, pressure)?;
+    let schedule = schedule::schedule(report, part)?;
     match pressure {
         Pressure::OfTrim(dynamic_pressure_pa) => {
-            Some(GainSource::Schedule { dynamic_pressure_pa, factor })
+            Some(GainSource::Schedule { dynamic_pressure_pa, factor, schedule })
         }
         Pressure::Unknown | Pressure::None => None,
     }

@@ -41,6 +41,7 @@ use fspid_sim::{
 };
 pub use range_rule::RangeRule;
 use schedule::Pressure;
+pub use schedule::Schedule;
 use timing::Sampling;
 
 use crate::dispersion::Dispersion;

@@ -33,21 +33,51 @@ impl Pressure {
     }
 }
 
+/// How the gains of a controller follow the dynamic pressure of its trim.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Schedule {
+    /// Dynamic pressure for which the gains are written, Pa.
+    pub written_for_pa: f64,
+    /// Power of the ratio of pressures.
+    pub exponent: f64,
+    /// Ends of the factor.
+    pub limits: [f64; 2],
+}
+
+impl Schedule {
+    /// The factor of all gains at a dynamic pressure.
+    ///
+    /// $$ f = (\bar q / \bar q_0)^n, \quad \bar q = \tfrac12 \rho V^2 $$
+    ///
+    /// The moment of an elevator deflection is $\bar q S \bar c C_{m_{\delta_e}} \delta_e$, so that $n = -1$ keeps the
+    /// moment that an error commands as long as the derivative does not change with speed.
+    #[must_use]
+    pub fn factor(&self, dynamic_pressure_pa: f64) -> f64 {
+        let [least, most] = self.limits;
+        libm::pow(dynamic_pressure_pa / self.written_for_pa, self.exponent).max(least).min(most)
+    }
+}
+
+/// The schedule of a section; `None` where its limits are wrong, which is reported.
+pub(super) fn schedule(report: &mut Report, part: &Section) -> Option<Schedule> {
+    let (least, most) = limits(report, part)?;
+    Some(Schedule {
+        written_for_pa: part.get(keys::DYNAMIC_PRESSURE_PA)?,
+        exponent: part.get(keys::EXPONENT)?,
+        limits: [least, most],
+    })
+}
+
 /// The factor of all gains, 1 without a schedule; `None` where it is wrong, which is reported.
-///
-/// $$ f = (\bar q / \bar q_0)^n, \quad \bar q = \tfrac12 \rho V^2 $$
-///
-/// The moment of an elevator deflection is $\bar q S \bar c C_{m_{\delta_e}} \delta_e$, so that $n = -1$ keeps the
-/// moment that an error commands as long as the derivative does not change with speed.
 pub(super) fn factor(report: &mut Report, section: &Section, pressure: Pressure) -> Option<f64> {
     let Some(part) = section.get(keys::SCHEDULE) else {
         return Some(1.0);
     };
-    let (least, most) = limits(report, part)?;
+    let schedule = schedule(report, part)?;
     let pressure_pa = match pressure {
         Pressure::OfTrim(pressure_pa) => pressure_pa,
         // Whatever it is: what else is wrong with the controller is still found.
-        Pressure::Unknown => part.get(keys::DYNAMIC_PRESSURE_PA)?,
+        Pressure::Unknown => schedule.written_for_pa,
         Pressure::None => {
             let message = "a `plant` has no dynamic pressure to schedule by";
             let allowed = "an `aircraft` in place of the plant, or no schedule";
@@ -55,8 +85,7 @@ pub(super) fn factor(report: &mut Report, section: &Section, pressure: Pressure)
             return None;
         }
     };
-    let ratio = pressure_pa / part.get(keys::DYNAMIC_PRESSURE_PA)?;
-    let factor = libm::pow(ratio, part.get(keys::EXPONENT)?).max(least).min(most);
+    let factor = schedule.factor(pressure_pa);
     // Written so that NaN fails.
     if !(factor > 0.0 && factor.is_finite()) {
         let message = format!("the gains would be multiplied by {factor:?}");

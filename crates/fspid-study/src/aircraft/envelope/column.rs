@@ -2,7 +2,7 @@
 
 use fspid_aircraft::ModeName;
 
-use super::point::{Held, Point, pair, short_period};
+use super::point::{Held, Point, doubles_s, pair, short_period};
 use fspid_scenario::aircraft::units::Kind;
 
 /// A quantity over an envelope.
@@ -38,7 +38,7 @@ const fn autopilot(
     Column { needs_autopilot: true, ..column(name, key, kind, read) }
 }
 
-static COLUMNS: [Column; 15] = [
+static COLUMNS: [Column; 16] = [
     column("angle of attack, from the reference", "alpha", Kind::Angle, |held| {
         Some(held.linear.trim.point.alpha_rad)
     }),
@@ -59,6 +59,12 @@ static COLUMNS: [Column; 15] = [
     column("phugoid, damping", "phugoid_damping", Kind::Plain, |held| {
         Some(pair(held, ModeName::Phugoid)?.damping_ratio)
     }),
+    column(
+        "longitudinal motion, time to double",
+        "longitudinal_time_to_double",
+        Kind::Time,
+        doubles_s,
+    ),
     column("Dutch roll, frequency", "dutch_roll_frequency", Kind::Frequency, |held| {
         Some(pair(held, ModeName::DutchRoll)?.natural_frequency_rad_s)
     }),
@@ -74,7 +80,7 @@ static COLUMNS: [Column; 15] = [
             Some(f64::from(short_period(held)?.cap_level.level as u8) + 1.0)
         })
     },
-    autopilot("loop, gain margin up to 40 dB", "loop_gain_margin", Kind::Decibel, |held| {
+    autopilot("loop, smaller gain margin up to 40 dB", "loop_gain_margin", Kind::Decibel, |held| {
         held.beside?.gain_margin_db
     }),
     autopilot("loop, decay of its slowest motion", "loop_decay", Kind::Rate, |held| {

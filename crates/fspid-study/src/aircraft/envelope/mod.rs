@@ -80,7 +80,10 @@ pub fn envelope(question: &EnvelopeQuestion<'_>) -> Result<Envelope, AircraftFai
     };
     let threads = std::thread::available_parallelism().unwrap_or(one_thread());
     let points = aircraft.envelope(&grid, threads, |linear| {
-        autopilot.as_ref()?.judge(&linear.theta_over_elevator().ok()?)
+        let target = linear.trim.target;
+        let density_kg_m3 = aircraft.environment().air_at(target.altitude_m).density_kg_m3;
+        let pressure_pa = 0.5 * density_kg_m3 * target.airspeed_m_s * target.airspeed_m_s;
+        autopilot.as_ref()?.judge(&linear.theta_over_elevator().ok()?, pressure_pa)
     });
     let (title, name) = (data.title, data.name);
     let air = question.question.air;
@@ -125,6 +128,7 @@ impl Envelope {
         put("units", json!(units.name()));
         put("category", json!(format!("{:?}", self.category)));
         put("controller", json!(self.autopilot.as_ref().map(Autopilot::name)));
+        put("loop", json!(self.autopilot.as_ref().map(Autopilot::in_words)));
         let speeds = list(Kind::Speed, &self.speeds_m_s);
         put(&key("airspeeds", Kind::Speed, units), json!(speeds));
         let altitudes = list(Kind::Length, &self.altitudes_m);
@@ -133,6 +137,7 @@ impl Envelope {
         put("points", Value::Array(points));
         let reasons = [
             ("controller", "no controller was asked for"),
+            ("loop", "no controller was asked for"),
             ("reason", "nothing is amiss: the aircraft flies there"),
         ];
         with_null_reasons(Value::Object(whole), &reasons)

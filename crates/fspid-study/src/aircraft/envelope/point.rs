@@ -1,8 +1,8 @@
 //! One speed and altitude: what is read off a row of the envelope.
 
-use fspid_aircraft::ModeName;
 use fspid_aircraft::envelope::{EnvelopeFlight, EnvelopeRow};
 use fspid_aircraft::qualities::ShortPeriod;
+use fspid_aircraft::{Growth, ModeName};
 use fspid_lti::Mode;
 
 use super::autopilot::Loop;
@@ -31,6 +31,16 @@ pub(super) fn pair(held: &Held, name: ModeName) -> Option<Mode> {
     let mut modes = all.into_iter().flatten().flatten();
     let found = modes.find(|mode| mode.name == name && mode.oscillates());
     found.and_then(|mode| mode.mode().ok())
+}
+
+/// Time in which the longitudinal motion that grows fastest doubles, swinging or not, s; none where nothing grows.
+pub(super) fn doubles_s(held: &Held) -> Option<f64> {
+    let modes = held.longitudinal.as_ref().ok()?.iter();
+    let times = modes.filter_map(|mode| match mode.growth() {
+        Growth::Doubles(time_s) => Some(time_s),
+        Growth::Halves(_) | Growth::Stays => None,
+    });
+    times.min_by(f64::total_cmp)
 }
 
 /// The short period, judged.

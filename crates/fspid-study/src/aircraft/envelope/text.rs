@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::Envelope;
 use super::autopilot::is_stable;
 use super::column::Column;
-use super::point::Point;
+use super::point::{Point, doubles_s};
 use crate::aircraft::condition::AirChoice;
 use crate::aircraft::table::table;
 use fspid_scenario::aircraft::number::significant;
@@ -20,11 +20,12 @@ impl Envelope {
             self.columns().into_iter().filter_map(|column| self.ends(column)).collect();
         let headings = ["quantity", "least", "unit", "at", "most", "at"];
         let mut out = format!(
-            "{}\n{}\n{} of {} points can be flown\n\n{}",
+            "{}\n{}\n{} of {} points can be flown\n{}\n{}",
             self.title,
             self.where_in_words(),
             self.points.iter().filter(|point| point.flight.is_ok()).count(),
             self.points.len(),
+            self.growth_in_words(),
             table(&headings, &rows),
         );
         out.push_str(&self.obstacles());
@@ -45,6 +46,19 @@ impl Envelope {
         let speeds = ends(Kind::Speed, &self.speeds_m_s);
         let altitudes = ends(Kind::Length, &self.altitudes_m);
         format!("level flight at {speeds}, {altitudes}; {air}")
+    }
+
+    /// At how many points the aircraft leaves its trim by itself; nothing where it does so nowhere.
+    fn growth_in_words(&self) -> String {
+        let held = self.points.iter().filter_map(|point| point.flight.as_ref().ok());
+        let times: Vec<f64> = held.filter_map(doubles_s).collect();
+        let Some(fastest_s) = times.iter().copied().min_by(f64::total_cmp) else {
+            return String::new();
+        };
+        let (points, fastest_s) = (times.len(), significant(fastest_s, 3));
+        format!(
+            "a longitudinal motion grows by itself at {points} of them, at the fastest to double in {fastest_s} s\n"
+        )
     }
 
     /// Least and most of a quantity, with the points where they are.
@@ -95,6 +109,7 @@ impl Envelope {
                     ),
             )
         });
-        format!("\n{}\n  stable at {stable} of {flown} points\n", autopilot.words())
+        let (words, whose) = (autopilot.words(), autopilot.whose());
+        format!("\n{words}\n  stable at {stable} of {flown} points\n  {whose}\n")
     }
 }

@@ -8,7 +8,7 @@ use fspid_scenario::aircraft::units::Kind;
 /// Every value that exists.
 pub(super) fn facts(qualities: &Qualities) -> Facts {
     let facts = short_period(Facts::default(), qualities);
-    let facts = phugoid(facts, qualities);
+    let facts = divergence(phugoid(facts, qualities), qualities);
     let facts = bandwidth(facts, qualities);
     rest(facts, qualities)
 }
@@ -47,6 +47,17 @@ fn phugoid(facts: Facts, qualities: &Qualities) -> Facts {
         }
         Err(_) => facts,
     }
+}
+
+fn divergence(facts: Facts, qualities: &Qualities) -> Facts {
+    let Some(found) = &qualities.divergence else { return facts };
+    let name = "fastest divergence, pole";
+    facts.number(name, "divergence_pole", Kind::Frequency, found.real_rad_s).number(
+        "fastest divergence, time to double",
+        "divergence_time_to_double",
+        Kind::Time,
+        found.doubles_s,
+    )
 }
 
 fn bandwidth(facts: Facts, qualities: &Qualities) -> Facts {

@@ -7,16 +7,14 @@ use fspid_sim::{Timing, Trace};
 
 use super::aircraft;
 use crate::judgement::{Case, CasePlace, NotEvaluated, StepAt};
-use crate::metrics::{Absent, CommandEffort, EdgeMetrics, ErrorIntegrals, FlightMetrics};
+use crate::metrics::{
+    Absent, CommandEffort, EdgeMetrics, ErrorIntegrals, FlightMetrics, is_seen_to_stay,
+};
 use crate::simulation::ControllerResult;
 use fspid_scenario::file::Study;
 use fspid_scenario::measure::{Family, Measure};
 use fspid_scenario::requirement::{Air, Conditions, Requirement};
 use fspid_scenario::units::degrees;
-
-/// Of the time that it took to settle so much has to be flown after it, to call it settled. A choice: what leaves its band more
-/// slowly is a matter of the loop at rest, which is asked for itself.
-const STAYS: f64 = 0.1;
 
 /// Cases of a measure of a flight.
 pub(super) fn cases(
@@ -143,7 +141,7 @@ impl Flown<'_> {
             match requirement.measure {
                 // What has not come there has not gone beyond it either.
                 Measure::Overshoot => edge.step.rise_time_s.map(|_| case).map_err(Into::into),
-                Measure::SettlingTime => self.lasting(case, self.window_s(edge), requirement.most),
+                Measure::SettlingTime => self.lasting(case, edge.window_s, requirement.most),
                 _ => Ok(case),
             }
         };
@@ -160,17 +158,10 @@ impl Flown<'_> {
     ) -> Result<Case, NotEvaluated> {
         let allowance_s = 1e-6 * self.timing.dt_s();
         let asked = most_s.is_some_and(|most_s| window_s + allowance_s >= most_s);
-        // Written so that NaN, which no limit allows, is not refused.
-        let ends_early = window_s - case.value < STAYS * case.value;
-        if asked || !ends_early {
+        if asked || is_seen_to_stay(case.value, window_s) {
             return Ok(case);
         }
         Err(NotEvaluated::TooShort { settled_s: case.value, window_s, place: Box::new(case.place) })
-    }
-
-    fn window_s(&self, edge: &EdgeMetrics) -> f64 {
-        let window = self.window(edge);
-        self.timing.time_s(*window.end()) - self.timing.time_s(*window.start())
     }
 
     /// Samples from a step to the last one before the next.

@@ -1,0 +1,135 @@
+//! What an envelope says of an aircraft that runs away by itself, and of the loop of a scenario at each point.
+
+use fspid_study::aircraft::{
+    Category, Class, EnvelopeQuestion, LoadingQuestion, QualitiesQuestion, Question, envelope,
+    qualities,
+};
+use fspid_study::simulation::Simulation;
+use serde_json::Value;
+
+/// A Navion with little gain of its pitch loop, near the end of what that holds.
+const NAVION: &str = r#"
+schema = 1
+name = "e"
+[aircraft]
+name = "navion"
+airspeed_m_s = 53.6448
+altitude_m = 500.0
+cg_mac = 0.56
+[actuator]
+time_constant_s = 0.1
+[loop]
+sample_period_s = 0.01
+duration_s = 20.0
+[setpoint]
+kind = "step"
+amplitude_deg = 2.0
+at_s = 1.0
+[[controller]]
+name = "PID"
+kind = "pid"
+kp = 0.5
+ki = 0.0
+kd = 0.3
+derivative_filter_s = 0.05
+"#;
+
+const SPEEDS: &str = "36:53.6448:2";
+
+fn navion(cg: &str) -> Question<'_> {
+    let loading = LoadingQuestion { cg: Some(cg), ..LoadingQuestion::default() };
+    Question { aircraft: "navion", loading, ..Question::default() }
+}
+
+/// Answers for people and for programs over two speeds.
+fn asked(cg: &str, scenario: Option<&str>) -> (String, Value) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("loop.toml");
+    std::fs::write(&path, scenario.unwrap_or_default()).expect("written");
+    let question = EnvelopeQuestion {
+        question: navion(cg),
+        speeds: SPEEDS,
+        altitudes: "500:500:1",
+        category: Category::B,
+        scenario: scenario.map(|_| path.as_path()),
+        controller: None,
+    };
+    let found = envelope(&question).expect("it is answered");
+    (found.text(), found.json())
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
+}
+
+/// A margin of 1.85 dB downwards was "gain margin up to 40 dB, least 18.9141 dB".
+#[test]
+fn the_gain_margin_of_an_envelope_is_the_smaller_of_both_ways() {
+    let (text, json) = asked("0.56", Some(NAVION));
+    let fast = &json["points"][1];
+    let margin_db = number(&fast["loop_gain_margin_db"]);
+    assert!((margin_db - 1.85).abs() < 0.02, "{margin_db}");
+    assert!(text.contains("loop, smaller gain margin up to 40 dB"), "{text}");
+}
+
+/// Every point was asked with the gains of the scenario's own trim: stable at all of them.
+#[test]
+fn an_envelope_asks_with_the_gains_that_a_schedule_makes_at_each_point() {
+    let fixed = NAVION
+        .replace("cg_mac = 0.56", "cg_mac = 0.3")
+        .replace("kp = 0.5\nki = 0.0\nkd = 0.3", "kp = 6.0\nki = 3.0\nkd = 1.5");
+    let scheduled = format!("{fixed}schedule = {{ dynamic_pressure_pa = 1763.0 }}\n");
+    let (text, json) = asked("0.3", Some(&scheduled));
+    let radius =
+        |json: &Value, point: usize| number(&json["points"][point]["loop_spectral_radius"]);
+    assert!(radius(&json, 0) > 1.0 && radius(&json, 1) < 1.0, "{json}");
+    assert!(text.contains("at its gains as scheduled at each point\n  stable at 1 of 2"), "{text}");
+    for (point, airspeed_m_s) in [36.0, 53.6448].into_iter().enumerate() {
+        let set = [format!("aircraft.airspeed_m_s={airspeed_m_s:?}")];
+        let study = fspid_scenario::file::parse(&scheduled, "loop.toml", None, &set);
+        let flown = Simulation::of(&study.expect("a scenario")).expect("it flies");
+        let unstable = flown.results[0].at_rest.unstable.is_some();
+        assert_eq!(unstable, radius(&json, point) > 1.0, "{airspeed_m_s}");
+    }
+    let (text, json) = asked("0.3", Some(&fixed));
+    assert!(radius(&json, 0) < 1.0 && text.contains("at its gains\n"), "{text}");
+}
+
+/// The scenario's own mass and inertia went unused without a word.
+#[test]
+fn an_envelope_says_whose_aircraft_the_loop_is_asked_around() {
+    let heavy = NAVION.replace("cg_mac", "mass_kg = 900.0\ncg_mac");
+    let (text, json) = asked("0.3", Some(&heavy));
+    let told = "aircraft, loading and air are those of this command";
+    assert!(text.contains(told), "{text}");
+    assert!(json["loop"].as_str().is_some_and(|words| words.contains(told)), "{json}");
+    let (_, other) = asked("0.3", Some(&NAVION.replace("cg_mac = 0.56", "cg_mac = 0.2")));
+    assert_eq!(json["points"], other["points"]);
+    let (_, none) = asked("0.3", None);
+    assert!(none["loop"].is_null() && none["null"]["loop"].is_string(), "{none}");
+}
+
+/// "4 of 4 points can be flown" was all that was said of a divergence that doubles in 2.7 s, and three levels of 1.
+#[test]
+fn a_divergence_that_has_no_name_is_judged_and_told() {
+    let (text, json) = asked("0.5", None);
+    assert!(text.contains("grows by itself at 2 of them, at the fastest to double in"), "{text}");
+    let doubles_s = number(&json["points"][1]["longitudinal_time_to_double_s"]);
+    let judged = qualities(&QualitiesQuestion {
+        question: navion("0.5"),
+        category: Category::B,
+        class: Some(Class::I),
+        servo_rad_s: 0.0,
+        delay: "0",
+    });
+    let judged = judged.expect("it is judged").json();
+    let of_qualities_s = number(&judged["values"]["divergence_time_to_double_s"]);
+    assert!((of_qualities_s - 2.74).abs() < 0.01, "{judged}");
+    assert!(doubles_s > 2.0 && doubles_s < 3.5, "{doubles_s}");
+    let levels = judged["levels"].as_array().expect("levels");
+    let of_speed = levels.iter().find(|level| level["requirement"] == "speed stability");
+    assert_eq!(of_speed.expect("it is judged")["level_in_words"], "worse than level 3");
+    let (text, json) = asked("0.2", None);
+    assert!(!text.contains("grows by itself"), "{text}");
+    assert!(json["points"][1]["longitudinal_time_to_double_s"].is_null(), "{json}");
+}
