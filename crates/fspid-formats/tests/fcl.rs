@@ -8,7 +8,7 @@ use fspid_formats::fcl::{self, Dialect, ReadOptions};
 use fspid_fuzzy::Hedge;
 use fspid_fuzzy::membership::ShapeKind;
 use fspid_fuzzy::system::{
-    Antecedent, Conclusion, Defuzzifier, FallbackValue, Membership, Parts, Sampling,
+    Antecedent, Conclusion, Defuzzifier, FallbackValue, Membership, Parts, Sampling, SetReading,
 };
 
 const IEC: &str = include_str!("data/fcl/tipper-iec.fcl");
@@ -557,5 +557,33 @@ fn a_system_without_any_output_is_read_as_far_as_it_goes() {
         assert!(answers(&reading.parts, &[0.5]).is_empty());
         let told = notes(&reading).join("\n");
         assert!(told.contains("without an output nothing can be concluded"), "{told}");
+    }
+}
+
+/// Written as points, such a set used to be refused by the reader.
+#[test]
+fn a_straight_side_that_is_weighed_is_written_as_a_ramp_or_refused() {
+    let mut parts = read(&around("RULE 1 : IF x IS low THEN y IS a;"));
+    parts.outputs[0].defuzzifier = Defuzzifier::WeightedAverage(SetReading::Tsukamoto);
+    for (kind, params, ramp) in [
+        (ShapeKind::LinearS, [2.0, 4.0], [2.0, 4.0]),
+        (ShapeKind::LinearZ, [2.0, 4.0], [4.0, 2.0]),
+        (ShapeKind::Ramp, [2.0, 4.0], [2.0, 4.0]),
+    ] {
+        let params = params.to_vec();
+        for term in &mut parts.outputs[0].terms {
+            let membership = Membership::Shape { kind, params: params.clone(), height: 1.0 };
+            term.conclusion = Conclusion::Set { membership, lower: None };
+        }
+        let written = fcl::write(&parts, Dialect::Fuzzylite, LOSSY).unwrap();
+        let back = read(&written.text);
+        let Conclusion::Set { membership, .. } = &back.outputs[0].terms[0].conclusion else {
+            panic!("{}", written.text);
+        };
+        let expected =
+            Membership::Shape { kind: ShapeKind::Ramp, params: ramp.to_vec(), height: 1.0 };
+        assert_eq!(*membership, expected);
+        let told = fcl::write(&parts, Dialect::Iec, LOSSY).unwrap_err().to_string();
+        assert!(told.contains("points do not tell the place of a grade"), "{told}");
     }
 }

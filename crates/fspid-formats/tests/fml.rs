@@ -378,3 +378,18 @@ fn a_missing_range_is_a_loss_and_a_default_in_the_middle_is_none() {
     assert_eq!(writing.notes, [], "nothing is lost");
     assert!(matches!(read(&writing.text).outputs[0].fallback.value, FallbackValue::Number(_)));
 }
+
+/// An infinite end used to be written as `-inf`, which the reader refuses.
+#[test]
+fn a_rectangle_without_an_end_is_written_as_points() {
+    let mut parts = paper(Sampling::Exact);
+    for (ends, [inside, outside]) in
+        [([f64::NEG_INFINITY, 1.0], [-4.0, 1.5]), ([1.0, f64::INFINITY], [1.5, 0.5])]
+    {
+        let params = ends.to_vec();
+        parts.inputs[0].terms[0].membership =
+            Membership::Shape { kind: ShapeKind::Rectangle, params, height: 1.0 };
+        let back = read(&fml::write(&parts, EXACT).unwrap().text);
+        assert_eq!([inside, outside].map(|x| grade(&back, 0, 0, x)), [1.0, 0.0]);
+    }
+}

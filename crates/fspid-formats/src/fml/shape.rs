@@ -237,7 +237,10 @@ pub(super) fn written(set: &Membership) -> Option<(&'static str, Vec<f64>)> {
         (ShapeKind::Pi, _) => row("piShape"),
         (ShapeKind::SmoothS, _) => row("sShape"),
         (ShapeKind::SmoothZ, _) => row("zShape"),
-        (ShapeKind::Rectangle, _) => row("rectangularShape"),
+        // An infinite end has no words.
+        (ShapeKind::Rectangle, &[start, end]) if start.is_finite() && end.is_finite() => {
+            row("rectangularShape")
+        }
         (ShapeKind::Singleton, _) => row("singletonShape"),
         _ => None,
     }

@@ -227,3 +227,50 @@ proptest! {
         }
     }
 }
+
+/// Half of the rules of a system ask for any of their statements, and their grades are added up.
+fn added_up(system: &System) -> System {
+    let mut parts = system.parts().clone();
+    parts.blocks[0].or = SNormKind::UnboundedSum.into();
+    for rule in parts.blocks[0].rules.iter_mut().step_by(2) {
+        if let Antecedent::All(statements) = &rule.antecedent {
+            rule.antecedent = Antecedent::Any(statements.clone());
+        }
+    }
+    System::new(parts).expect("still sound")
+}
+
+/// Strengths above 1 used to be cut: "at most 6" of a sum that comes to 10.
+#[test]
+fn strengths_above_one_are_within_the_bounds_where_grades_are_added_up() {
+    let methods = [
+        Defuzzifier::WeightedSum(SetReading::Tsukamoto),
+        Defuzzifier::WeightedAverage(SetReading::Tsukamoto),
+        Defuzzifier::Centroid(Sampling::Endpoints(21)),
+        Defuzzifier::Centroid(Sampling::Exact),
+    ];
+    let mut state = 5_u64;
+    let mut number = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    let mut above = 0;
+    for n in 0..24 {
+        let numbers: Vec<f64> = (0..97).map(|_| number()).collect();
+        let count = 1 + n % 2;
+        let system = added_up(&random_system(&numbers, count, methods[n / 2 % 4]));
+        let options = SurfaceOptions { boxes: 16, ..SurfaceOptions::default() };
+        let audit = surface(&system, &options).expect("universes are known");
+        for _ in 0..60 {
+            let point: Vec<f64> = (0..count).map(|_| 2.0 * number() - 1.0).collect();
+            check(&system, &audit.outputs[0], &point).expect("within the bounds");
+            let mut workspace = system.workspace();
+            system.evaluate(&point, &mut workspace).expect("finite");
+            let most = system.firings(&workspace).map(|firing| firing.acting).fold(0.0, f64::max);
+            above += u32::from(most > 1.01);
+            let least = audit.outputs[0].coverage.least.bounds[0];
+            assert!(least <= most + ROUNDING, "{n}: {least} {most}");
+        }
+    }
+    assert!(above > 200, "{above} points with a strength above 1");
+}

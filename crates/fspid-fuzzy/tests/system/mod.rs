@@ -4,6 +4,7 @@
 
 mod build;
 mod integral;
+mod maximum;
 mod oracle;
 mod outline;
 mod policies;

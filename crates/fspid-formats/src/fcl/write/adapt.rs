@@ -126,6 +126,7 @@ fn enabled(name: &str, enabled: bool, loss: &mut Loss) {
 }
 
 fn output(output: &mut Output, dialect: Dialect, loss: &mut Loss) {
+    let weighs = output.defuzzifier.sampling().is_none();
     for term in &mut output.terms {
         let what = format!("{}.{}", output.name, term.name);
         match &mut term.conclusion {
@@ -134,7 +135,11 @@ fn output(output: &mut Output, dialect: Dialect, loss: &mut Loss) {
                     let message = "a type-2 set has no words in FCL";
                     loss.cannot(&what, message, crate::adapt::TYPE_1);
                 }
-                set::adapt(&what, membership, output.universe, dialect, loss);
+                if weighs {
+                    set::adapt_weighed(&what, membership, dialect, loss);
+                } else {
+                    set::adapt(&what, membership, output.universe, dialect, loss);
+                }
             }
             Conclusion::Interval(_) => {
                 let message = "an interval has no words in FCL";

@@ -100,10 +100,9 @@ pub(super) fn adapt(
         loss.cannot(name, no_words(kind.name(), dialect), expected);
         return;
     };
-    let mut corners = Vec::new();
-    kind.corners(params, &mut |x| corners.push(x));
+    let landmarks = fit::Landmarks::of(*kind, params);
     let grade = |x: f64| height * kind.grade(params, x);
-    let fit = fit::fit(grade, universe.lower, universe.upper, corners);
+    let fit = fit::fit(grade, universe.lower, universe.upper, &landmarks);
     let count = fit.points.len() / 2;
     let instead = format!(
         "{count} points with grades within {:.1e} of the curve, level beyond {} and {}",
@@ -113,6 +112,32 @@ pub(super) fn adapt(
     );
     loss.lose(name, &no_words(kind.name(), dialect), &instead);
     *set = Membership::Shape { kind: ShapeKind::Points, params: fit.points, height: 1.0 };
+}
+
+/// Sets that are weighed are asked for the place of a grade, which points do not tell: another name of
+/// the same set where the dialect has one.
+pub(super) fn adapt_weighed(name: &str, set: &mut Membership, dialect: Dialect, loss: &mut Loss) {
+    let Membership::Shape { kind, params, height } = &*set else {
+        loss.cannot(name, no_words("a formula that is weighed", dialect), "numbers, or FLL");
+        return;
+    };
+    let height = *height;
+    let said = |kind, params: &[f64]| by_word(kind, params, height, dialect);
+    let found = if said(*kind, params).is_some() {
+        Some((*kind, params.clone()))
+    } else {
+        shapes::alias(*kind, params).filter(|(kind, params)| said(*kind, params).is_some())
+    };
+    let found = found.map(|(kind, params)| Membership::Shape { kind, params, height });
+    match found.filter(crate::fll::is_monotone) {
+        Some(found) => *set = found,
+        None if singleton(*kind, params, height).is_some() => {}
+        None => {
+            let words = no_words(kind.name(), dialect);
+            let message = format!("{words}, and points do not tell the place of a grade");
+            loss.cannot(name, message, "fuzzylite's dialect, a .toml or .fll file");
+        }
+    }
 }
 
 fn no_words(what: &str, dialect: Dialect) -> String {

@@ -9,9 +9,17 @@ const HALVINGS: u32 = 17;
 const SAMPLES: u16 = 1001;
 
 /// Corners of a trapezoid near to `grade`, and the largest difference of grades over the samples.
-pub(super) fn trapezoid(grade: impl Fn(f64) -> f64, universe: Universe) -> ([f64; 4], f64) {
+/// `marks` are further places at which the two are compared, for what is narrower than the samples.
+pub(super) fn trapezoid(
+    grade: impl Fn(f64) -> f64,
+    universe: Universe,
+    marks: &[f64],
+) -> ([f64; 4], f64) {
     let place = |n| universe.lower + universe.span() * (f64::from(n) / f64::from(SAMPLES - 1));
-    let samples: Vec<_> = (0..SAMPLES).map(place).map(|x| (x, grade(x))).collect();
+    let inside = marks.iter().copied().filter(|&x| universe.contains(x));
+    let mut places: Vec<f64> = (0..SAMPLES).map(place).chain(inside).collect();
+    places.sort_by(f64::total_cmp);
+    let mut samples: Vec<_> = places.into_iter().map(|x| (x, grade(x))).collect();
     let mut best = begin(&samples, universe);
     let mut cost = cost(&samples, best);
     let mut step = universe.span() / 8.0;
@@ -21,6 +29,8 @@ pub(super) fn trapezoid(grade: impl Fn(f64) -> f64, universe: Universe) -> ([f64
         }
         step *= 0.5;
     }
+    // A top that no sample sees is told too.
+    samples.extend(best.into_iter().filter(|&x| universe.contains(x)).map(|x| (x, grade(x))));
     (best, errors(&samples, best).fold(0.0, f64::max))
 }
 
@@ -77,14 +87,14 @@ mod tests {
     #[test]
     fn a_trapezoid_is_found_again() {
         let corners = [-3.0, -1.0, 2.0, 2.5];
-        let (_, error) = trapezoid(|x| ShapeKind::Trapezoid.grade(&corners, x), UNIVERSE);
+        let (_, error) = trapezoid(|x| ShapeKind::Trapezoid.grade(&corners, x), UNIVERSE, &[]);
         assert!(error < 0.02, "{error}");
     }
 
     #[test]
     fn the_error_told_is_the_error_made() {
         let bell = |x: f64| (-0.5 * x * x).exp();
-        let (corners, error) = trapezoid(bell, UNIVERSE);
+        let (corners, error) = trapezoid(bell, UNIVERSE, &[]);
         let found = (0..=10_000).map(|n| f64::from(n) * 1e-3 - 5.0);
         let found = found.map(|x| (ShapeKind::Trapezoid.grade(&corners, x) - bell(x)).abs());
         let found = found.fold(0.0, f64::max);
@@ -93,6 +103,15 @@ mod tests {
 
     #[test]
     fn a_function_that_is_nowhere_above_zero_ends_too() {
-        assert!(trapezoid(|_| 0.0, UNIVERSE).1.is_finite());
+        assert!(trapezoid(|_| 0.0, UNIVERSE, &[]).1.is_finite());
+    }
+
+    #[test]
+    fn a_function_that_is_narrower_than_the_samples_is_seen_at_its_marks() {
+        let bell = |x: f64| (-0.5 * ((x - 1.2346) / 0.001).powi(2)).exp();
+        let marks = [-3.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 3.0].map(|n| 1.2346 + 0.001 * n);
+        let (corners, error) = trapezoid(bell, UNIVERSE, &marks);
+        assert!(ShapeKind::Trapezoid.grade(&corners, 1.2346) > 0.8, "{corners:?}");
+        assert!(error < 0.2, "{error}");
     }
 }

@@ -1,5 +1,6 @@
 //! Membership functions in MATLAB's words: the same function, or the nearest trapezoid.
 
+use crate::fit::Landmarks;
 use fspid_fuzzy::membership::ShapeKind;
 use fspid_fuzzy::system::{Membership, Universe};
 
@@ -61,7 +62,11 @@ fn fitted(
         // Nothing is written, so that nothing is told of what would stand for it.
         return Function::new("trapmf", &[]);
     }
-    let (params, error) = fit::trapezoid(|x| grade(membership, x), universe);
+    let marks = match membership {
+        Membership::Shape { kind, params, .. } => Landmarks::of(*kind, params).marks,
+        Membership::Formula { .. } => Vec::new(),
+    };
+    let (params, error) = fit::trapezoid(|x| grade(membership, x), universe, &marks);
     losses.lost(format!(
         "{place}: MATLAB has no such `{what}`; the nearest trapezoid differs by up to {error:.4}"
     ));

@@ -192,10 +192,9 @@ fn set(
         loss.cannot(what, message, "a range over which it can be approximated");
         return;
     };
-    let mut corners = Vec::new();
-    kind.corners(params, &mut |x| corners.push(x));
+    let landmarks = fit::Landmarks::of(*kind, params);
     let grade = |x: f64| height * kind.grade(params, x);
-    let fit = fit::fit(grade, universe.lower, universe.upper, corners);
+    let fit = fit::fit(grade, universe.lower, universe.upper, &landmarks);
     let instead = format!(
         "{} points with grades within {:.1e} of the curve, level beyond {} and {}",
         fit.points.len() / 2,

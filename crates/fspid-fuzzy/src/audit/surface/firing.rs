@@ -7,8 +7,11 @@ use alloc::vec::Vec;
 use super::continuity::{Continuity, Jumps};
 use super::ties::Ties;
 use crate::membership::Vertex;
+use crate::norm::SNormKind;
 use crate::supervisor::OutOfRange;
-use crate::system::{Activation, Membership, STACK, Statement, System, Variable, hedged};
+use crate::system::{
+    Activation, Membership, RuleBlock, STACK, Statement, System, Variable, hedged,
+};
 use fspid_numeric::scalar::{Dual, Interval, Scalar};
 
 /// All values over a box, and all slopes along one input.
@@ -96,7 +99,12 @@ impl<'a> Firing<'a> {
         let conclusions = self.system.conclusions.iter();
         for (place, conclusion) in self.degrees.iter_mut().zip(conclusions) {
             let strength = self.acting.get(conclusion.rule).copied().unwrap_or(Slope::zero());
-            *place = within_unit(hedged(&conclusion.hedges, strength));
+            let degree = hedged(&conclusion.hedges, strength);
+            *place = if keeps_to_unit(self.system, conclusion.block) {
+                within_unit(degree)
+            } else {
+                degree
+            };
         }
     }
 
@@ -160,8 +168,9 @@ impl<'a> Firing<'a> {
     fn joined(&mut self, rule: usize) -> Slope {
         let strength =
             self.system.rule_strength(rule, &mut self.stack, |s| grade_of(&self.grades, s));
-        let strength = within_unit(strength);
         let block = self.system.rules.get(rule).map(|rule| rule.block);
+        let bounded = block.is_some_and(|block| keeps_to_unit(self.system, block));
+        let strength = if bounded { within_unit(strength) } else { strength };
         match block.and_then(|block| self.continuity.blocks.get(block)) {
             Some(true) => strength,
             _ => unknown_slope(strength.value.hull(Interval::ZERO)),
@@ -226,7 +235,7 @@ impl<'a> Firing<'a> {
             else {
                 continue;
             };
-            activate(block.activation, strengths, acting);
+            activate(block, strengths, acting);
         }
     }
 
@@ -307,20 +316,36 @@ fn bits(mut mask: u128) -> impl Iterator<Item = usize> {
     })
 }
 
-/// A grade cannot leave `[0, 1]`, whatever the width of its enclosure.
+/// A grade cannot leave `[0, 1]`, whatever the width of its enclosure; nor can the strength of a rule
+/// whose block [keeps to it](keeps_to_unit).
 fn within_unit(grade: Slope) -> Slope {
     let value = grade.value.intersection(Interval::UNIT).unwrap_or(Interval::UNIT);
     Slope { value, ..grade }
 }
 
+/// Whether rules of a block act no more strongly than 1: sums without a bound may go above it.
+fn keeps_to_unit(system: &System, block: usize) -> bool {
+    system.parts.blocks.get(block).is_some_and(is_bounded)
+}
+
+fn is_bounded(block: &RuleBlock) -> bool {
+    !block.or.is(SNormKind::UnboundedSum)
+}
+
 /// How strongly the rules of a block act.
-fn activate(activation: Activation, strengths: &[Slope], acting: &mut [Slope]) {
-    match activation {
+fn activate(block: &RuleBlock, strengths: &[Slope], acting: &mut [Slope]) {
+    match block.activation {
         Activation::General => acting.copy_from_slice(strengths),
         Activation::Proportional => {
             let sum = strengths.iter().fold(Slope::zero(), |sum, &strength| sum + strength);
             for (place, &strength) in acting.iter_mut().zip(strengths) {
-                *place = within_unit(strength / sum);
+                let share = strength / sum;
+                *place = match (is_bounded(block), sum.value.lower() > 0.0) {
+                    (true, _) => within_unit(share),
+                    (false, true) => share,
+                    // Where nothing is left over, nothing acts.
+                    (false, false) => unknown_slope(Interval::ENTIRE),
+                };
             }
         }
         // A rule acts as strongly as it fires, or not at all.

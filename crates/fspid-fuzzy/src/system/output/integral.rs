@@ -6,7 +6,7 @@ use super::super::defuzzifier::{Defuzzifier, Sampling};
 use super::super::parts::{Conclusion, Membership, Output};
 use super::curve::JoinedCurve;
 use super::joined::scale;
-use super::maximum::Search;
+use super::maximum::search;
 use super::sampled::Concluded;
 use fspid_numeric::quadrature::Quadrature;
 use fspid_numeric::scalar::Interval;
@@ -50,15 +50,15 @@ impl Integral {
         let strongest = concluded.levels.iter().fold(0.0_f64, |top, l| top.max(l.strength));
         let curve = JoinedCurve::new(*concluded, order, scale(strongest)?);
         let quadrature = Quadrature::new(self.lower, self.upper)?.with_corners(&self.corners);
-        let search = || Search::new(&curve, [self.lower, self.upper], &self.corners);
+        let runs = || search(&curve, [self.lower, self.upper], &self.corners);
         match method {
             Defuzzifier::Centroid(_) => {
                 quadrature.integrate(&curve).centroid().map(|found| self.middle(found))
             }
             Defuzzifier::Bisector(_) => quadrature.bisector(&curve).map(|found| self.middle(found)),
-            Defuzzifier::SmallestOfMaximum(_) => search()?.smallest(),
-            Defuzzifier::MeanOfMaximum(_) => search()?.mean(),
-            Defuzzifier::LargestOfMaximum(_) => search()?.largest(),
+            Defuzzifier::SmallestOfMaximum(_) => runs()?.smallest(),
+            Defuzzifier::MeanOfMaximum(_) => runs()?.mean(),
+            Defuzzifier::LargestOfMaximum(_) => runs()?.largest(),
             Defuzzifier::WeightedAverage(_) | Defuzzifier::WeightedSum(_) => None,
         }
     }

@@ -9,6 +9,7 @@ mod joined;
 mod maximum;
 mod outline;
 mod partition;
+mod runs;
 mod sampled;
 mod way;
 mod weighted;

@@ -63,7 +63,8 @@ fn conclusion(
     if has("between") {
         return interval(&mut Fields::of(report, item, path, "")?);
     }
-    if has("value") {
+    // A singleton is a shape, and has a `value` as well.
+    if has("value") && !has("shape") {
         let mut fields = Fields::of(report, item, path, "")?;
         fields.only(&["value"]);
         return formula(&mut fields, "value", variables.of_values).map(Conclusion::Formula);
@@ -137,4 +138,42 @@ pub(super) fn terms_schema() -> Value {
         membership::set_reference(),
     ];
     json!({ "type": "object", "additionalProperties": { "oneOf": ways } })
+}
+
+#[cfg(test)]
+mod tests {
+    use fspid_fuzzy::membership::ShapeKind;
+    use fspid_fuzzy::system::{Conclusion, Membership};
+
+    /// Its `value` used to be taken for a formula, beside which a `shape` is refused.
+    #[test]
+    fn a_singleton_may_be_concluded_as_a_set_and_comes_back() {
+        let text = r#"
+schema = 1
+kind = "fuzzy-system"
+name = "s"
+[[input]]
+name = "x"
+range = [0, 1]
+[input.terms]
+on = { shape = "linear-s", foot = -1, shoulder = 0 }
+[[output]]
+name = "y"
+range = [0, 10]
+sampling = "endpoints:11"
+[output.terms]
+u = { shape = "singleton", value = 3 }
+[[rules]]
+lines = ["if x is on then y is u"]
+"#;
+        let first = super::super::parse(text, "s.toml").expect("a system");
+        let written = super::super::write(first.parts());
+        let again = super::super::parse(&written, "s.toml").expect("a system again");
+        let membership =
+            Membership::Shape { kind: ShapeKind::Singleton, params: vec![3.0], height: 1.0 };
+        let expected = Conclusion::Set { membership, lower: None };
+        for system in [&first, &again] {
+            assert_eq!(system.parts().outputs[0].terms[0].conclusion, expected);
+        }
+    }
 }
