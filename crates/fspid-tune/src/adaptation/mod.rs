@@ -46,7 +46,7 @@ pub use treatment::Treatment;
 
 use crate::crew::Part;
 use crate::error::TuneError;
-use crate::flights::{Asked, Dispersed, Flights, FlownCase, each_once, flown_cases};
+use crate::flights::{Asked, Dispersed, Flights, FlownCase, Flyer, each_once, flown_cases};
 use crate::source::Source;
 use crate::space::Space;
 use best::Best;
@@ -118,7 +118,8 @@ impl Adaptation {
         let against = compared_with(study, options.against.as_deref(), &controller)?;
         let (cases, dispersed) = cases(study, options.runs);
         let flights = |controller: &str| {
-            let cases = flown_cases(source, controller, cases, dispersed)?;
+            // Marks fly as they start.
+            let cases = flown_cases(source, Flyer { controller, free: &[] }, cases, dispersed)?;
             let judging = Judging { stability: Stability::AsFlown, loads: false };
             let asked = Asked { controller: controller.to_owned(), part: Part::Judging, judging };
             Ok::<_, TuneError>(Flights::new(asked, Space::new(Vec::new()), cases, Vec::new()))
