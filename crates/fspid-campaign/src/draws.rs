@@ -85,14 +85,34 @@ impl Draws {
     /// The values that draws put into the scenario.
     #[must_use]
     pub fn values(&self, drawn: &[Drawn]) -> Vec<(&SettingPath, NewValue)> {
+        self.values_of(drawn, |_, written| written)
+    }
+
+    /// The same of a scenario in which other numbers stand: `number` is asked for the one at each path of a relative
+    /// dispersion, and given the one that is written there.
+    #[must_use]
+    pub fn values_of(
+        &self,
+        drawn: &[Drawn],
+        number: impl Fn(&SettingPath, f64) -> f64,
+    ) -> Vec<(&SettingPath, NewValue)> {
         let mut rest = drawn;
         let mut values = Vec::new();
         for (dispersion, nominal) in self.dispersions.iter().zip(&self.nominal) {
             let (mine, others) = rest.split_at(dispersion.names().count().min(rest.len()));
             rest = others;
-            values.extend(dispersion.values(mine, nominal));
+            let paths = dispersion.targets.iter().flat_map(|target| &target.paths);
+            let nominal: Vec<f64> =
+                paths.zip(nominal).map(|(path, &written)| number(path, written)).collect();
+            values.extend(dispersion.values(mine, &nominal));
         }
         values
+    }
+
+    /// Every path that something is drawn for, in the order of the values.
+    pub fn paths(&self) -> impl Iterator<Item = &SettingPath> {
+        let targets = self.dispersions.iter().flat_map(|dispersion| &dispersion.targets);
+        targets.flat_map(|target| &target.paths)
     }
 }
 

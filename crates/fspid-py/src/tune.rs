@@ -161,7 +161,7 @@ impl Tuning {
             history::write(path, &problem, &search)?;
         }
         let heading = tuned.heading(&effort.command(source, wanted.controller.as_deref()));
-        let text = problem.design(&search.best().point, &heading);
+        let text = problem.design(&search.best().point, &heading)?;
         if let Some(out) = &wanted.out {
             output::write(out, &text)?;
         }

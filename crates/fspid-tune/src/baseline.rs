@@ -8,7 +8,7 @@ use fspid_scenario::tuning::Free;
 use fspid_sim::Controller;
 use serde_json::{Value, json};
 
-use crate::design::{check_room, text_of, with_changes};
+use crate::design::{text_of, with_changes};
 use crate::error::TuneError;
 use crate::problem::chosen;
 use crate::rule::{self, Design, Options, Rule};
@@ -119,7 +119,7 @@ impl Baseline {
     /// begins where the rule says, if that lies within its bounds.
     ///
     /// # Errors
-    /// A controller that has not all the numbers that the rule gave, or the text's own list of changes.
+    /// A controller that has not all the numbers that the rule gave.
     pub fn text(
         &self,
         source: &Source,
@@ -127,7 +127,6 @@ impl Baseline {
         heading: &[String],
     ) -> Result<String, TuneError> {
         let text = text_of(source)?;
-        check_room(&text, "--out")?;
         let mut changes = source.overrides.clone();
         let template = source.template()?;
         changes.extend(self.changes(&template));

@@ -1,6 +1,8 @@
 //! A design: the scenario's own text with what was found in place of the marks.
 
-use fspid_scenario::file::{Extra, LoadError, NewValue, Template, read_text};
+use std::path::PathBuf;
+
+use fspid_scenario::file::{Extra, LoadError, NewValue, Template, read_text, with_listed};
 use fspid_scenario::tuning::{Free, TunableParameter};
 
 use crate::error::TuneError;
@@ -19,7 +21,7 @@ pub(crate) fn text_of(source: &Source) -> Result<String, TuneError> {
 /// Checks that a design of this scenario can lie in another folder, before anything is searched.
 ///
 /// # Errors
-/// A folder in its place, a file that would not be found from there, or changes that the text has no room for.
+/// A folder in its place, or a file that would not be found from there.
 pub fn check_place(source: &Source, out: &std::path::Path) -> Result<(), TuneError> {
     fspid_study::output::no_folder(out).map_err(TuneError::Output)?;
     let text = text_of(source)?;
@@ -33,33 +35,14 @@ pub fn check_place(source: &Source, out: &std::path::Path) -> Result<(), TuneErr
                 .to_owned(),
         });
     }
-    if !source.overrides.is_empty() {
-        check_room(&text, "--set")?;
-    }
     Ok(())
-}
-
-/// Refuses changes of a text that lists some itself.
-pub(crate) fn check_room(text: &str, what: &'static str) -> Result<(), TuneError> {
-    if has_list(text) {
-        return Err(TuneError::Value {
-            what,
-            found: "given together with a scenario that has a `set` of its own".to_owned(),
-            allowed: "one of the two, so that the design can hold it".to_owned(),
-        });
-    }
-    Ok(())
-}
-
-/// True for a text with a list of changes of its own, which stands before its first table.
-fn has_list(text: &str) -> bool {
-    let lines = text.lines().map(str::trim_start).take_while(|line| !line.starts_with('['));
-    lines.filter_map(|line| line.split_once('=')).any(|(key, _)| key.trim() == "set")
 }
 
 /// A scenario as it was read when its search began: its file may be another one by the time that something is found.
 #[derive(Clone, Debug)]
 pub(crate) struct Original {
+    name: String,
+    folder: PathBuf,
     text: String,
     overrides: Vec<String>,
 }
@@ -73,20 +56,31 @@ impl Original {
         let text = text_of(source)?;
         let extra = Extra { overrides: &source.overrides, ..Extra::default() };
         let name = source.path.display().to_string();
-        let template = Template::parse(&text, &name, Some(folder_of(&source.path)), &extra);
+        let folder = folder_of(&source.path).to_owned();
+        let template = Template::parse(&text, &name, Some(&folder), &extra);
         let template = template.map_err(LoadError::Problems)?;
-        Ok((Self { text, overrides: source.overrides.clone() }, template))
+        Ok((Self { name, folder, text, overrides: source.overrides.clone() }, template))
     }
 }
 
 /// The scenario with the values of a point in place of its marks; `heading` comes first, as comments.
+///
+/// # Errors
+/// A text that would not be this scenario again: nothing is written that cannot be read.
 pub(crate) fn text(
     original: &Original,
     space: &Space,
     point: &[f64],
     heading: &[String],
-) -> String {
-    let Original { text: original, overrides } = original;
+) -> Result<String, TuneError> {
+    let text = unread(original, space, point, heading);
+    let name = format!("a design of {}", original.name);
+    Template::parse(&text, &name, Some(&original.folder), &Extra::default())?;
+    Ok(text)
+}
+
+fn unread(original: &Original, space: &Space, point: &[f64], heading: &[String]) -> String {
+    let Original { text: original, overrides, .. } = original;
     let values = space.values(point);
     let mut places: Vec<(&TunableParameter, &NewValue)> =
         space.parameters().iter().zip(values.iter().map(|(_, value)| value)).collect();
@@ -109,18 +103,21 @@ pub(crate) fn text(
     with_changes(&body, heading, &changes)
 }
 
-/// A text with comments and a list of changes before it.
+/// A text with comments before it, and with changes behind those that it lists itself.
 pub(crate) fn with_changes(body: &str, heading: &[String], changes: &[String]) -> String {
     let mut out = String::new();
     for line in heading {
         out.push_str(&format!("# {line}\n"));
     }
+    // A list of its own stays where it is: a text has one.
+    if let Some(listed) = with_listed(body, changes) {
+        return out + &listed;
+    }
     if !changes.is_empty() {
         let quoted: Vec<String> = changes.iter().map(|change| format!("{change:?}")).collect();
         out.push_str(&format!("set = [{}]\n", quoted.join(", ")));
     }
-    out.push_str(body);
-    out
+    out + body
 }
 
 /// A value as a person would write it; a grid in lines.

@@ -6,9 +6,9 @@ use fspid_campaign::Draws;
 use fspid_campaign::engine::{self, FlightResult, Judging, Memory};
 use fspid_campaign::sample::Sampling;
 use fspid_scenario::dispersion::Drawn;
-use fspid_scenario::file::{Study, Template};
+use fspid_scenario::file::{LoadError, Study, Template, TunedIn};
 use fspid_scenario::requirement::{AskedIn, Requirement};
-use fspid_scenario::tuning::Case;
+use fspid_scenario::tuning::{Case, TunableParameter};
 use fspid_study::memory::Needed;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -16,7 +16,8 @@ use serde::de::DeserializeOwned;
 use sha2::{Digest as _, Sha256};
 
 use crate::crew::{Crew, Order, Part};
-use crate::error::TuneError;
+use crate::error::{TuneError, WrongCase};
+use crate::own_draws::OwnDraws;
 use crate::source::Source;
 use crate::space::Space;
 
@@ -44,16 +45,29 @@ pub(crate) struct FlownCase {
     /// Digest of the scenario with the changes of the case and one controller.
     pub(crate) digest: String,
     template: Template,
-    draws: Option<Draws>,
+    draws: Option<OwnDraws>,
     /// Draws of each run; a single empty one for the scenario as written.
     runs: Vec<Vec<Drawn>>,
+}
+
+/// Who flies.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Flyer<'a> {
+    /// Name of the controller.
+    pub(crate) controller: &'a str,
+    /// Places that get other values in flight; none where the scenario flies as its marks start.
+    pub(crate) free: &'a [TunableParameter],
 }
 
 impl FlownCase {
     /// All that decides about its flights.
     pub(crate) fn fingerprint(&self) -> String {
-        let Self { name, group, weight, digest, runs, .. } = self;
-        format!("{name:?} {group:?} {weight:?} {digest} {runs:?}\n")
+        let Self { name, group, weight, digest, runs, draws, .. } = self;
+        let mut all = format!("{name:?} {group:?} {weight:?} {digest} {runs:?}\n");
+        // Only where it matters, so that a search that was kept goes on.
+        let factors = draws.iter().flat_map(OwnDraws::factors);
+        factors.for_each(|path| all.push_str(&format!("a factor of what is tuned: {path}\n")));
+        all
     }
 
     /// How often it is flown.
@@ -217,7 +231,8 @@ impl Flights {
     ) -> Result<Study, String> {
         let mut values = self.space.values(point);
         if let (Some(draws), Some(drawn)) = (&case.draws, case.runs.get(run)) {
-            values.extend(draws.values(drawn));
+            let drawn = draws.values(drawn, &case.template, &values);
+            values.extend(drawn);
         }
         let built = case.template.with(&values);
         let mut study = built.map_err(|problems| problems.first_in_a_line())?;
@@ -273,17 +288,17 @@ fn fly<T>(
 /// The first case that makes the scenario wrong.
 pub(crate) fn flown_cases(
     source: &Source,
-    controller: &str,
+    flyer: Flyer<'_>,
     cases: &[Case],
     dispersed: Dispersed,
 ) -> Result<Vec<FlownCase>, TuneError> {
     if cases.is_empty() {
         let template = source.template()?;
-        return Ok(vec![flown_case(&template, None, controller, dispersed)?]);
+        return Ok(vec![flown_case(&template, None, flyer, dispersed)?]);
     }
     let case = |case: &Case| {
         let template = source.case(case)?;
-        flown_case(&template, Some(case), controller, dispersed)
+        flown_case(&template, Some(case), flyer, dispersed)
     };
     cases.iter().map(case).collect()
 }
@@ -291,34 +306,49 @@ pub(crate) fn flown_cases(
 /// A case of a scenario that was read with its changes; without one the scenario as it is written.
 ///
 /// # Errors
-/// Draws without dispersions, or a scenario that is wrong with this controller alone.
+/// Draws without dispersions, or of what is free; or a scenario that is wrong with this controller alone.
 pub(crate) fn flown_case(
-    template: &Template,
+    whole: &Template,
     case: Option<&Case>,
-    controller: &str,
+    flyer: Flyer<'_>,
     dispersed: Dispersed,
 ) -> Result<FlownCase, TuneError> {
-    let warnings = warnings(template.study(), case.is_some());
-    let template = template.only(controller)?;
+    check_free(whole, case, flyer)?;
+    let warnings = warnings(whole.study(), case.is_some());
+    let template = whole.only(flyer.controller)?;
     let digest = template.study().digest.clone();
     let draws = match dispersed.runs {
         0 => None,
-        runs if template.study().dispersions.is_empty() => {
+        runs if whole.study().dispersions.is_empty() => {
             return Err(TuneError::Value {
                 what: dispersed.key,
                 found: runs.to_string(),
                 allowed: "0 where the scenario has no [[dispersion]]".to_owned(),
             });
         }
-        runs => Some(Draws::new(&template, Sampling::LatinHypercube, runs, dispersed.seed)?),
+        // Of the whole scenario: everybody gets the same draws, and a campaign of the scenario as well.
+        runs => Some(Draws::new(whole, Sampling::LatinHypercube, runs, dispersed.seed)?),
     };
     let runs = match &draws {
         None => vec![Vec::new()],
         Some(draws) => (0..dispersed.runs).map(|run| draws.drawn(run)).collect(),
     };
+    let draws = draws.map(|draws| OwnDraws::of(draws, whole, flyer));
     let name = case.map_or(AS_WRITTEN, |case| &case.name).to_owned();
     let (group, weight) = (case.map(|case| case.group.clone()), case.map_or(1.0, |it| it.weight));
     Ok(FlownCase { name, group, weight, warnings, template, digest, draws, runs })
+}
+
+/// Refuses draws of what is free that are no factors of it, which a case may have by its changes.
+fn check_free(whole: &Template, case: Option<&Case>, flyer: Flyer<'_>) -> Result<(), TuneError> {
+    let checked = whole.check_free(flyer.free, TunedIn::AsWritten);
+    checked.map_err(|problems| match case {
+        None => TuneError::Scenario(problems),
+        Some(case) => {
+            let (case, problems) = (case.name.clone(), LoadError::Problems(problems));
+            TuneError::Case(Box::new(WrongCase { case, problems }))
+        }
+    })
 }
 
 /// What a study warns of; in a case it is no news that some requirements are asked in cases alone.

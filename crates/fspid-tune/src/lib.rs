@@ -27,6 +27,7 @@ pub mod history;
 mod kept;
 pub mod limit;
 mod near_limit;
+mod own_draws;
 mod problem;
 pub mod rule;
 mod score;

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use fspid_campaign::engine::{FlightResult, Judging, Stability};
-use fspid_scenario::file::Study;
+use fspid_scenario::file::{Study, TunedIn};
 use fspid_scenario::requirement::Requirement;
 use fspid_scenario::tuning::{TunableParameter, Tuning};
 use fspid_sim::Controller;
@@ -14,7 +14,9 @@ use fspid_study::output::{Names, Place};
 use crate::crew::{Crew, Part};
 use crate::design::{self, Original};
 use crate::error::TuneError;
-use crate::flights::{Asked, Dispersed, Flights, FlownCase, each_once, flown_cases, hex_digest};
+use crate::flights::{
+    Asked, Dispersed, Flights, FlownCase, Flyer, each_once, flown_cases, hex_digest,
+};
 use crate::score::{FlightScore, Score};
 use crate::source::Source;
 use crate::space::Space;
@@ -34,7 +36,8 @@ impl TuningProblem {
     /// The tuning of one controller of a scenario; of the one that has parameters where none is named.
     ///
     /// # Errors
-    /// No objective, nothing free, or cases, draws or bounds that make the scenario wrong.
+    /// No objective, nothing free, what is free and has its value from a case or a draw, or cases, draws or bounds that make
+    /// the scenario wrong.
     pub fn new(source: &Source, controller: Option<&str>) -> Result<Self, TuneError> {
         let (original, template) = Original::read(source)?;
         let path = || source.path.display().to_string();
@@ -48,9 +51,11 @@ impl TuningProblem {
         if parameters.is_empty() {
             return Err(TuneError::NothingFree { path: path(), controller });
         }
+        template.check_free(&parameters, TunedIn::Tuning)?;
         template.only(&controller)?.check_marks()?;
         let dispersed = Dispersed { key: "tuning.runs", runs: tuning.runs, seed: tuning.run_seed };
-        let cases = flown_cases(source, &controller, &tuning.cases, dispersed)?;
+        let flyer = Flyer { controller: &controller, free: &parameters };
+        let cases = flown_cases(source, flyer, &tuning.cases, dispersed)?;
         let digest = digest(&parameters, &tuning, &cases);
         let all = study.scenario.controllers.iter().map(|named| &named.name);
         let file_name = Names::of(Place::File, all).name(&controller);
@@ -59,6 +64,8 @@ impl TuningProblem {
         let judging = Judging { stability: Stability::Analysed, loads };
         let asked = Asked { controller: controller.clone(), part: Part::Tuning, judging };
         let flights = Flights::new(asked, Space::new(parameters), cases, measured);
+        // What cannot be written is not searched.
+        design::text(&original, flights.space(), &flights.space().start(), &[])?;
         Ok(Self { controller, tuning, flights, digest, file_name, original })
     }
 
@@ -76,8 +83,10 @@ impl TuningProblem {
 
     /// The scenario, as it was when the search began, with the values of a point in place of its marks; `heading` comes
     /// first, as comments.
-    #[must_use]
-    pub fn design(&self, point: &[f64], heading: &[String]) -> String {
+    ///
+    /// # Errors
+    /// A text that would not be a scenario.
+    pub fn design(&self, point: &[f64], heading: &[String]) -> Result<String, TuneError> {
         design::text(&self.original, self.space(), point, heading)
     }
 

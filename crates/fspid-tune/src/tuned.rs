@@ -3,13 +3,13 @@
 use fspid_diagnostics::digits::to_digits;
 use fspid_optimise::Stop;
 use fspid_page::columns::cut;
-use fspid_page::number::fixed;
 use fspid_scenario::requirement::Requirement;
 use fspid_scenario::tuning::{Free, Over};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use crate::error::TuneError;
+use crate::limit::proved_percent;
 use crate::problem::TuningProblem;
 use crate::search::{Search, Trial, stop_in_words};
 use crate::slopes::Counted;
@@ -232,7 +232,7 @@ impl Tuned {
         };
         out.push_str(&row("cost", all.iter().map(cost).collect()));
         if possible.iter().any(Option::is_some) {
-            let share = |it: Option<f64>| it.map_or("\u{2013}".to_owned(), |it| fixed(it, 0));
+            let share = |it: Option<f64>| it.map_or("\u{2013}".to_owned(), proved_percent);
             let cells = possible.into_iter().map(share).collect();
             out.push_str(&row("of what is possible [%]", cells));
         }
@@ -276,7 +276,12 @@ impl Tuned {
         if self.front.len() > MOST_OF_FRONT {
             out.push_str("  and more, in the history and the JSON\n");
         }
-        out.push_str("The design is the one with the least weighted sum.\n");
+        out.push_str(match self.over {
+            Over::Mean => "The design is the one with the least weighted sum.\n",
+            // Each measure has a worst flight of its own, the cost has one.
+            Over::Worst => "The design is the candidate with the least cost: the greatest weighted sum of a flight. Trade-offs tell the greatest of each measure by itself, so that another one may have less of their weighted sum, or the design not be among them.\n",
+            Over::Tail { .. } => "The design is the candidate with the least cost: the mean of the greatest weighted sums of flights. Trade-offs tell the mean of the greatest of each measure by itself, so that another one may have less of their weighted sum, or the design not be among them.\n",
+        });
     }
 
     /// Width of the first column of the answer.

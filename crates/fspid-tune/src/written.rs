@@ -6,7 +6,7 @@ use std::fmt;
 use std::path::Path;
 
 use fspid_diagnostics::digits::counted;
-use fspid_scenario::file::{Extra, LoadError, Problems, Template};
+use fspid_scenario::file::{Extra, LoadError, Problems, Template, TunedIn};
 use fspid_study::certify::CasesError;
 use serde_json::{Value, json};
 
@@ -49,12 +49,16 @@ impl Written<'_> {
     /// As [`check`](Self::check) of one that is right as it stands.
     ///
     /// # Errors
-    /// What is wrong with it as its dispersions draw it, or else as its cases make it.
+    /// What is wrong with it as its dispersions draw it, what is free there and gets its value from a dispersion or a case,
+    /// or else what is wrong with it as its cases make it.
     pub fn check_beyond(&self, template: &Template) -> Result<(), NotRight> {
         let study = template.study();
         if !study.dispersions.is_empty() {
             template.check_dispersions().map_err(NotRight::Scenario)?;
         }
+        template
+            .check_free(&study.tunable_parameters, TunedIn::Contest)
+            .map_err(NotRight::Scenario)?;
         let wrong = self.wrong_cases(template);
         if wrong.is_empty() { Ok(()) } else { Err(NotRight::Cases(wrong)) }
     }
@@ -64,7 +68,11 @@ impl Written<'_> {
     fn wrong_cases(&self, template: &Template) -> Vec<WrongCase> {
         let mut known = BTreeSet::new();
         let wrong = cases(template.study()).filter_map(|case| {
-            let problems = self.changed(&case.set).err()?;
+            let marks = &template.study().tunable_parameters;
+            let changed = self.changed(&case.set);
+            // A case may draw what is free by its changes.
+            let free = changed.and_then(|case| case.check_free(marks, TunedIn::AsWritten));
+            let problems = free.err()?;
             let is_new = known.insert(problems.to_string());
             let case = case.name.clone();
             is_new.then_some(WrongCase { case, problems: LoadError::Problems(problems) })

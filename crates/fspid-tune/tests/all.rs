@@ -5,5 +5,6 @@ mod anfis;
 mod contest;
 mod crew;
 mod designs;
+mod free_places;
 mod problem;
 mod rules;

@@ -4,7 +4,7 @@
 use fspid_scenario::file;
 use fspid_scenario::units::degrees;
 use fspid_study::simulation::Simulation;
-use fspid_tune::{Crew, Effort, FORBIDDEN, Search, Source, TuningProblem};
+use fspid_tune::{Crew, Effort, FORBIDDEN, Search, Source, Trial, Tuned, TuningProblem};
 
 const SCENARIO: &str = r#"schema = 1
 name = "to be tuned"
@@ -76,7 +76,10 @@ fn a_design_is_made_of_the_scenario_as_it_was_when_the_search_began() {
     std::fs::write(&path, SCENARIO).expect("written");
     let source = Source { path: path.clone(), overrides: vec!["loop.duration_s=3".to_owned()] };
     let problem = TuningProblem::new(&source, None).unwrap_or_else(|error| panic!("{error}"));
-    let design = || problem.design(&problem.space().start(), &["a design".to_owned()]);
+    let design = || {
+        let text = problem.design(&problem.space().start(), &["a design".to_owned()]);
+        text.unwrap_or_else(|error| panic!("{error}"))
+    };
     let expected = design();
     let begin = "# a design\nset = [\"loop.duration_s=3\"]\nschema = 1\n";
     assert!(expected.starts_with(begin), "{expected}");
@@ -301,4 +304,80 @@ fn a_candidate_that_keeps_a_constant_load_is_refused_unless_the_file_ignores_loa
     assert!(ignored.scores(&[lost])[0].is_allowed() && !ignored.removes_constant_load());
     assert_ne!(asked.digest(), ignored.digest());
     assert_eq!(asked.scores(std::slice::from_ref(&well)), ignored.scores(&[well]));
+}
+
+/// A second list was written, in front: a file that nobody could read, with exit code 0.
+#[test]
+fn a_design_has_its_changes_behind_those_that_its_scenario_lists() {
+    let mark = r#""controller.PID.ki={ tune = [0.01, 5.0], scale = \"log\", start = 0.5 }""#;
+    let lists = [
+        format!("set = [{mark}]\n"),
+        format!("\"set\" = [\n  'loop.duration_s=3', # shorter\n  {mark}, # free\n]\n"),
+        "set = []\n".to_owned(),
+    ];
+    for (list, overrides) in lists.iter().flat_map(|list| {
+        [Vec::new(), vec!["controller.PID.kd={ tune = [0.0, 0.2] }".to_owned()]]
+            .map(|overrides| (list, overrides))
+    }) {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("pitch.toml");
+        let plain = match list.contains("ki=") {
+            true => "ki = 0.5",
+            false => "ki = { tune = [0.01, 5.0], start = 0.5 }",
+        };
+        let own = "ki = { tune = [0.01, 5.0], scale = \"log\", start = 0.5 }";
+        let text = format!("{list}{}", SCENARIO.replace(own, plain));
+        std::fs::write(&path, text).expect("written");
+        let source = Source { path, overrides };
+        let problem = TuningProblem::new(&source, None).unwrap_or_else(|error| panic!("{error}"));
+        let mut point = problem.space().start();
+        point.iter_mut().for_each(|it| *it = 0.25);
+        let design = problem.design(&point, &["found".to_owned()]);
+        let design = design.unwrap_or_else(|error| panic!("{error}"));
+        let read = file::parse(&design, "design.toml", None, &[]);
+        let read = read.unwrap_or_else(|problems| panic!("{problems}\n{design}"));
+        let free = problem.space().values(&point);
+        for (path, value) in free {
+            let found = file::Template::parse(&design, "design.toml", None, &Default::default());
+            let found = found.expect("it was read").number_at(path).map(|it| format!("{it:?}"));
+            assert_eq!(found, Some(value.to_string()), "{}\n{design}", path.text());
+        }
+        assert_eq!(read.tunable_parameters.len(), 1, "that of the other controller\n{design}");
+        assert!(!list.contains("duration") || design.contains("# shorter"), "{design}");
+    }
+}
+
+#[test]
+fn of_a_front_of_the_worst_flights_the_design_is_said_to_be_what_it_is() {
+    let told = |over: &str| {
+        let to = format!("controller = \"PID\"\nruns = 5\nover = \"{over}\"\n\n");
+        let problem = problem(&[("controller = \"PID\"\n\n", &to)]);
+        let effort = Effort {
+            optimiser: "nsga-ii".to_owned(),
+            budget: 40,
+            seed: 3,
+            population: Some(10),
+            anywhere: false,
+        };
+        let mut search = Search::begin(&problem, effort, Crew::UNSTOPPED).expect("it begins");
+        let stop = loop {
+            if let Some(stop) = search.advance().expect("flown") {
+                break stop;
+            }
+        };
+        let tuned = Tuned::of(&problem, &search, stop).expect("flown");
+        let sum = |it: &Trial| it.score.objectives.iter().sum::<f64>();
+        let least = tuned.front.iter().map(sum).fold(f64::INFINITY, f64::min);
+        (tuned.text(), sum(&tuned.best) - least)
+    };
+    let (text, beyond) = told("mean");
+    assert!(text.contains("the one with the least weighted sum.\n"), "{text}");
+    assert!(beyond.abs() < 1e-9, "{beyond}");
+    for (over, words) in [
+        ("worst", "greatest weighted sum of a flight"),
+        ("tail\"\nshare = 0.4 # \"", "mean of the greatest weighted sums"),
+    ] {
+        let (text, _) = told(over);
+        assert!(text.contains(words) && !text.contains("the one with the least"), "{text}");
+    }
 }

@@ -202,7 +202,7 @@ impl Tuning<'_> {
         let (tuned, best) = tuned?.map_err(failure)?;
         if let Some(out) = &out {
             let heading = tuned.heading(&effort.command(source, name));
-            output::write(out, problem.design(&best, &heading))?;
+            output::write(out, problem.design(&best, &heading).map_err(failure)?)?;
             wrote(out);
         }
         // The state is kept until all is told.

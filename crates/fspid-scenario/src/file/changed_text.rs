@@ -22,6 +22,23 @@ pub fn changed_text(text: &str, path: &str, value: &str) -> Result<String, Probl
     Ok(changed.unwrap_or_else(|| text.to_owned()))
 }
 
+/// The text with more entries behind those of its own list of changes, each `path=value`; none for a text without one.
+#[must_use]
+pub fn with_listed(text: &str, changes: &[String]) -> Option<String> {
+    let document = document::read(&mut Report::default(), None, text)?;
+    let list = document.member(overrides::KEY)?;
+    let Value::Array(entries) = &list.value else { return None };
+    let quoted: Vec<String> = changes.iter().map(|change| format!("{change:?}")).collect();
+    let quoted = quoted.join(", ");
+    Some(match entries.last() {
+        _ if changes.is_empty() => text.to_owned(),
+        Some(last) => {
+            spliced(text, Span { start: last.place.end, ..last.place }, &format!(", {quoted}"))
+        }
+        None => spliced(text, list.place, &format!("[{quoted}]")),
+    })
+}
+
 fn changed(report: &mut Report, text: &str, path: &str, value: &str) -> Option<String> {
     let mut document = document::read(report, None, text)?;
     renamed::in_item(report, &mut document, &mut Vec::new());
@@ -202,6 +219,23 @@ mod tests {
         let found = change("loop", "{ sample_period_s = 0.02, duration_s = 5.0 }");
         let line = "set = [\"loop={ sample_period_s = 0.02, duration_s = 5.0 }\"]\n";
         assert_eq!(found, TEXT.replace("name = \"x\"\n", &format!("name = \"x\"\n{line}")));
+    }
+
+    #[test]
+    fn entries_go_behind_those_of_a_list_however_it_is_written() {
+        let more = ["a.b=1".to_owned(), "c=\"d\"".to_owned()];
+        for (list, found) in [
+            ("set = []\n", "set = [\"a.b=1\", \"c=\\\"d\\\"\"]\n"),
+            (
+                "\"set\" = [\n 'e=2', # so\n]\n",
+                "\"set\" = [\n 'e=2', \"a.b=1\", \"c=\\\"d\\\"\", # so\n]\n",
+            ),
+        ] {
+            let text = format!("schema = 1\n{list}[loop]\nset = 1\n");
+            assert_eq!(with_listed(&text, &more), Some(text.replace(list, found)));
+            assert_eq!(with_listed(&text, &[]), Some(text));
+        }
+        assert_eq!(with_listed("[loop]\nset = []\n", &more), None);
     }
 
     #[test]

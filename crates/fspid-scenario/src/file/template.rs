@@ -8,7 +8,7 @@ use super::extra::Extra;
 use super::files::{Files, Kept};
 use super::overrides::{self, Found, Setting};
 use crate::dispersion::Dispersion;
-use crate::setting_path::{NewValue, SettingPath, path_of, steps};
+use crate::setting_path::{NewValue, SettingPath, Step, path_of, steps};
 use crate::tuning::TunableParameter;
 use fspid_diagnostics::{Problems, Report, Span};
 
@@ -117,10 +117,7 @@ impl Template {
         asked: Asked,
     ) -> Result<Study, Problems> {
         let (mut report, mut document) = (self.report.clone(), self.document.clone());
-        for (path, value) in values {
-            let set = setting(&mut report, path, value);
-            overrides::put(&mut report, files, &mut document, (path.steps(), &set));
-        }
+        put_all(&mut report, files, &mut document, values);
         let built = build(&mut report, files, &document, asked);
         files.report_unused_changes(&mut report);
         report.finish(&self.name)?;
@@ -128,7 +125,8 @@ impl Template {
         Ok(Study::without_text(built))
     }
 
-    /// The scenario with one controller alone, and without what it says of tuning and of other controllers.
+    /// The scenario with one controller alone, and without what it says of tuning and of other controllers. What differs from
+    /// run to run is drawn of the whole scenario, so that everybody gets the same: of one controller alone nothing is.
     ///
     /// Its digest is of what is left and of the files that this names: of what decides about its flights.
     ///
@@ -160,7 +158,7 @@ impl Template {
         files.digest(&one.document.meaning());
         one.changes.iter().for_each(|change| files.digest(&change.meaning()));
         let digest = files.finish();
-        one.study = Study { tunable_parameters, digest, ..study };
+        one.study = Study { tunable_parameters, digest, dispersions: Vec::new(), ..study };
         Ok(one)
     }
 
@@ -181,9 +179,39 @@ impl Template {
         }
     }
 
+    /// The number at a place of the scenario itself once other values are put into it; `None` where there is none.
+    #[must_use]
+    pub fn number_with(
+        &self,
+        values: &[(&SettingPath, NewValue)],
+        path: &SettingPath,
+    ) -> Option<f64> {
+        let (mut report, mut files) = (self.report.clone(), self.files());
+        let mut document = self.document.clone();
+        put_all(&mut report, &mut files, &mut document, values);
+        match overrides::find(&document, path.steps(), "") {
+            Found::Here(item) => number(item),
+            _ => None,
+        }
+    }
+
     /// A path in the one way of all that lead to its place: entries of lists by their numbers.
     pub(super) fn place_in_words(&self, path: &SettingPath) -> String {
-        path_of(&overrides::numbered(&self.document, path.steps()))
+        path_of(&self.numbered(path))
+    }
+
+    /// The same by its steps.
+    pub(super) fn numbered(&self, path: &SettingPath) -> Vec<Step> {
+        overrides::numbered(&self.document, path.steps())
+    }
+
+    /// Name of a controller by its number.
+    pub(super) fn controller_at(&self, index: usize) -> Option<String> {
+        let steps = [Step::Name("controller".to_owned()), Step::Index(index)];
+        match overrides::find(&self.document, &steps, "") {
+            Found::Here(item) => text_at(item, "name").map(str::to_owned),
+            _ => None,
+        }
     }
 
     fn files(&self) -> Files<'_> {
@@ -237,6 +265,19 @@ fn build(
         loops::check(report, &section, &built.scenario);
     }
     Some(built)
+}
+
+/// Puts values into a document.
+fn put_all(
+    report: &mut Report,
+    files: &mut Files<'_>,
+    document: &mut Item,
+    values: &[(&SettingPath, NewValue)],
+) {
+    for (path, value) in values {
+        let set = setting(report, path, value);
+        overrides::put(report, files, document, (path.steps(), &set));
+    }
 }
 
 /// A new value with the words that a problem quotes.

@@ -34,6 +34,11 @@ impl SettingPath {
         Some((Self { text, steps }, key))
     }
 
+    /// That these steps lead to.
+    pub(crate) fn of(steps: Vec<Step>) -> Self {
+        Self { text: path_of(&steps), steps }
+    }
+
     /// The way to it.
     pub(crate) fn steps(&self) -> &[Step] {
         &self.steps

@@ -180,8 +180,9 @@ impl Teller<'_> {
         })
     }
 
-    /// The text of a design; none where the scenario's file has changed since, for it would be put in the place of that.
+    /// The text of a design; none where the scenario's file has changed since, for it would be put in the place of that, or
+    /// where it would be no scenario.
     fn design(&self, point: &[f64], heading: &[String]) -> Option<String> {
-        self.task.is_as_seen().then(|| self.problem.design(point, heading))
+        self.task.is_as_seen().then(|| self.problem.design(point, heading).ok()).flatten()
     }
 }

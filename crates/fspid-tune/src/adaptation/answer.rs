@@ -3,8 +3,8 @@
 use fspid_core::Gains;
 
 use super::best::Best;
-use super::flown::{First, Values};
-use super::means::{Draws, Estimate, Means, Quantity, Weights, line};
+use super::flown::{First, Treated};
+use super::means::{Draws, Estimate, Kind, Means, Quantity, Weights, line};
 use super::treatment::Treatment;
 use super::{Adaptation, Plants};
 
@@ -148,21 +148,20 @@ fn parts(gains: Gains<f64>) -> [f64; 3] {
 pub(super) fn answer(
     asked: &Adaptation,
     named: Vec<String>,
-    firsts: &[First],
-    plants: &Plants,
-    values: &[Values],
+    (firsts, plants): (&[First], &Plants),
+    treated: &[Treated],
     best: &[Option<Best>],
 ) -> Answer {
-    let of_plant: Vec<(usize, Values)> =
-        plants.of.iter().copied().zip(values.iter().cloned()).collect();
-    let flown: Vec<(usize, Values)> = match asked.against {
+    let of_plant: Vec<(usize, Treated)> =
+        plants.of.iter().copied().zip(treated.iter().cloned()).collect();
+    let flown: Vec<(usize, Treated)> = match asked.against {
         Some(_) => of_plant,
         // Without another controller the chain begins at the nominal gains.
         None => of_plant.into_iter().map(|(plant, values)| (plant, without(values))).collect(),
     };
     let means = Means::of(&flown, plants.keys.len());
     let seeds = usize::try_from(asked.options.seeds).unwrap_or(1);
-    let draws = Draws::new(plants.keys.len(), seeds, asked.options.seed);
+    let draws = Draws::new(plants.keys.len(), seeds);
     let told = Told { means: &means, draws: &draws };
     let path = &asked.source.path;
     let file = path.file_name().map(|name| name.to_string_lossy().into_owned());
@@ -187,16 +186,16 @@ pub(super) fn answer(
         win: told.between(chain.first().copied(), Treatment::AsItIs, Quantity::Iae),
         win_travel: told.between(chain.first().copied(), Treatment::AsItIs, Quantity::Travel),
         steps: told.steps(chain),
-        rows: rows(&told, values, asked.against.is_some()),
+        rows: rows(&told, treated, asked.against.is_some()),
         moved: facts.moved(&draws, nominal.unwrap_or(Gains::ZERO)),
         following: facts.following(&draws),
     }
 }
 
 /// Values without the controller that is compared with.
-fn without(mut values: Values) -> Values {
-    values[Treatment::Against.place()].clear();
-    values
+fn without(mut treated: Treated) -> Treated {
+    treated.values[Treatment::Against.place()].clear();
+    treated
 }
 
 /// Estimates from means.
@@ -226,7 +225,7 @@ impl Told<'_> {
         quantity: Quantity,
     ) -> Option<Estimate> {
         let from = from?;
-        let found = self.draws.estimate(|it| self.logarithm(from, to, quantity, it))?;
+        let found = self.draws.estimate(Kind::Any, |it| self.logarithm(from, to, quantity, it))?;
         Some(found.map(libm::exp))
     }
 
@@ -234,7 +233,7 @@ impl Told<'_> {
         let first = chain.first().copied().unwrap_or(Treatment::Nominal);
         let whole =
             |weights: &Weights| self.logarithm(first, Treatment::AsItIs, Quantity::Iae, weights);
-        let is_win = self.draws.estimate(whole).is_some_and(|whole| whole.value < 0.0);
+        let is_win = self.draws.estimate(Kind::Any, whole).is_some_and(|whole| whole.value < 0.0);
         let pairs = chain.iter().zip(chain.iter().skip(1));
         pairs
             .map(|(&from, &to)| {
@@ -246,16 +245,16 @@ impl Told<'_> {
                     treatment: to,
                     iae: self.between(Some(from), to, Quantity::Iae),
                     travel: self.between(Some(from), to, Quantity::Travel),
-                    share: if is_win { self.draws.estimate(share) } else { None },
+                    share: if is_win { self.draws.estimate(Kind::Any, share) } else { None },
                 }
             })
             .collect()
     }
 }
 
-fn rows(told: &Told<'_>, values: &[Values], against: bool) -> Vec<Row> {
+fn rows(told: &Told<'_>, treated: &[Treated], against: bool) -> Vec<Row> {
     let row = |treatment: Treatment| {
-        let flown = || values.iter().flat_map(|values| &values[treatment.place()]);
+        let flown = || treated.iter().flat_map(|it| &it.values[treatment.place()]);
         let is_asked = flown().next().is_some_and(|it| it.broken.is_some());
         let from = Some(Treatment::AsItIs);
         Row {
@@ -313,13 +312,13 @@ impl Facts<'_> {
     fn moved(&self, draws: &Draws, nominal: Gains<f64>) -> [Moved; 3] {
         let of = |gain: usize| {
             let share = |part: usize| {
-                draws.estimate(|weights| {
+                draws.estimate(Kind::Share, |weights| {
                     let parts = self.variances(gain, weights)?;
                     let whole: f64 = parts.iter().sum();
                     (whole > 0.0).then(|| parts[part] / whole)
                 })
             };
-            let deviation = draws.estimate(|weights| {
+            let deviation = draws.estimate(Kind::Any, |weights| {
                 self.variances(gain, weights).map(|it| libm::sqrt(it.iter().sum()))
             });
             Moved {
@@ -420,12 +419,13 @@ fn followed(draws: &Draws, pairs: &[(f64, f64, usize)]) -> Option<Followed> {
     if pairs.len() < 3 {
         return None;
     }
-    let part = |which: usize| {
-        draws.estimate(|weights| {
+    let part = |which: usize, kind: Kind| {
+        draws.estimate(kind, |weights| {
             let often = |plant: usize| weights.plants.get(plant).copied().unwrap_or(0.0);
             let pairs = pairs.iter().map(|&(x, y, plant)| (x, y, often(plant)));
             line(pairs).map(|found| found[which])
         })
     };
-    Some(Followed { correlation: part(0)?, slope: part(1)? })
+    let (correlation, slope) = (part(0, Kind::Correlation)?, part(1, Kind::Any)?);
+    Some(Followed { correlation, slope })
 }

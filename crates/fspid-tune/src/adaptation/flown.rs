@@ -185,34 +185,71 @@ fn signals(study: &Study, prepared: &Prepared) -> String {
     ))
 }
 
+/// Sums of the gains of flights at each sample, and how many they are.
+type Sums = Vec<[f64; 4]>;
+
 /// Sums of the gains that flights with the same signals have at each sample.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Schedules(Vec<(String, Vec<[f64; 4]>)>);
+pub(super) struct Schedules(Vec<Schedule>);
+
+/// Those of the same signals.
+#[derive(Clone, Debug, Default)]
+struct Schedule {
+    signals: String,
+    all: Sums,
+    /// Of each part of the plants that has some.
+    parts: Vec<(usize, Sums)>,
+}
 
 impl Schedules {
-    /// Takes in a flight that is not lost.
-    pub(super) fn add(&mut self, signals: &str, gains: &[Gains<f64>]) {
-        let place = self.0.iter().position(|(key, _)| key == signals).unwrap_or(self.0.len());
+    /// Takes in a flight that is not lost, of a plant of that part.
+    pub(super) fn add(&mut self, signals: &str, part: usize, gains: &[Gains<f64>]) {
+        let place = self.0.iter().position(|it| it.signals == signals).unwrap_or(self.0.len());
         if place == self.0.len() {
-            self.0.push((signals.to_owned(), Vec::new()));
+            self.0.push(Schedule { signals: signals.to_owned(), ..Schedule::default() });
         }
-        let Some((_, sums)) = self.0.get_mut(place) else { return };
-        sums.resize(sums.len().max(gains.len()), [0.0; 4]);
-        for (sum, Gains { kp, ki, kd }) in sums.iter_mut().zip(gains) {
-            *sum = [sum[0] + kp, sum[1] + ki, sum[2] + kd, sum[3] + 1.0];
+        let Some(Schedule { all, parts, .. }) = self.0.get_mut(place) else { return };
+        add(all, gains);
+        match parts.iter_mut().find(|(it, _)| *it == part) {
+            Some((_, sums)) => add(sums, gains),
+            None => {
+                let mut sums = Sums::new();
+                add(&mut sums, gains);
+                parts.push((part, sums));
+            }
         }
     }
 
-    /// Mean gains of the other flights with the same signals, sample by sample; none where there are none.
-    fn of_others(&self, signals: &str, own: &Record) -> Option<Vec<Gains<f64>>> {
-        let (_, sums) = self.0.iter().find(|(key, _)| key == signals)?;
-        let others = sums.iter().zip(&own.gains).map(|(&[kp, ki, kd, count], own)| {
+    /// Mean gains of the other flights with the same signals, sample by sample, without those of a part of the plants; none
+    /// where there are none.
+    fn of_others(
+        &self,
+        signals: &str,
+        own: &Record,
+        without: Option<usize>,
+    ) -> Option<Vec<Gains<f64>>> {
+        let Schedule { all, parts, .. } = self.0.iter().find(|it| it.signals == signals)?;
+        let left = parts.iter().find(|(part, _)| Some(*part) == without).map(|(_, sums)| sums);
+        let others = all.iter().zip(&own.gains).enumerate().map(|(sample, (sum, own))| {
+            let left = left.and_then(|sums| sums.get(sample)).copied().unwrap_or_default();
+            let mut others = [0.0; 4];
+            for ((other, sum), left) in others.iter_mut().zip(sum).zip(left) {
+                *other = sum - left;
+            }
+            let [kp, ki, kd, count] = others;
             let rest = count - 1.0;
             let mean = |sum: f64, own: f64| (sum - own) / rest;
             let gains = Gains { kp: mean(kp, own.kp), ki: mean(ki, own.ki), kd: mean(kd, own.kd) };
             (rest > 0.5).then_some(gains)
         });
         others.collect()
+    }
+}
+
+fn add(sums: &mut Sums, gains: &[Gains<f64>]) {
+    sums.resize(sums.len().max(gains.len()), [0.0; 4]);
+    for (sum, Gains { kp, ki, kd }) in sums.iter_mut().zip(gains) {
+        *sum = [sum[0] + kp, sum[1] + ki, sum[2] + kd, sum[3] + 1.0];
     }
 }
 
@@ -240,26 +277,60 @@ fn no_tuner() -> TuneError {
 /// Values of each treatment, one for each seed.
 pub(super) type Values = [Vec<Value>; COUNT];
 
-/// Flies a study with its own gains and inputs at other moments, and with the gains that its flight has on other plants.
+/// What a flight is worth treated.
+#[derive(Clone, Debug)]
+pub(super) struct Treated {
+    pub(super) values: Values,
+    /// What depends on other plants, without each part of the plants: with the mean gains of all flights, and with those of
+    /// the other plants.
+    pub(super) left: Vec<[Option<Value>; 2]>,
+}
+
+impl Treated {
+    /// The values where a part of the plants had not flown.
+    pub(super) fn without(&self, part: usize) -> Values {
+        let mut values = self.values.clone();
+        let left = self.left.get(part).copied().unwrap_or_default();
+        for (treatment, value) in Treatment::OF_OTHERS.into_iter().zip(left) {
+            values[treatment.place()] = value.into_iter().collect();
+        }
+        values
+    }
+}
+
+/// A flight by its number, the part that its plant is in, and of how many.
+#[derive(Clone, Copy)]
+pub(super) struct Numbered {
+    pub(super) number: usize,
+    pub(super) part: usize,
+    pub(super) parts: usize,
+}
+
+/// Flies a study with its own gains and inputs at other moments, and with the gains that its flight has on other plants: on all
+/// of them, and on those without each part.
 pub(super) fn replayed(
     study: &Study,
-    (number, schedules): (usize, &Schedules),
+    (numbered, schedules): (Numbered, &Schedules),
     (seed, seeds): (u64, u64),
     watch: Watch<'_>,
-) -> Result<Values, TuneError> {
+) -> Result<(Values, Vec<Option<Value>>), TuneError> {
     let mut values = Values::default();
     let prepared = study.scenario.prepare().map_err(|error| unflown(&error))?;
     let tuner = tuner(study).ok_or_else(no_tuner)?;
     let record = Record::of(&prepared, tuner).map_err(|error| unflown(&error))?;
     let fly = |replay: Replay<'_>| flown(&prepared, tuner, replay).map_err(|error| unflown(&error));
-    let others = schedules.of_others(&signals(study, &prepared), &record);
-    if let Some(gains) = others.filter(|_| !record.lost) {
-        watch.ask(1)?;
-        values[Treatment::OtherPlants.place()].push(fly(Replay::Gains(&gains))?);
-    }
+    let signals = signals(study, &prepared);
+    let others = |without: Option<usize>| {
+        let others = schedules.of_others(&signals, &record, without).filter(|_| !record.lost);
+        let fly = |gains: Vec<Gains<f64>>| watch.ask(1).and_then(|()| fly(Replay::Gains(&gains)));
+        others.map(fly).transpose()
+    };
+    values[Treatment::OtherPlants.place()].extend(others(None)?);
+    let without = |part: usize| if part == numbered.part { Ok(None) } else { others(Some(part)) };
+    let left = (0..numbered.parts).map(without).collect::<Result<_, _>>()?;
     for seed in (0..seeds).map(|place| seed.wrapping_add(place)) {
         watch.ask(Treatment::DRAWN.len())?;
-        let mut draw = Draw::of(seed, number as u64);
+        let mut draw = Draw::of(seed, numbered.number as u64);
         let turned = turned(&record.gains, &mut draw);
         let order = draw.order(record.gains.len());
         let gains = shuffled(&record.gains, &order);
@@ -269,7 +340,7 @@ pub(super) fn replayed(
             values[treatment.place()].push(fly(replay)?);
         }
     }
-    Ok(values)
+    Ok((values, left))
 }
 
 fn flown(prepared: &Prepared, tuner: &Fspid<f64>, replay: Replay<'_>) -> Result<Value, SimError> {
@@ -326,13 +397,25 @@ pub(super) fn stood(
         let flight = judged(memory, std::slice::from_ref(other), watch)?.pop().flatten();
         values[Treatment::Against.place()] = vec![value(&flight)];
     }
-    let frozen: Option<Vec<Study>> = means.iter().map(|(_, gains)| frozen(study, *gains)).collect();
-    let flights = match &frozen {
-        Some(studies) => judged(memory, studies, watch)?,
-        None => vec![None; means.len()],
-    };
-    for ((treatment, _), flight) in means.iter().zip(&flights) {
-        values[treatment.place()] = vec![value(flight)];
+    let gains: Vec<Gains<f64>> = means.iter().map(|(_, gains)| *gains).collect();
+    for ((treatment, _), value) in means.iter().zip(standing(memory, study, &gains, watch)?) {
+        values[treatment.place()] = vec![value];
     }
     Ok((values, as_it_is))
+}
+
+/// Values of a study that flies with gains that stand still, one after the other.
+pub(super) fn standing(
+    memory: &mut Memory,
+    study: &Study,
+    gains: &[Gains<f64>],
+    watch: Watch<'_>,
+) -> Result<Vec<Value>, TuneError> {
+    let studies: Option<Vec<Study>> = gains.iter().map(|gains| frozen(study, *gains)).collect();
+    let flights = match &studies {
+        Some(studies) => judged(memory, studies, watch)?,
+        None => vec![None; gains.len()],
+    };
+    let value = |flight: &Option<FlightResult>| flight.as_ref().map_or(Value::LOST, Value::of);
+    Ok(flights.iter().map(value).collect())
 }

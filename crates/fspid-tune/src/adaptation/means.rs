@@ -1,24 +1,37 @@
-//! Means over flights, and how sure they are: plants are drawn anew, and with them their flights.
+//! Means over flights, and how sure they are: parts of the plants are left out one after the other, with all their flights and
+//! with what their gains are to others.
 
-use super::flown::{Value, Values};
+use super::flown::{Treated, Value, Values};
 use super::treatment::{COUNT, Treatment};
-use crate::draw::Draw;
+use crate::contest::beyond;
 
-/// How often plants and seeds are drawn anew.
-pub(super) const DRAWS: usize = 2000;
 /// Fewest plants from which an interval is told.
 pub(super) const FEWEST: usize = 5;
-/// Share of the draws beyond each end of an interval.
-const BEYOND: f64 = 0.025;
-/// Random stream of the draws, behind those of the flights.
-const STREAM: u64 = 1 << 40;
+/// Most parts of the plants, of which one after the other is left out.
+const PARTS: usize = 20;
+/// Chance that an interval does not hold the number.
+const CHANCE: f64 = 0.05;
+/// What rounding alone does to a number.
+const ROUNDING: f64 = 1e-12;
+/// Correlations and shares are no nearer to 1: their transformations end there.
+const MOST: f64 = 1.0 - 1e-15;
+
+/// The part that a plant is in.
+pub(super) fn part_of(plant: usize) -> usize {
+    plant % PARTS
+}
+
+/// How many parts so many plants have; none where there are too few for an interval.
+pub(super) fn parts(plants: usize) -> usize {
+    if plants < FEWEST { 0 } else { plants.min(PARTS) }
+}
 
 /// A number with its interval, which is told for five plants and more.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     /// The estimate.
     pub value: f64,
-    /// 95 % of the draws lie in it.
+    /// It holds the number with 95 %.
     pub interval: Option<[f64; 2]>,
 }
 
@@ -36,65 +49,145 @@ impl Estimate {
     }
 }
 
-/// How often each plant and each seed counts.
+/// How much each plant and each seed counts, 1 or 0.
 #[derive(Clone, Debug)]
 pub(super) struct Weights {
     pub(super) plants: Vec<f64>,
     pub(super) seeds: Vec<f64>,
+    /// The part of the plants that is left out.
+    left: Option<usize>,
 }
 
-/// The draws of plants and seeds.
+/// What kind of number has an interval.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// Any number: a logarithm, a slope.
+    Any,
+    /// From -1 to 1; its error is that of its hyperbolic arctangent (Fisher).
+    Correlation,
+    /// From 0 to 1; its error is that of the logarithm of its odds.
+    Share,
+}
+
+impl Kind {
+    /// On a scale on which errors are alike on both sides.
+    fn scaled(self, value: f64) -> f64 {
+        match self {
+            Self::Correlation => libm::atanh(value.clamp(-MOST, MOST)),
+            Self::Share => {
+                let share = value.clamp(1.0 - MOST, MOST);
+                libm::log(share / (1.0 - share))
+            }
+            Self::Any => value,
+        }
+    }
+
+    fn unscaled(self, value: f64) -> f64 {
+        match self {
+            Self::Any => value,
+            Self::Correlation => libm::tanh(value),
+            Self::Share => 1.0 / (1.0 + libm::exp(-value)),
+        }
+    }
+}
+
+/// What is left out of plants and seeds.
+///
+/// The plants' part of a number's variance comes from leaving out one part of the plants after the other, parts of unequal
+/// sizes allowed for: with $\theta$ of all $n$ plants, $\theta_g$ without the $m_g$ plants of part $g$ of $G$, and
+/// $h_g = n / m_g$,
+///
+/// $$ s^2 = \frac{1}{G} \sum_g \frac{1}{h_g - 1} \left( h_g \theta - (h_g - 1) \theta_g - \bar\theta \right)^2,
+/// \quad \bar\theta = G \theta - \sum_g \left( 1 - \frac{m_g}{n} \right) \theta_g $$
+///
+/// Seeds are left out one by one. Both parts are added; degrees of freedom are Satterthwaite's.
+///
+/// # Source
+/// Busing, Meijer and van der Leeden (1999), "Delete-m jackknife for unequal m", Statistics and Computing 9.
 #[derive(Clone, Debug)]
 pub(super) struct Draws {
     as_flown: Weights,
-    drawn: Vec<Weights>,
+    /// Without a part of the plants, with how many of all plants it has, of 1.
+    parts: Vec<(f64, Weights)>,
+    /// Without a seed.
+    seeds: Vec<Weights>,
 }
 
 impl Draws {
-    pub(super) fn new(plants: usize, seeds: usize, seed: u64) -> Self {
-        let as_flown = Weights { plants: vec![1.0; plants], seeds: vec![1.0; seeds] };
-        let drawn = |number: usize| {
-            let mut draw = Draw::of(seed, STREAM + number as u64);
-            let mut counts = |many: usize| {
-                let mut counts = vec![0.0; many];
-                for _ in 0..many {
-                    counts[draw.below(many)] += 1.0;
-                }
-                counts
-            };
-            Weights { plants: counts(plants), seeds: counts(seeds) }
+    pub(super) fn new(plants: usize, seeds: usize) -> Self {
+        let as_flown = Weights { plants: vec![1.0; plants], seeds: vec![1.0; seeds], left: None };
+        let part = |part: usize| {
+            let stays = |plant: usize| if part_of(plant) == part { 0.0 } else { 1.0 };
+            let kept: Vec<f64> = (0..plants).map(stays).collect();
+            let share = 1.0 - kept.iter().sum::<f64>() / plants as f64;
+            (share, Weights { plants: kept, left: Some(part), ..as_flown.clone() })
         };
-        let count = if plants < FEWEST { 0 } else { DRAWS };
-        Self { as_flown, drawn: (0..count).map(drawn).collect() }
+        let seed = |seed: usize| {
+            let mut without = as_flown.clone();
+            without.seeds[seed] = 0.0;
+            without
+        };
+        // Of one seed nobody knows what another would do.
+        let left_seeds = if seeds < 2 { 0 } else { seeds };
+        let (parts, seeds) = ((0..parts(plants)).map(part), (0..left_seeds).map(seed));
+        Self { parts: parts.collect(), seeds: seeds.collect(), as_flown }
     }
 
-    /// A number that depends on how often plants and seeds count; `None` where it has no value, and without an interval
-    /// where too many draws have none.
-    pub(super) fn estimate(&self, of: impl Fn(&Weights) -> Option<f64>) -> Option<Estimate> {
+    /// A number that depends on how much plants and seeds count; `None` where it has no value, and without an interval
+    /// where it has none without some of them.
+    pub(super) fn estimate(
+        &self,
+        kind: Kind,
+        of: impl Fn(&Weights) -> Option<f64>,
+    ) -> Option<Estimate> {
         let finite = |weights: &Weights| of(weights).filter(|value| value.is_finite());
         let value = finite(&self.as_flown)?;
-        let mut drawn: Vec<f64> = self.drawn.iter().filter_map(finite).collect();
-        drawn.sort_unstable_by(f64::total_cmp);
-        let is_enough =
-            !drawn.is_empty() && drawn.len() + self.drawn.len() / 100 >= self.drawn.len();
+        let middle = kind.scaled(value);
+        let interval = self.beyond(middle, |it| finite(it).map(|value| kind.scaled(value)));
         let interval =
-            is_enough.then(|| [quantile(&drawn, BEYOND), quantile(&drawn, 1.0 - BEYOND)]);
+            interval.map(|far| [middle - far, middle + far].map(|end| kind.unscaled(end)));
         Some(Estimate { value, interval })
+    }
+
+    /// Half of an interval of 95 % about the number that is had of all.
+    fn beyond(&self, middle: f64, of: impl Fn(&Weights) -> Option<f64>) -> Option<f64> {
+        let parts = self.parts.iter().map(|(share, weights)| Some((*share, of(weights)?)));
+        let parts: Vec<(f64, f64)> = parts.collect::<Option<_>>()?;
+        let seeds: Vec<f64> = self.seeds.iter().map(&of).collect::<Option<_>>()?;
+        if parts.is_empty() {
+            return None;
+        }
+        let variances = [of_parts(middle, &parts), of_seeds(&seeds)];
+        let freedoms = [parts.len() as f64 - 1.0, seeds.len().saturating_sub(1).max(1) as f64];
+        let whole: f64 = variances.iter().sum();
+        let doubts = variances.iter().zip(freedoms).map(|(it, freedom)| it * it / freedom);
+        let freedom = whole * whole / doubts.sum::<f64>();
+        let far = match freedom >= 1.0 {
+            true => beyond(CHANCE, freedom) * libm::sqrt(whole),
+            false => 0.0,
+        };
+        Some(far.max(ROUNDING * (1.0 + middle.abs())))
     }
 }
 
-/// Of sorted numbers, between neighbours in a straight line.
-fn quantile(sorted: &[f64], share: f64) -> f64 {
-    let place = share * (sorted.len().saturating_sub(1)) as f64;
-    let below = libm::floor(place);
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "not negative, and less than the length"
-    )]
-    let index = below as usize;
-    let at = |index: usize| sorted.get(index).or(sorted.last()).copied().unwrap_or(f64::NAN);
-    at(index) + (place - below) * (at(index + 1) - at(index))
+/// The plants' part of a variance, from numbers without a part of them, each with its share of the plants.
+fn of_parts(whole: f64, parts: &[(f64, f64)]) -> f64 {
+    let count = parts.len() as f64;
+    let mean = count * whole - parts.iter().map(|(share, it)| (1.0 - share) * it).sum::<f64>();
+    let square = |&(share, without): &(f64, f64)| {
+        let times = 1.0 / share;
+        let pseudo = times * whole - (times - 1.0) * without;
+        (pseudo - mean) * (pseudo - mean) / (times - 1.0)
+    };
+    parts.iter().map(square).sum::<f64>() / count
+}
+
+/// The seeds' part of a variance, from numbers without one of them.
+fn of_seeds(seeds: &[f64]) -> f64 {
+    let count = seeds.len() as f64;
+    let mean = seeds.iter().sum::<f64>() / count;
+    let squares = seeds.iter().map(|it| (it - mean) * (it - mean)).sum::<f64>();
+    if seeds.is_empty() { 0.0 } else { squares * (count - 1.0) / count }
 }
 
 /// Sums over the flights of a plant: of each seed, how far the logarithm is from that of the flight as it is.
@@ -112,10 +205,15 @@ pub(super) enum Quantity {
     Travel,
 }
 
+/// Sums over the flights of each plant.
+type OfPlants = Vec<[Sums; COUNT]>;
+
 /// The flights of all plants, as far as nobody lost them.
 #[derive(Clone, Debug)]
 pub(super) struct Means {
-    plants: Vec<[Sums; COUNT]>,
+    plants: OfPlants,
+    /// The same without each part of the plants, whose gains are then in nobody's mean.
+    left: Vec<OfPlants>,
     /// Flights that nobody of the chain lost.
     pub(super) kept: usize,
     /// What the win is made of.
@@ -124,27 +222,19 @@ pub(super) struct Means {
 
 impl Means {
     /// Of flights, each with the number of its plant.
-    pub(super) fn of(flights: &[(usize, Values)], plants: usize) -> Self {
-        let mut sums: Vec<[Sums; COUNT]> = vec![Default::default(); plants];
+    pub(super) fn of(flights: &[(usize, Treated)], plants: usize) -> Self {
         // What nobody flew is no part of the chain; what somebody flew is asked of every flight in it.
-        let has = |values: &Values, it: Treatment| !values[it.place()].is_empty();
         let chain = Treatment::CHAIN.into_iter();
         let chain: Vec<Treatment> =
-            chain.filter(|it| flights.iter().any(|(_, values)| has(values, *it))).collect();
-        let mut kept = 0;
-        for (plant, values) in flights {
-            let is_lost = |treatment: Treatment| values[treatment.place()].iter().any(|it| it.lost);
-            let Some(&as_it_is) = values[Treatment::AsItIs.place()].first() else { continue };
-            let Some(sums) = sums.get_mut(*plant) else { continue };
-            if chain.iter().any(|it| is_lost(*it) || !has(values, *it)) {
-                continue;
-            }
-            kept += 1;
-            for treatment in Treatment::ALL.into_iter().filter(|it| !is_lost(*it)) {
-                sums[treatment.place()].add(&values[treatment.place()], as_it_is);
-            }
-        }
-        Self { plants: sums, kept, chain }
+            chain.filter(|it| flights.iter().any(|(_, flight)| has(&flight.values, *it))).collect();
+        let all = flights.iter().map(|(plant, flight)| (*plant, flight.values.clone()));
+        let (as_flown, kept) = sums(all, plants, &chain);
+        let without = |part: usize| {
+            let others = flights.iter().filter(|(plant, _)| part_of(*plant) != part);
+            let others = others.map(|(plant, flight)| (*plant, flight.without(part)));
+            sums(others, plants, &chain).0
+        };
+        Self { plants: as_flown, left: (0..parts(plants)).map(without).collect(), kept, chain }
     }
 
     /// Mean of how far the logarithm is from that of the flights as they are; `None` where nobody flew so.
@@ -155,7 +245,8 @@ impl Means {
         weights: &Weights,
     ) -> Option<f64> {
         let (mut sum, mut whole) = (0.0, 0.0);
-        for (plant, often) in self.plants.iter().zip(&weights.plants) {
+        let plants = weights.left.map_or(Some(&self.plants), |part| self.left.get(part))?;
+        for (plant, often) in plants.iter().zip(&weights.plants) {
             let Sums { flights, iae, travel } = &plant[treatment.place()];
             let sums = if quantity == Quantity::Iae { iae } else { travel };
             let drawn = Treatment::DRAWN.contains(&treatment);
@@ -170,6 +261,33 @@ impl Means {
         }
         (whole > 0.0).then_some(sum / whole)
     }
+}
+
+fn has(values: &Values, treatment: Treatment) -> bool {
+    !values[treatment.place()].is_empty()
+}
+
+/// Sums of flights, and how many of them nobody of the chain lost.
+fn sums(
+    flights: impl Iterator<Item = (usize, Values)>,
+    plants: usize,
+    chain: &[Treatment],
+) -> (OfPlants, usize) {
+    let mut sums: OfPlants = vec![Default::default(); plants];
+    let mut kept = 0;
+    for (plant, values) in flights {
+        let is_lost = |treatment: Treatment| values[treatment.place()].iter().any(|it| it.lost);
+        let Some(&as_it_is) = values[Treatment::AsItIs.place()].first() else { continue };
+        let Some(sums) = sums.get_mut(plant) else { continue };
+        if chain.iter().any(|it| is_lost(*it) || !has(&values, *it)) {
+            continue;
+        }
+        kept += 1;
+        for treatment in Treatment::ALL.into_iter().filter(|it| !is_lost(*it)) {
+            sums[treatment.place()].add(&values[treatment.place()], as_it_is);
+        }
+    }
+    (sums, kept)
 }
 
 impl Sums {
@@ -221,31 +339,76 @@ mod tests {
         assert_eq!(line_of(&[]), None);
     }
 
+    /// Mean of numbers, one for each plant.
+    fn mean(values: &[f64], weights: &Weights) -> Option<f64> {
+        let sum: f64 = weights.plants.iter().zip(values).map(|(w, it)| w * it).sum();
+        Some(sum / weights.plants.iter().sum::<f64>())
+    }
+
     #[test]
-    fn intervals_of_a_mean_hold_it_and_shrink_with_the_number_of_plants() {
-        let width = |plants: usize| {
-            let values: Vec<f64> =
-                (0..plants).map(|it| if it % 2 == 0 { 1.0 } else { 3.0 }).collect();
-            let draws = Draws::new(plants, 1, 1);
-            let mean = |weights: &Weights| {
-                let sum: f64 = weights.plants.iter().zip(&values).map(|(w, it)| w * it).sum();
-                Some(sum / weights.plants.iter().sum::<f64>())
-            };
-            let found = draws.estimate(mean).expect("a mean");
+    fn the_interval_of_a_mean_is_students_with_parts_of_any_size() {
+        for plants in [5, 16, 20, 23, 60, 144] {
+            let values: Vec<f64> = (0..plants)
+                .map(|it| if (it / PARTS + it).is_multiple_of(2) { 1.0 } else { 3.0 })
+                .collect();
+            let mean_of_all = values.iter().sum::<f64>() / plants as f64;
+            let found = Draws::new(plants, 1).estimate(Kind::Any, |it| mean(&values, it));
+            let found = found.expect("a mean");
             let [lower, upper] = found.interval.expect("enough plants");
-            assert!(found.value == 2.0 && lower < 2.0 && upper > 2.0, "{found:?}");
+            assert!((0.5 * (lower + upper) - mean_of_all).abs() < 1e-12, "{found:?}");
+            let square = |it: &f64| (it - mean_of_all) * (it - mean_of_all);
+            let squares: f64 = values.iter().map(square).sum();
+            let error = libm::sqrt(squares / (plants * (plants - 1)) as f64);
+            let far = beyond(0.05, parts(plants) as f64 - 1.0) * error;
+            // Parts of several plants each scatter as they happen to.
+            let near = if plants <= PARTS { 1e-9 } else { 0.5 };
+            assert!((0.5 * (upper - lower) / far - 1.0).abs() < near, "{plants}: {found:?} {far}");
+        }
+        let few = Draws::new(FEWEST - 1, 1).estimate(Kind::Any, |_| Some(1.0));
+        assert!(few.is_some_and(|it| it.interval.is_none()));
+    }
+
+    #[test]
+    fn the_interval_of_a_correlation_stays_within_one_and_that_of_a_share_within_its_ends() {
+        let draws = Draws::new(5, 1);
+        let pairs = [(0.0, 0.1), (1.0, 0.9), (2.0, 2.2), (3.0, 2.9), (4.0, 4.4)];
+        let part = |which: usize| {
+            let pairs = &pairs;
+            move |weights: &Weights| {
+                let pairs = pairs.iter().zip(&weights.plants).map(|(&(x, y), w)| (x, y, *w));
+                line(pairs).map(|found| found[which])
+            }
+        };
+        let found = draws.estimate(Kind::Correlation, part(0)).expect("a line");
+        let [lower, upper] = found.interval.expect("enough plants");
+        assert!(-1.0 < lower && lower < found.value && found.value < upper && upper < 1.0);
+        let share = |weights: &Weights| {
+            let counted = weights.plants.iter().zip([0.1, 0.2, 0.6, 0.9, 0.9]);
+            Some(counted.map(|(w, it)| w * it).sum::<f64>() / weights.plants.iter().sum::<f64>())
+        };
+        let found = draws.estimate(Kind::Share, share).expect("a mean");
+        let [lower, upper] = found.interval.expect("enough plants");
+        assert!(0.0 < lower && lower < 0.3 && 0.7 < upper && upper < 1.0, "{found:?}");
+        // Of what is nothing without some plant, nothing is known.
+        let one = draws.estimate(Kind::Share, |weights| Some(0.5 * weights.plants[0]));
+        let [lower, upper] = one.and_then(|it| it.interval).expect("enough plants");
+        assert!(lower < 1e-9 && upper > 1.0 - 1e-9, "{one:?}");
+    }
+
+    /// Seeds that scatter make an interval wider than plants alone do.
+    #[test]
+    fn seeds_are_in_the_interval() {
+        let values = [1.0, 2.0, 3.0, 4.0, 5.0];
+        let width = |seeds: usize| {
+            let draws = Draws::new(5, seeds);
+            let found = draws.estimate(Kind::Any, |weights| {
+                let seeds = weights.seeds.iter().enumerate().map(|(at, w)| w * at as f64);
+                let count: f64 = weights.seeds.iter().sum();
+                Some(mean(&values, weights)? + 10.0 * seeds.sum::<f64>() / count)
+            });
+            let [lower, upper] = found.and_then(|it| it.interval).expect("enough plants");
             upper - lower
         };
-        // Of n draws the standard deviation is 1 / sqrt(n): about 3.92 times it.
-        let [few, many] = [width(16), width(144)];
-        assert!(
-            (few - 3.92 / 4.0).abs() < 0.15 && (many - 3.92 / 12.0).abs() < 0.05,
-            "{few} {many}"
-        );
-        assert!(
-            Draws::new(FEWEST - 1, 1, 1)
-                .estimate(|_| Some(1.0))
-                .is_some_and(|it| it.interval.is_none())
-        );
+        assert!(width(3) > 4.0 * width(1), "{} {}", width(3), width(1));
     }
 }

@@ -15,9 +15,9 @@
 //!
 //! # How sure
 //! A plant is an aircraft at a condition with its actuator. Flights of one plant are not independent, least of all steps up
-//! and down of a linear one; so plants are drawn anew with all their flights, and with them the seeds of the shuffles, and
-//! intervals hold 95 % of the draws (Efron and Tibshirani, *An Introduction to the Bootstrap*, 1993, 13.3). With few
-//! plants such intervals are somewhat too short.
+//! and down of a linear one; so plants are left out with all their flights, in at most twenty parts, one after the other, and
+//! the flights of the others that go by gains of all or of other plants are flown again without them (a jackknife: Busing,
+//! Meijer and van der Leeden 1999). Seeds of the shuffles are left out one by one. Intervals are Student's, of 95 %.
 
 mod answer;
 mod best;
@@ -46,11 +46,11 @@ pub use treatment::Treatment;
 
 use crate::crew::Part;
 use crate::error::TuneError;
-use crate::flights::{Asked, Dispersed, Flights, FlownCase, each_once, flown_cases};
+use crate::flights::{Asked, Dispersed, Flights, FlownCase, Flyer, each_once, flown_cases};
 use crate::source::Source;
 use crate::space::Space;
 use best::Best;
-use flown::{First, Schedules, Values};
+use flown::{First, Numbered, Schedules, Treated};
 
 /// What can be chosen.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -118,7 +118,8 @@ impl Adaptation {
         let against = compared_with(study, options.against.as_deref(), &controller)?;
         let (cases, dispersed) = cases(study, options.runs);
         let flights = |controller: &str| {
-            let cases = flown_cases(source, controller, cases, dispersed)?;
+            // Marks fly as they start.
+            let cases = flown_cases(source, Flyer { controller, free: &[] }, cases, dispersed)?;
             let judging = Judging { stability: Stability::AsFlown, loads: false };
             let asked = Asked { controller: controller.to_owned(), part: Part::Judging, judging };
             Ok::<_, TuneError>(Flights::new(asked, Space::new(Vec::new()), cases, Vec::new()))
@@ -152,7 +153,9 @@ impl Adaptation {
     #[must_use]
     pub fn expected(&self) -> usize {
         let drawn = Treatment::DRAWN.len() * usize::try_from(self.options.seeds).unwrap_or(0);
-        self.flights.count() * (8 + drawn + self.options.budget)
+        // Without each part of the plants two flights more; nobody knows yet how many plants there are.
+        let left = Treatment::OF_OTHERS.len() * means::parts(self.flights.count());
+        self.flights.count() * (8 + drawn + left + self.options.budget)
     }
 
     /// Makes it, on all threads of the pool that this is called in. The same bits on any number of them.
@@ -164,7 +167,7 @@ impl Adaptation {
         let (firsts, schedules) = self.firsts(&jobs, watch)?;
         let plants = Plants::of(&firsts);
         let known = Known { firsts: &firsts, plants: &plants, schedules: &schedules };
-        let treated: Vec<(Values, Option<FlightResult>)> = jobs
+        let treated: Vec<(Treated, Option<FlightResult>)> = jobs
             .par_iter()
             .enumerate()
             .map_init(Memory::default, |memory, (number, job)| {
@@ -175,15 +178,15 @@ impl Adaptation {
             .into_par_iter()
             .map(|plant| self.best(plant, &jobs, &treated, &plants, watch))
             .collect::<Result<_, _>>()?;
-        let mut values: Vec<Values> = treated.into_iter().map(|(values, _)| values).collect();
+        let mut treated: Vec<Treated> = treated.into_iter().map(|(treated, _)| treated).collect();
         for (plant, best) in best.iter().enumerate() {
             let mine = plants.flown(plant, &firsts);
             for (place, value) in mine.zip(best.iter().flat_map(|best| &best.values)) {
-                values[place][Treatment::PlantTuned.place()] = vec![*value];
+                treated[place].values[Treatment::PlantTuned.place()] = vec![*value];
             }
         }
         let named = jobs.iter().map(|(case, _)| case.name.clone()).collect();
-        Ok(answer::answer(self, named, &firsts, &plants, &values, &best))
+        Ok(answer::answer(self, named, (&firsts, &plants), &treated, &best))
     }
 
     /// All flights as they are, and what gains they have at each moment.
@@ -192,12 +195,14 @@ impl Adaptation {
         jobs: &[Job<'_>],
         watch: Watch<'_>,
     ) -> Result<(Vec<First>, Schedules), TuneError> {
-        let (mut firsts, mut schedules) = (Vec::new(), Schedules::default());
+        let (mut firsts, mut schedules) = (Vec::<First>::new(), Schedules::default());
+        let mut keys: Vec<String> = Vec::new();
         for some in jobs.chunks(AT_ONCE) {
             let flown = some.par_iter().map(|job| flown::first(&self.study(*job)?, watch));
             for (first, gains) in flown.collect::<Result<Vec<_>, TuneError>>()? {
+                let plant = place_of(&mut keys, &first.key);
                 if !first.lost {
-                    schedules.add(&first.signals, &gains);
+                    schedules.add(&first.signals, means::part_of(plant), &gains);
                 }
                 firsts.push(first);
             }
@@ -215,7 +220,7 @@ impl Adaptation {
         (number, job): (usize, Job<'_>),
         Known { firsts, plants, schedules }: Known<'_>,
         watch: Watch<'_>,
-    ) -> Result<(Values, Option<FlightResult>), TuneError> {
+    ) -> Result<(Treated, Option<FlightResult>), TuneError> {
         let study = self.study(job)?;
         let other = self.theirs.as_ref().map(|theirs| {
             let (case, run) = theirs.jobs().nth(number).ok_or("nobody flies".to_owned())?;
@@ -232,18 +237,22 @@ impl Adaptation {
         ];
         let (mut values, as_it_is) = flown::stood(memory, &study, other.as_ref(), &means, watch)?;
         let seeds = (self.options.seed, self.options.seeds);
-        let drawn = flown::replayed(&study, (number, schedules), seeds, watch)?;
+        let (part, parts) = (means::part_of(plant), plants.without.len());
+        let numbered = Numbered { number, part, parts };
+        let (drawn, others) = flown::replayed(&study, (numbered, schedules), seeds, watch)?;
         for treatment in Treatment::DRAWN.into_iter().chain([Treatment::OtherPlants]) {
             values[treatment.place()].clone_from(&drawn[treatment.place()]);
         }
-        Ok((values, as_it_is))
+        let standing = flown::standing(memory, &study, &plants.without, watch)?;
+        let left = standing.into_iter().map(Some).zip(others).map(<[_; 2]>::from).collect();
+        Ok((Treated { values, left }, as_it_is))
     }
 
     fn best(
         &self,
         plant: usize,
         jobs: &[Job<'_>],
-        treated: &[(Values, Option<FlightResult>)],
+        treated: &[(Treated, Option<FlightResult>)],
         plants: &Plants,
         watch: Watch<'_>,
     ) -> Result<Option<Best>, TuneError> {
@@ -276,26 +285,35 @@ struct Plants {
     of: Vec<usize>,
     all: Gains<f64>,
     means: Vec<Gains<f64>>,
+    /// Of all but each part of the plants.
+    without: Vec<Gains<f64>>,
+}
+
+/// The place of a key among those that are known; a new one is put behind them.
+fn place_of(keys: &mut Vec<String>, key: &str) -> usize {
+    let place = keys.iter().position(|it| it == key).unwrap_or(keys.len());
+    if place == keys.len() {
+        keys.push(key.to_owned());
+    }
+    place
 }
 
 impl Plants {
     fn of(firsts: &[First]) -> Self {
         let mut keys: Vec<String> = Vec::new();
-        let mut of = Vec::new();
-        for first in firsts {
-            let place = keys.iter().position(|key| *key == first.key).unwrap_or(keys.len());
-            if place == keys.len() {
-                keys.push(first.key.clone());
-            }
-            of.push(place);
-        }
+        let of: Vec<usize> = firsts.iter().map(|first| place_of(&mut keys, &first.key)).collect();
         let kept = || firsts.iter().zip(&of).filter(|(first, _)| !first.lost);
         let all = mean(kept().map(|(first, _)| first.mean())).unwrap_or(Gains::ZERO);
         let of_plant = |plant: usize| {
             mean(kept().filter(|(_, of)| **of == plant).map(|(first, _)| first.mean()))
         };
+        let without = |part: usize| {
+            let others = kept().filter(|(_, of)| means::part_of(**of) != part);
+            mean(others.map(|(first, _)| first.mean())).unwrap_or(all)
+        };
+        let without = (0..means::parts(keys.len())).map(without).collect();
         let means = (0..keys.len()).map(|plant| of_plant(plant).unwrap_or(all)).collect();
-        Self { keys, all, means, of }
+        Self { keys, all, means, without, of }
     }
 
     /// Places of the flights of a plant that are not lost as they are.

@@ -5,7 +5,7 @@ use fspid_page::columns::{Align, Columns};
 use fspid_page::number::significant;
 
 use super::answer::{Answer, Followed, Moved, PlantRow, Row, Step};
-use super::means::{DRAWS, Estimate, FEWEST};
+use super::means::{Estimate, FEWEST};
 use super::treatment::Treatment;
 
 impl Answer {
@@ -138,9 +138,7 @@ impl Answer {
         ];
         notes.push(match self.plants.len() < FEWEST {
             true => format!("Fewer than {FEWEST} plants: no intervals."),
-            false => format!(
-                "Intervals hold 95 % of {DRAWS} draws of plants, each with all its flights, and of seeds; with few plants they are somewhat short."
-            ),
+            false => "Intervals are of 95 %, Student's, by what it changes to leave out plants, each with all its flights and its gains in the means of others, and seeds; of very few plants they are still somewhat short.".to_owned(),
         });
         if self.kept < self.flights {
             notes.push(format!(

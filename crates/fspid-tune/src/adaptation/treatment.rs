@@ -50,6 +50,9 @@ impl Treatment {
     pub(super) const CHAIN: [Self; 5] =
         [Self::Against, Self::Nominal, Self::ClassMean, Self::OtherPlants, Self::AsItIs];
 
+    /// Those that depend on other plants than that of the flight.
+    pub(super) const OF_OTHERS: [Self; 2] = [Self::ClassMean, Self::OtherPlants];
+
     /// Those that depend on a seed.
     pub(super) const DRAWN: [Self; 3] = [Self::Turned, Self::Shuffled, Self::InputsShuffled];
 

@@ -2,13 +2,13 @@
 
 use fspid_campaign::engine::{Judging, Stability};
 use fspid_scenario::count::{BUDGET, SEEDS};
-use fspid_scenario::file::{Study, Template};
+use fspid_scenario::file::{Study, Template, TunedIn};
 use fspid_scenario::tuning::{Contest as Rules, Tuning};
 
 use super::{Contest, Entrant, Options, flight, mirror, twins};
 use crate::crew::Part;
 use crate::error::{TuneError, WrongCase};
-use crate::flights::{Asked, Dispersed, Flights, FlownCase, flown_case};
+use crate::flights::{Asked, Dispersed, Flights, FlownCase, Flyer, flown_case};
 use crate::problem::{TuningProblem, tunable_parameters_of};
 use crate::search::Effort;
 use crate::source::Source;
@@ -37,13 +37,17 @@ pub(super) fn checked(source: &Source, options: &Options) -> Result<Contest, Tun
     let is_right = |name: &&str| wrong_cases.iter().all(|it| it.case != **name);
     let right = rules.cases.iter().map(|case| case.name.as_str()).filter(is_right);
     problems.extend(twins::problems(source, study, right.zip(&cases))?);
+    let unfree = template.check_free(&study.tunable_parameters, TunedIn::Contest).err();
     let mut entrants = Vec::new();
     for name in &names {
         match entrant(source, study, name, &cases, &rules) {
             Ok(entrant) => entrants.push(entrant),
+            // It is told of all controllers together.
+            Err(TuneError::Scenario(_)) if unfree.is_some() => {}
             Err(error) => problems.push(format!("controller \"{name}\": {error}")),
         }
     }
+    problems.extend(unfree.map(|problems| problems.to_string()));
     if !problems.is_empty() || !wrong_cases.is_empty() {
         return Err(refused(source, problems, wrong_cases));
     }
@@ -118,10 +122,11 @@ fn entrant(
         false => Some(TuningProblem::new(source, Some(name))?),
     };
     let dispersed = Dispersed { key: "contest.runs", runs: rules.runs, seed: rules.run_seed };
+    let flyer = Flyer { controller: name, free: &parameters };
     let flown = cases
         .iter()
         .zip(&rules.cases)
-        .map(|(template, case)| flown_case(template, Some(case), name, dispersed));
+        .map(|(template, case)| flown_case(template, Some(case), flyer, dispersed));
     let flown: Vec<FlownCase> = flown.collect::<Result<_, _>>()?;
     let objectives = study.tuning.as_ref().map_or(&[][..], |tuning| &tuning.objectives);
     let measured = flight::measured(objectives);

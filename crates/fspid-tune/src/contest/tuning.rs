@@ -102,7 +102,7 @@ impl Task<'_> {
         let found = self.found(&tuned);
         let heading =
             tuned.heading(&self.effort.command(self.source, Some(self.problem.controller())));
-        let text = self.problem.design(&tuned.best.point, &heading);
+        let text = self.problem.design(&tuned.best.point, &heading)?;
         output::write(&self.path("toml"), text)?;
         output::write(&self.path("json"), sealed::text(&found))?;
         // A state that stays is not used again: what was found comes before it.

@@ -18,6 +18,7 @@ use fspid_sim::Scenario;
 use fspid_study::simulation::{ControllerResult, Simulation};
 pub use near::NearLimit;
 pub(crate) use near::{refusal, shares};
+pub(crate) use words::proved_percent;
 
 /// Rungs of a ladder that nobody gave.
 const RUNGS: i32 = 7;

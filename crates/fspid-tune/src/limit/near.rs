@@ -7,10 +7,10 @@ use fspid_limit::{
     Assumed, LimitError, Measure, Multipliers, Programme, Question, Travel, measured, prove,
 };
 use fspid_page::columns::{Align, Columns, cut};
-use fspid_page::number::fixed;
 use fspid_sim::{Scenario, Trace};
 use serde_json::{Value, json};
 
+use super::words::proved_percent;
 use super::{assumed, unrounded};
 use crate::error::TuneError;
 
@@ -144,8 +144,8 @@ impl NearLimit {
             let least = shares().fold(f64::INFINITY, f64::min);
             let most = shares().fold(f64::NEG_INFINITY, f64::max);
             let mean = if count > 0 { mean } else { f64::NAN };
-            let percent = |share: f64| fixed(100.0 * share, 0);
-            rows.row(vec![cut(name, 40), percent(mean), percent(least), percent(most)]);
+            let shares = [mean, least, most].map(|share| proved_percent(100.0 * share));
+            rows.row([vec![cut(name, 40)], shares.to_vec()].concat());
         }
         out.push_str(&rows.to_string());
         let mut reasons: Vec<(&str, usize)> = Vec::new();
@@ -177,5 +177,23 @@ impl NearLimit {
             "cases": cases.collect::<Vec<_>>(),
             "cases_of_mean": count,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// They were rounded to the nearest: 61.845 % proved were told as 62.
+    #[test]
+    fn shares_that_are_proved_are_never_told_as_more() {
+        let share = 0.618_45;
+        let near = NearLimit {
+            controllers: vec![("PID".to_owned(), vec![Some(share), Some(share)])],
+            cases: vec![("one".to_owned(), None), ("two".to_owned(), None)],
+        };
+        let text = near.text();
+        assert_eq!((text.matches("61").count(), text.matches("62").count()), (3, 0), "{text}");
+        assert_eq!(proved_percent(61.999), "61");
     }
 }

@@ -1,6 +1,7 @@
 //! Numbers and sentences of the answer.
 
 use fspid_limit::{Limit, Measure, SaidBeside, Travel};
+use fspid_page::number::fixed;
 use fspid_scenario::units::degrees;
 
 use super::{Answer, Rung};
@@ -54,6 +55,11 @@ fn rounded(value: f64, to: fn(f64) -> f64) -> String {
     let scale = libm::pow(10.0, f64::from(decimals));
     let decimals = usize::try_from(decimals).unwrap_or(0);
     format!("{:.decimals$}", to(value * scale) / scale)
+}
+
+/// A share that is proved, %, in whole ones: never more than it is.
+pub(crate) fn proved_percent(share_pct: f64) -> String {
+    fixed(libm::floor(share_pct), 0)
 }
 
 /// How much of what is possible a controller reaches: a per cent, or between which two where the limit is not known closer.
