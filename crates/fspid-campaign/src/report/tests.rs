@@ -126,7 +126,8 @@ fn one_run_has_a_page_that_claims_little() {
 fn flights_that_do_not_settle_are_not_called_good_for_want_of_requirements() {
     let page = flown(&[HEAD, STEP, &pid("CPID"), EFFECT], 20).page();
     assert_says(&page, &["The scenario has no requirements", "nothing is required of it"]);
-    assert_says(&page, &[" of 20 flights failed", "not settled within"]);
+    // Some come into their band too late to be seen to stay.
+    assert_says(&page, &["20 flights failed", "not settled within"]);
     assert!(!page.contains("verdict good"));
 }
 

@@ -138,6 +138,10 @@ impl Envelope {
         let reasons = [
             ("controller", "no controller was asked for"),
             ("loop", "no controller was asked for"),
+            (
+                "longitudinal_time_to_double_s",
+                "no longitudinal motion runs away, or the aircraft does not fly there",
+            ),
             ("reason", "nothing is amiss: the aircraft flies there"),
         ];
         with_null_reasons(Value::Object(whole), &reasons)
