@@ -348,9 +348,9 @@ mod tests {
     #[test]
     fn the_interval_of_a_mean_is_students_with_parts_of_any_size() {
         for plants in [5, 16, 20, 23, 60, 144] {
-            let values: Vec<f64> = (0..plants)
-                .map(|it| if (it / PARTS + it).is_multiple_of(2) { 1.0 } else { 3.0 })
-                .collect();
+            // As good as drawn.
+            let value = |it: usize| (1e4 * (1.0 + libm::sin(1.0 + 12.9898 * it as f64))) % 1.0;
+            let values: Vec<f64> = (0..plants).map(value).collect();
             let mean_of_all = values.iter().sum::<f64>() / plants as f64;
             let found = Draws::new(plants, 1).estimate(Kind::Any, |it| mean(&values, it));
             let found = found.expect("a mean");
