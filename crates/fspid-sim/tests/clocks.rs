@@ -169,3 +169,19 @@ fn a_loop_whose_ages_hardly_come_again_is_told_only_where_it_flies_so() {
     let counted = [holds, undecided, grows];
     assert!(holds > 8 && grows > 15 && undecided > 2, "{counted:?}");
 }
+
+#[test]
+fn a_sensor_that_looks_every_three_seconds_is_asked_over_all_its_ages() {
+    let drawn = |ki: f64| Drawn {
+        body: [1.0, 0.7],
+        bends: [50.0, 0.1, 0.0],
+        gains: [0.2, ki, 0.0, 0.0],
+        pitch: [3.0, 0.0],
+        rate: None,
+    };
+    assert_eq!(told(&drawn(0.1)), (None, None));
+    assert!(flown(&drawn(0.1), 6000.0) < 0.0);
+    let radius = told(&drawn(1.0)).0.expect("it grows");
+    let growth = flown(&drawn(1.0), 200.0 / libm::log(radius)) / libm::log(radius);
+    assert!((growth - 1.0).abs() < 0.02, "{radius} {growth}");
+}

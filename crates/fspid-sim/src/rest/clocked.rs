@@ -33,7 +33,12 @@ impl Rest {
                 let as_if_they_stayed = self.stand_at_each_age(models)?;
                 Ok(for_a_while.into_iter().fold(as_if_they_stayed, together))
             }
-            Clocks::Period(_) | Clocks::Nearly(_) => self.stand_at_each_age(models),
+            Clocks::Period(_) | Clocks::Nearly(_) => Ok(match self.stand_at_each_age(models)? {
+                Stand::Holds => {
+                    Stand::Undecided { spectral_radius: f64::NAN, doubt: Doubt::ChangingAge }
+                }
+                stand => stand,
+            }),
         }
     }
 
@@ -60,8 +65,13 @@ impl Rest {
 /// True where the loop of a period is worth its time.
 fn is_affordable(models: &[Model], phases: &Phases) -> bool {
     let is_long = models.iter().any(|(model, _)| model.settings().is_long());
-    let size = models.iter().map(|(model, _)| model.size()).max().unwrap_or(0) as f64;
-    !is_long && size * size * size * (phases.len() * models.len()) as f64 <= MOST_PRODUCTS
+    let (Some(looks), false) = (phases.first(), is_long) else { return false };
+    let products = |(model, gains): &Model| {
+        let closed = model.seeing(*looks).closed(*gains);
+        let entries = closed.iter().flatten().filter(|entry| **entry != 0.0).count();
+        (entries * closed.len() * phases.len()) as f64
+    };
+    models.iter().map(products).sum::<f64>() <= MOST_PRODUCTS
 }
 
 /// The largest growth where all of them grow.
@@ -92,25 +102,28 @@ fn found_over<'a>(
     oldest: &Model,
     phases: impl Iterator<Item = &'a Model>,
 ) -> Result<Found, SimError> {
-    let mut whole: Option<Matrix> = None;
+    let mut whole: Option<Vec<Vec<f64>>> = None;
     // The product is kept near one; what is taken out of it counts as a logarithm.
     let (mut taken_out, mut samples) = (0.0, 0.0);
     for (model, gains) in phases {
-        let next = model.closed_matrix(*gains)?;
-        let product = match whole {
-            Some(whole) => next.product(&whole)?,
+        let next = model.closed(*gains);
+        let mut product = match whole {
+            Some(whole) => product_of(&next, &whole),
             None => next,
         };
-        let size = product.norm_one();
-        if !size.is_finite() {
+        let size = product.iter().flatten().fold(0.0, |size: f64, it| size.max(it.abs()));
+        let is_finite = product.iter().flatten().all(|it| it.is_finite());
+        if !is_finite {
             return Ok(Found::Unstable(f64::INFINITY));
         }
         let by = if size > 0.0 { size } else { 1.0 };
+        product.iter_mut().flatten().for_each(|it| *it /= by);
         taken_out += libm::log(by);
         samples += 1.0;
-        whole = Some(product.scaled(1.0 / by));
+        whole = Some(product);
     }
     let Some(whole) = whole else { return found(oldest) };
+    let whole = Matrix::from_rows(&whole)?;
     let grown = taken_out + libm::log(spectral_radius(&whole)?);
     let a_sample = libm::exp(grown / samples);
     if grown > KNOWN_TO {
@@ -120,4 +133,16 @@ fn found_over<'a>(
         return Ok(Found::Stable);
     }
     Ok(Found::Blurred(a_sample))
+}
+
+/// The product of two matrices by rows; most entries of the left one, which hands values on, are 0.
+fn product_of(left: &[Vec<f64>], right: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let row_of = |row: &Vec<f64>| {
+        let mut sum = vec![0.0; right.len()];
+        for (by, row) in row.iter().zip(right).filter(|(by, _)| **by != 0.0) {
+            sum.iter_mut().zip(row).for_each(|(sum, value)| *sum += by * value);
+        }
+        sum
+    };
+    left.iter().map(row_of).collect()
 }

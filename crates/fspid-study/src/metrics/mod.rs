@@ -101,7 +101,7 @@ pub enum Absent {
     /// A sensor has a clock of its own, with one age of its values the loop is unstable, and no time is known after which all
     /// ages come again.
     #[error(
-        "undecided: a sensor with a clock of its own shows values of changing age, with one of which, or over some samples, the loop is unstable (spectral radius {spectral_radius:.6}): as they come it may hold"
+        "undecided: a sensor with a clock of its own shows values of changing age; with one of them, or over some samples, the loop is unstable, or there are too many of them to be asked in turn"
     )]
     ChangingAge {
         /// Spectral radius of the sampled closed loop with the age at which it is unstable.
