@@ -15,9 +15,10 @@ const COLUMNS: usize = STATES + CONTROLS;
 /// Slopes on both sides that differ by no more than this, and this share of their sizes, are one: what rounding and a bent
 /// curve leave. In the units of the motion, 1/s: by less than this nothing grows that a flight shows.
 const SAME_SLOPE: f64 = 1e-4;
-/// Over a quarter of the width a bent curve shows a quarter of the difference, and a kink all of it.
+/// Over a quarter of the width a bent curve shows a quarter of the difference, a kink that lies in it most of it, and one that
+/// lies beside it nothing.
 const QUARTER: f64 = 0.25;
-const BENT: f64 = 0.4;
+const BENT: core::ops::RangeInclusive<f64> = 0.15..=0.4;
 /// u, w, theta and q with the altitude, elevator and throttle.
 const LONGITUDINAL: [usize; 7] = [2, 3, 5, 7, 10, STATES, STATES + 3];
 /// v, phi, p and r, aileron and rudder.
@@ -69,5 +70,5 @@ fn differ([ahead, behind]: [f64; 2]) -> bool {
 
 /// True for the slopes of a smooth curve over a width and over a quarter of it.
 fn is_bent(wide: [f64; 2], near: [f64; 2]) -> bool {
-    (near[0] - near[1]).abs() <= BENT * (wide[0] - wide[1]).abs()
+    BENT.contains(&((near[0] - near[1]) / (wide[0] - wide[1])))
 }

@@ -6,6 +6,7 @@ mod derivation;
 mod enclosure;
 mod envelope;
 mod flight;
+mod kinks;
 mod loading;
 mod motion;
 mod qualities;
