@@ -66,7 +66,7 @@ impl Heading<'_> {
 
 /// True for what is not seen and changes how a text is: control characters, and marks of the direction of writing, which
 /// compilers refuse in a comment.
-fn is_unseen(c: char) -> bool {
+pub(super) fn is_unseen(c: char) -> bool {
     let turns = matches!(c, '\u{200e}' | '\u{200f}' | '\u{061c}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     turns || c.is_control() || matches!(c, '\u{2028}' | '\u{2029}')
 }
@@ -74,6 +74,12 @@ fn is_unseen(c: char) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_text_that_is_wrapped_has_nothing_unseen() {
+        let text = "an \u{202e}input\u{2066} of \u{7}two";
+        assert_eq!(super::super::wrapped(text, 80), ["an input of two"]);
+    }
 
     /// rustc refuses a mark of the direction of writing in a comment.
     #[test]

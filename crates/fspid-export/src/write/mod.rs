@@ -72,10 +72,12 @@ impl Page {
     }
 }
 
-/// Lines of at most so many characters, broken between words.
+/// Lines of at most so many characters, broken between words; what is not seen, such as a mark that turns the text around,
+/// ends a word and is left out.
 fn wrapped(text: &str, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
-    for word in text.split_whitespace() {
+    let ends_a_word = |c: char| c.is_whitespace() || heading::is_unseen(c);
+    for word in text.split(ends_a_word).filter(|word| !word.is_empty()) {
         match lines.last_mut() {
             Some(line) if line.len() + word.len() < width => {
                 line.push(' ');
