@@ -6,7 +6,7 @@ use std::sync::Arc;
 use axum::Router;
 use axum::body::Body;
 use axum::extract::rejection::PathRejection;
-use axum::extract::{Path, Request, State};
+use axum::extract::{MatchedPath, Path, Request, State};
 use axum::http::{HeaderMap, Method, Response, StatusCode, Uri};
 use axum::response::IntoResponse;
 use axum::routing::{MethodRouter, delete, get, post, put};
@@ -49,7 +49,7 @@ pub(crate) fn router(app: &Arc<App>) -> Router {
     let router = ROUTES.iter().fold(Router::new(), routed);
     #[cfg(test)]
     let router = router.route("/api/panic", get(panics));
-    router.fallback(page).with_state(Arc::clone(app))
+    router.method_not_allowed_fallback(other_method).fallback(page).with_state(Arc::clone(app))
 }
 
 #[cfg(test)]
@@ -79,6 +79,14 @@ async fn page(State(app): Shared, method: Method, uri: Uri) -> Answer {
     let found =
         (method == Method::GET || method == Method::HEAD).then(|| app.page.file(uri.path()));
     found.flatten().ok_or_else(|| Refusal::missing("there is nothing here"))
+}
+
+/// A path that is known, asked with a method that it does not have.
+async fn other_method(path: MatchedPath, method: Method) -> Refusal {
+    let known: Vec<&str> =
+        routes().filter(|(_, it)| *it == path.as_str()).map(|(method, _)| method).collect();
+    let sentence = format!("{method} does nothing here; {} does", known.join(" or "));
+    Refusal::new(StatusCode::METHOD_NOT_ALLOWED, sentence)
 }
 
 async fn told_health(State(app): Shared) -> Answer {

@@ -109,6 +109,22 @@ fn every_question_below_api_needs_the_token_and_no_other_will_do() {
 }
 
 #[test]
+fn a_method_that_a_path_does_not_have_is_refused_with_those_that_it_has() {
+    let served = Served::new();
+    for (method, path) in every_route().iter().filter(|(_, path)| path.starts_with("/api/")) {
+        let has = |other: &str| every_route().contains(&(other.to_owned(), path.clone()));
+        for other in ["GET", "PUT", "POST", "DELETE", "PATCH"].into_iter().filter(|it| !has(it)) {
+            let more = "Content-Type: application/json\r\nContent-Length: 2\r\nConnection: close\r\n\r\n{}";
+            let answer = served.raw(served.head(other, path, more).as_bytes());
+            assert_guarded(&answer);
+            let refused = answer.json(405);
+            let told = refused["error"].as_str().expect("a sentence");
+            assert!(told.starts_with(other) && told.contains(method.as_str()), "{told}");
+        }
+    }
+}
+
+#[test]
 fn what_changes_something_has_to_be_json_as_no_form_is() {
     let served = Served::new();
     let mut asked = 0;
