@@ -4,7 +4,10 @@ use fspid_aircraft::aerodynamics::increment::Increment;
 use fspid_aircraft::aerodynamics::mach_table::{MachRow, MachTable};
 use fspid_aircraft::aerodynamics::varied::VariedModel;
 use fspid_aircraft::data::{DerivativeData, Laws};
-use fspid_aircraft::{AirMotion, Aircraft, Environment, ForceModel, Trim, TrimTarget};
+use fspid_aircraft::{
+    AirMotion, Aircraft, Controls, Environment, Flow, ForceModel, Loads, Travel, Trim, TrimTarget,
+    Validity,
+};
 
 use crate::support::derivative_data;
 
@@ -80,6 +83,84 @@ fn a_corner_at_the_trim_is_a_kink_and_one_a_centimetre_a_second_beside_it_is_non
             assert!(trim.point.alpha_rad > 0.01);
             assert_eq!(kinked.has_kink_at(&trim), is_kink, "{number} {beside_m_s}");
         }
+    }
+}
+
+/// An aircraft with a drag of its own around an airspeed, in m/s^2 for each m/s of which it is faster.
+struct Dragged<M> {
+    of: M,
+    mass_kg: f64,
+    airspeed_m_s: f64,
+    drag_m_s2: fn(f64) -> f64,
+}
+
+impl<M: ForceModel> ForceModel for Dragged<M> {
+    fn loads(&self, flow: &Flow, controls: &Controls) -> Loads {
+        let mut loads = self.of.loads(flow, controls);
+        let faster_m_s = flow.airspeed_m_s - self.airspeed_m_s;
+        loads.force_n.x -= self.mass_kg * (self.drag_m_s2)(faster_m_s);
+        loads
+    }
+
+    fn loads_per_alpha_rate(&self, flow: &Flow) -> Loads {
+        self.of.loads_per_alpha_rate(flow)
+    }
+
+    fn thrust_n(&self, flow: &Flow, controls: &Controls) -> f64 {
+        self.of.thrust_n(flow, controls)
+    }
+
+    fn validity(&self) -> &Validity {
+        self.of.validity()
+    }
+
+    fn travel(&self) -> &Travel {
+        self.of.travel()
+    }
+}
+
+#[test]
+fn a_slope_that_changes_within_the_width_of_its_differences_is_no_kink_where_it_changes_steadily() {
+    let data = derivative_data(NAVION);
+    let target = TrimTarget { airspeed_m_s: 45.0, ..target(&data) };
+    // Over the width of 4.5e-4 m/s the first two come to slopes that differ by 9e-3 and 9e-4 1/s.
+    let drags: [(fn(f64) -> f64, bool); 6] = [
+        (|faster| 10.0 * faster * faster, false),
+        (|faster| -faster * faster, false),
+        (|faster| 0.01 * faster.abs(), true),
+        (|faster| -1e-3 * faster.abs(), true),
+        (|faster| 1e-5 * faster.abs(), false),
+        (|faster| 0.01 * faster.abs() + 0.1 * faster * faster, true),
+    ];
+    for (number, (drag_m_s2, is_kink)) in drags.into_iter().enumerate() {
+        let mass = data.mass_properties();
+        let model = Dragged {
+            of: data.force_model(Laws::default()),
+            mass_kg: mass.mass_kg,
+            airspeed_m_s: target.airspeed_m_s,
+            drag_m_s2,
+        };
+        let aircraft = Aircraft::new(mass, model, Environment::STANDARD).expect("a body");
+        let trim = trimmed(&aircraft, target);
+        assert_eq!(aircraft.has_kink_at(&trim), is_kink, "{number}");
+    }
+}
+
+#[test]
+fn a_pitch_that_is_held_in_a_climb_leads_to_the_climb_that_has_the_same_throttle() {
+    let data = derivative_data(NAVION);
+    let model = data.force_model(Laws::default());
+    let aircraft = Aircraft::new(data.mass_properties(), model, Environment::STANDARD);
+    let aircraft = aircraft.expect("a body");
+    let climb = TrimTarget { flight_path_rad: 0.05, ..target(&data) };
+    let trim = trimmed(&aircraft, climb);
+    // Steps of 0.02 rad: one, three and four of them.
+    for by_rad in [-0.019, 0.045, -0.07] {
+        let there = aircraft.at_held_pitch(&trim, by_rad).expect("there is such a flight");
+        let pitch_rad = |it: &Trim| it.point.alpha_rad + it.target.flight_path_rad;
+        assert!((pitch_rad(&there) - pitch_rad(&trim) - by_rad).abs() < 1e-12);
+        let again = trimmed(&aircraft, there.target);
+        assert!((again.point.throttle - trim.point.throttle).abs() < 1e-6, "{by_rad}");
     }
 }
 
