@@ -53,12 +53,6 @@ impl<M: ForceModel> Aircraft<M> {
         Self { mass, model, environment }
     }
 
-    /// The same aircraft elsewhere.
-    #[must_use]
-    pub fn in_environment(self, environment: Environment) -> Self {
-        Self { environment, ..self }
-    }
-
     /// The same body in the same environment, its forces in another form.
     #[must_use]
     pub fn with_model<N: ForceModel>(self, form: impl FnOnce(M) -> N) -> Aircraft<N> {

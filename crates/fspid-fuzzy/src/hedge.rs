@@ -63,20 +63,6 @@ impl Hedge {
         Self::NAMED.iter().copied().find(|hedge| hedge.name() == name)
     }
 
-    /// The hedge as a C expression in the grade `a` and, if it is a power, `p`.
-    #[must_use]
-    pub const fn c(self) -> &'static str {
-        match self {
-            Self::Any => "1.0",
-            Self::Extremely => "a < 0.5 ? 2.0 * (a * a) : 1.0 - 2.0 * ((1.0 - a) * (1.0 - a))",
-            Self::Not => "1.0 - a",
-            Self::Seldom => "a < 0.5 ? sqrt(0.5 * a) : 1.0 - sqrt(0.5 * (1.0 - a))",
-            Self::Somewhat => "sqrt(a)",
-            Self::Very => "a * a",
-            Self::Power(_) => "pow(a, p)",
-        }
-    }
-
     /// The grade that the hedge makes of a `grade` in [0, 1]. Where the slope of a root is infinite,
     /// at 0 (and at 1 for `seldom`), it counts as 0.
     #[must_use]
@@ -167,7 +153,6 @@ mod tests {
     fn names_are_unique_and_found_again() {
         for hedge in Hedge::NAMED {
             assert_eq!(Hedge::from_name(hedge.name()), Some(*hedge));
-            assert!(hedge.c().contains('a') || *hedge == Hedge::Any);
         }
         assert_eq!(Hedge::from_name("power"), None);
     }

@@ -126,12 +126,6 @@ impl Scenario {
         self
     }
 
-    /// The same with its pitch loop alone: nothing around it.
-    #[must_use]
-    pub fn without_autopilot(self) -> Self {
-        Self { autopilot: None, ..self }
-    }
-
     /// Everybody who answers, in the order of the flights.
     pub fn flyers(&self) -> impl Iterator<Item = Flyer<'_>> {
         let externals = self.externals.iter().map(Flyer::External);

@@ -137,70 +137,44 @@ pub trait ForceModel {
     }
 }
 
-impl<M: ForceModel + ?Sized> ForceModel for &M {
-    fn loads(&self, flow: &Flow, controls: &Controls) -> Loads {
-        (**self).loads(flow, controls)
-    }
+/// A pointer to a model is one: everything is asked of what it points to, so that nothing falls back on a default.
+macro_rules! pointer {
+    ($pointer:ty) => {
+        impl<M: ForceModel + ?Sized> ForceModel for $pointer {
+            fn loads(&self, flow: &Flow, controls: &Controls) -> Loads {
+                (**self).loads(flow, controls)
+            }
 
-    fn loads_per_alpha_rate(&self, flow: &Flow) -> Loads {
-        (**self).loads_per_alpha_rate(flow)
-    }
+            fn loads_per_alpha_rate(&self, flow: &Flow) -> Loads {
+                (**self).loads_per_alpha_rate(flow)
+            }
 
-    fn thrust_n(&self, flow: &Flow, controls: &Controls) -> f64 {
-        (**self).thrust_n(flow, controls)
-    }
+            fn thrust_n(&self, flow: &Flow, controls: &Controls) -> f64 {
+                (**self).thrust_n(flow, controls)
+            }
 
-    fn has_engine(&self) -> bool {
-        (**self).has_engine()
-    }
+            fn has_engine(&self) -> bool {
+                (**self).has_engine()
+            }
 
-    fn gearing(&self) -> Gearing {
-        (**self).gearing()
-    }
+            fn gearing(&self) -> Gearing {
+                (**self).gearing()
+            }
 
-    fn validity(&self) -> &Validity {
-        (**self).validity()
-    }
+            fn validity(&self) -> &Validity {
+                (**self).validity()
+            }
 
-    fn travel(&self) -> &Travel {
-        (**self).travel()
-    }
+            fn travel(&self) -> &Travel {
+                (**self).travel()
+            }
 
-    fn beyond_data(&self, flow: &Flow, controls: &Controls) -> Option<Departure> {
-        (**self).beyond_data(flow, controls)
-    }
+            fn beyond_data(&self, flow: &Flow, controls: &Controls) -> Option<Departure> {
+                (**self).beyond_data(flow, controls)
+            }
+        }
+    };
 }
 
-impl<M: ForceModel + ?Sized> ForceModel for Box<M> {
-    fn loads(&self, flow: &Flow, controls: &Controls) -> Loads {
-        (**self).loads(flow, controls)
-    }
-
-    fn loads_per_alpha_rate(&self, flow: &Flow) -> Loads {
-        (**self).loads_per_alpha_rate(flow)
-    }
-
-    fn thrust_n(&self, flow: &Flow, controls: &Controls) -> f64 {
-        (**self).thrust_n(flow, controls)
-    }
-
-    fn has_engine(&self) -> bool {
-        (**self).has_engine()
-    }
-
-    fn gearing(&self) -> Gearing {
-        (**self).gearing()
-    }
-
-    fn validity(&self) -> &Validity {
-        (**self).validity()
-    }
-
-    fn travel(&self) -> &Travel {
-        (**self).travel()
-    }
-
-    fn beyond_data(&self, flow: &Flow, controls: &Controls) -> Option<Departure> {
-        (**self).beyond_data(flow, controls)
-    }
-}
+pointer!(&M);
+pointer!(Box<M>);

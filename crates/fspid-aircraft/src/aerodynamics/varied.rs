@@ -11,11 +11,12 @@ use crate::aerodynamics::mach_table::MachTable;
 use crate::aerodynamics::{ForceModel, Loads};
 use crate::aircraft::Aircraft;
 use crate::controls::Controls;
+use crate::engine::Gearing;
 use crate::error::AircraftError;
 use crate::flow::Flow;
 use crate::fuel::FuelledBody;
 use crate::mass::MassProperties;
-use crate::validity::{Range, Travel, Validity};
+use crate::validity::{Departure, Range, Travel, Validity};
 use crate::vector::Vector3;
 
 /// A configuration and how far it is out.
@@ -246,12 +247,24 @@ impl ForceModel for VariedNow<'_> {
         self.standing.base.thrust_n(flow, controls)
     }
 
+    fn has_engine(&self) -> bool {
+        self.standing.base.has_engine()
+    }
+
+    fn gearing(&self) -> Gearing {
+        self.standing.base.gearing()
+    }
+
     fn validity(&self) -> &Validity {
-        &self.standing.base.validity
+        self.standing.base.validity()
     }
 
     fn travel(&self) -> &Travel {
-        &self.standing.base.travel
+        self.standing.base.travel()
+    }
+
+    fn beyond_data(&self, flow: &Flow, controls: &Controls) -> Option<Departure> {
+        self.standing.base.beyond_data(flow, controls)
     }
 }
 
@@ -268,11 +281,23 @@ impl ForceModel for VariedModel {
         self.now().thrust_n(flow, controls)
     }
 
+    fn has_engine(&self) -> bool {
+        self.start.base.has_engine()
+    }
+
+    fn gearing(&self) -> Gearing {
+        self.start.base.gearing()
+    }
+
     fn validity(&self) -> &Validity {
-        &self.start.base.validity
+        self.start.base.validity()
     }
 
     fn travel(&self) -> &Travel {
-        &self.start.base.travel
+        self.start.base.travel()
+    }
+
+    fn beyond_data(&self, flow: &Flow, controls: &Controls) -> Option<Departure> {
+        self.start.base.beyond_data(flow, controls)
     }
 }

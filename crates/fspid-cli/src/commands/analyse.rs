@@ -6,9 +6,8 @@ use super::external_controller::{Beside, leave_out};
 use super::progress::at_work;
 use super::{Format, json_text};
 use crate::argument::{InFile, OutFile, count, written};
-use crate::exit::{Failure, note, print, wrote};
+use crate::exit::{Failure, print, wrote};
 use fspid_scenario::count as counts;
-use fspid_scenario::file;
 use fspid_study::analysis::{Analysis, BreakPoint, Question, Stability};
 use fspid_study::{output, report};
 
@@ -66,11 +65,7 @@ impl From<Point> for BreakPoint {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let overrides = arguments.beside.overrides(&arguments.overrides)?;
-    let study = file::load(&arguments.file, &overrides).map_err(Failure::load)?;
-    for warning in &study.warnings {
-        note(format_args!("warning: {warning}"));
-    }
+    let study = arguments.beside.study(&arguments.file, &arguments.overrides)?;
     if study.scenario.controllers.is_empty() && !arguments.fly {
         leave_out(&study.scenario, None)?;
     }

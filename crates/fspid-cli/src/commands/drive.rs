@@ -11,7 +11,6 @@ use super::{Format, interrupt, json_text};
 use crate::argument::{NamedFile, OutFile, written};
 use crate::exit::{Failure, note, print};
 use fspid_external::drive::{Drive, Driven, Ending, Way, drive};
-use fspid_scenario::file;
 use fspid_scenario::units::radians;
 use fspid_study::fly::Hand;
 use fspid_study::output;
@@ -103,11 +102,7 @@ impl Arguments {
 const ENDS: f64 = 4.0;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let overrides = arguments.beside.overrides(&arguments.overrides)?;
-    let study = file::load(&arguments.file, &overrides).map_err(Failure::load)?;
-    for warning in &study.warnings {
-        note(format_args!("warning: {warning}"));
-    }
+    let study = arguments.beside.study(&arguments.file, &arguments.overrides)?;
     let wrong = |problem: &dyn std::fmt::Display| {
         Failure::input(format_args!("{}: {problem}", arguments.file.display()))
     };

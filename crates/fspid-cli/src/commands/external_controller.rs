@@ -9,7 +9,7 @@ use clap::Args;
 use crate::argument::NamedFile;
 use crate::exit::{Failure, note};
 use fspid_external::{ProcessHost, SimulatorHost, serve};
-use fspid_scenario::file::unread_in_words;
+use fspid_scenario::file::{self, Study, unread_in_words};
 use fspid_sim::Scenario;
 use fspid_sim::external::set_host;
 use fspid_sim::external_plant::set_plant_host;
@@ -74,6 +74,15 @@ fn renamed(key: &str, names: &[Named]) -> String {
 }
 
 impl Beside {
+    /// A scenario with its changes and these controllers; what is to be said of it is said.
+    pub(crate) fn study(&self, file: &Path, given: &[String]) -> Result<Study, Failure> {
+        let study = file::load(file, &self.overrides(given)?).map_err(Failure::load)?;
+        for warning in &study.warnings {
+            note(format_args!("warning: {warning}"));
+        }
+        Ok(study)
+    }
+
     /// The changes of a scenario behind those that are given: an entry of its controllers for each.
     pub(crate) fn overrides(&self, given: &[String]) -> Result<Vec<String>, Failure> {
         let is_named = !(self.inputs.is_empty() && self.outputs.is_empty());

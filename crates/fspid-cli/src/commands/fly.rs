@@ -8,7 +8,6 @@ use super::Format;
 use super::external_controller::Beside;
 use crate::argument::NamedFile;
 use crate::exit::{Failure, note, stream};
-use fspid_scenario::file;
 use fspid_study::fly::{self, Pilot, StreamError, Summary};
 
 /// Let a controller of a scenario fly whatever is at the other end of standard input and output.
@@ -96,11 +95,7 @@ fn summary_json(summary: &Summary, is_external: bool) -> Value {
 }
 
 fn pilot(arguments: &Arguments) -> Result<Pilot, Failure> {
-    let overrides = arguments.beside.overrides(&arguments.overrides)?;
-    let study = file::load(&arguments.file, &overrides).map_err(Failure::load)?;
-    for warning in &study.warnings {
-        note(format_args!("warning: {warning}"));
-    }
+    let study = arguments.beside.study(&arguments.file, &arguments.overrides)?;
     let name = arguments.controller.clone().or_else(|| arguments.beside.only());
     Pilot::new(&study.scenario, name.as_deref(), arguments.angles.into())
         .map_err(|problem| Failure::input(format_args!("{}: {problem}", arguments.file.display())))

@@ -8,8 +8,8 @@ use super::external_controller::Beside;
 use super::progress::{Telling, alive, tell};
 use super::{Format, interrupt, json_text};
 use crate::argument::{InFile, OutFile, written};
-use crate::exit::{Failure, note, print, wrote};
-use fspid_scenario::file::{self, Study};
+use crate::exit::{Failure, print, wrote};
+use fspid_scenario::file::Study;
 use fspid_study::output;
 use fspid_tune::limit::{Answer, Ladder, LimitError, Measure, Options, Travel};
 
@@ -107,11 +107,7 @@ fn travel(text: &str) -> Result<f64, String> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let overrides = arguments.beside.overrides(&arguments.overrides)?;
-    let study = file::load(&arguments.file, &overrides).map_err(Failure::load)?;
-    for warning in &study.warnings {
-        note(format_args!("warning: {warning}"));
-    }
+    let study = arguments.beside.study(&arguments.file, &arguments.overrides)?;
     let telling = if arguments.quiet { Telling::Nothing } else { Telling::for_standard_error() };
     let answer = watched(&study, arguments, telling).map_err(failure)?;
     if let Some(path) = &arguments.report {

@@ -7,7 +7,7 @@ use super::progress::{Telling, at_work};
 use super::{Format, interrupt, json_text, limit, memory};
 use crate::argument::{InFile, OutFile, written};
 use crate::exit::{Failure, note, print};
-use fspid_scenario::file::{self, Study};
+use fspid_scenario::file::Study;
 use fspid_sim::{NamedExternal, Scenario};
 use fspid_study::memory::Needed;
 use fspid_study::simulation::Simulation;
@@ -68,11 +68,7 @@ fn near_limit(study: &Study) -> Result<Answer, Failure> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let overrides = arguments.beside.overrides(&arguments.overrides)?;
-    let study = file::load(&arguments.file, &overrides).map_err(Failure::load)?;
-    for warning in &study.warnings {
-        note(format_args!("warning: {warning}"));
-    }
+    let study = arguments.beside.study(&arguments.file, &arguments.overrides)?;
     if arguments.real_time && !has_another_clock(&study.scenario) {
         return Err(Failure::input(
             "--real-time goes with a scenario that has [simulator], ArduPilot or PX4; `fspid show` shows the trace of any flight at its pace",

@@ -55,14 +55,6 @@ pub enum Operator {
     BitOr,
 }
 
-impl Operator {
-    /// True if it answers a truth.
-    #[must_use]
-    pub const fn is_truth(self) -> bool {
-        !matches!(self, Self::Add | Self::Subtract | Self::Multiply | Self::Divide | Self::BitOr)
-    }
-}
-
 /// What a function is called with.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Argument {

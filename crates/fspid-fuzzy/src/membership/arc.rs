@@ -22,8 +22,6 @@ impl Shape for Arc {
         Param { name: "end", unit: "variable", range: Range::Finite },
     ];
     const EXAMPLE: &'static [f64] = &[-1.0, 1.0];
-    const C: &'static str =
-        "sqrt(1.0 - fspid_square(fmax(0.0, fmin(1.0, (end - x) / (end - start)))))";
 
     fn relation(params: &[f64]) -> Result<(), FuzzyError> {
         let &[start, end] = params else { return Ok(()) };

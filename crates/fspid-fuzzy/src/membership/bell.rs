@@ -21,7 +21,6 @@ impl Shape for Bell {
         Param { name: "slope", unit: "1", range: Range::NonZero },
     ];
     const EXAMPLE: &'static [f64] = &[0.0, 1.0, 2.0];
-    const C: &'static str = "fspid_one_over_one_plus(pow(fabs((x - centre) / width), 2.0 * slope))";
 
     #[inline]
     fn grade<S: Scalar>(params: &[S], x: S) -> S {

@@ -22,8 +22,6 @@ impl Shape for Concave {
         Param { name: "end", unit: "variable", range: Range::Finite },
     ];
     const EXAMPLE: &'static [f64] = &[-1.0, 1.0];
-    const C: &'static str =
-        "1.0 / (1.0 + fmax(0.0, fmin(INFINITY, (end - x) / (end - inflection))))";
 
     fn relation(params: &[f64]) -> Result<(), FuzzyError> {
         let &[inflection, end] = params else { return Ok(()) };

@@ -19,8 +19,6 @@ impl Shape for Cosine {
         Param { name: "width", unit: "variable", range: Range::Positive },
     ];
     const EXAMPLE: &'static [f64] = &[0.0, 2.0];
-    const C: &'static str = "fabs(x - centre) / width < 0.5 \
-                             ? fspid_square(cos(3.141592653589793 * (fabs(x - centre) / width))) : 0.0";
 
     #[inline]
     fn grade<S: Scalar>(params: &[S], x: S) -> S {

@@ -28,7 +28,6 @@ impl Shape for Gaussian {
         Param { name: "sigma", unit: "variable", range: Range::Positive },
     ];
     const EXAMPLE: &'static [f64] = &[0.0, 1.0];
-    const C: &'static str = "exp(-0.5 * ((x - centre) / sigma) * ((x - centre) / sigma))";
 
     #[inline]
     fn grade<S: Scalar>(params: &[S], x: S) -> S {

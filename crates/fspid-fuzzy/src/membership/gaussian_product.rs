@@ -25,8 +25,6 @@ impl Shape for GaussianProduct {
         Param { name: "right_sigma", unit: "variable", range: Range::Positive },
     ];
     const EXAMPLE: &'static [f64] = &[-1.0, 1.0, 1.0, 2.0];
-    const C: &'static str = "exp(-0.5 * (fspid_square(fmax(0.0, fmin(INFINITY, (left_centre - x) / left_sigma))) \
-                             + fspid_square(fmax(0.0, fmin(INFINITY, (x - right_centre) / right_sigma)))))";
 
     #[inline]
     fn grade<S: Scalar>(params: &[S], x: S) -> S {

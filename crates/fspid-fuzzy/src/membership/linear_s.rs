@@ -22,8 +22,6 @@ impl Shape for LinearS {
         Param { name: "shoulder", unit: "variable", range: Range::Finite },
     ];
     const EXAMPLE: &'static [f64] = &[-1.0, 1.0];
-    const C: &'static str =
-        "x < shoulder ? fmax(0.0, (x - foot) / (shoulder - foot)) : x >= shoulder ? 1.0 : 0.0";
     const PIECEWISE_LINEAR: bool = true;
 
     fn relation(params: &[f64]) -> Result<(), FuzzyError> {

@@ -23,7 +23,6 @@ impl Shape for LinearZ {
         Param { name: "foot", unit: "variable", range: Range::Finite },
     ];
     const EXAMPLE: &'static [f64] = &[-1.0, 1.0];
-    const C: &'static str = "x < foot ? fmin(1.0, (foot - x) / (foot - shoulder)) : 0.0";
     const PIECEWISE_LINEAR: bool = true;
 
     fn relation(params: &[f64]) -> Result<(), FuzzyError> {

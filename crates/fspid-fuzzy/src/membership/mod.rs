@@ -144,8 +144,6 @@ pub trait Shape {
     const PARAMS: &'static [Param];
     /// Parameters of a typical member.
     const EXAMPLE: &'static [f64];
-    /// The grade as a C expression in `x` and the parameters.
-    const C: &'static str;
     /// True if the parameters are any number of groups of [`PARAMS`](Self::PARAMS).
     const REPEATS: bool = false;
     /// True if the graph consists of straight pieces (and jumps), which [`vertices`](Self::vertices)
@@ -184,9 +182,6 @@ pub trait Shape {
         None
     }
 }
-
-/// What the C expressions call besides `math.h`.
-pub const C_HELPERS: &str = include_str!("helpers.c");
 
 /// Refuses the first parameter of `S` that is missing, too many or out of its range.
 fn checked<S: Shape>(params: &[f64]) -> Result<(), FuzzyError> {
@@ -242,12 +237,6 @@ macro_rules! family {
             #[must_use]
             pub const fn example(self) -> &'static [f64] {
                 match self { $(Self::$member => $member::EXAMPLE,)* }
-            }
-
-            /// The grade as a C expression.
-            #[must_use]
-            pub const fn c(self) -> &'static str {
-                match self { $(Self::$member => $member::C,)* }
             }
 
             /// True if the parameters are any number of groups of [`params`](Self::params).

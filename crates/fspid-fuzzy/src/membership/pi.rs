@@ -24,8 +24,6 @@ impl Shape for Pi {
         Param { name: "right_foot", unit: "variable", range: Range::Finite },
     ];
     const EXAMPLE: &'static [f64] = &[-2.0, -1.0, 0.0, 2.0];
-    const C: &'static str =
-        "fspid_smooth_s(x, left_foot, left_top) * fspid_smooth_z(x, right_top, right_foot)";
 
     fn relation(params: &[f64]) -> Result<(), FuzzyError> {
         let &[left_foot, left_top, right_top, right_foot] = params else { return Ok(()) };

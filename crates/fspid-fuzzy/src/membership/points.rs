@@ -21,7 +21,6 @@ impl Shape for Points {
         Param { name: "grade", unit: "1", range: Range::Grade },
     ];
     const EXAMPLE: &'static [f64] = &[-2.0, 0.0, -1.0, 0.8, 0.0, 1.0, 1.0, 1.0, 1.0, 0.0];
-    const C: &'static str = "fspid_points(x, count, at, grade)";
     const REPEATS: bool = true;
     const PIECEWISE_LINEAR: bool = true;
 

@@ -22,7 +22,6 @@ impl Shape for Ramp {
         Param { name: "end", unit: "variable", range: Range::Finite },
     ];
     const EXAMPLE: &'static [f64] = &[-1.0, 1.0];
-    const C: &'static str = "fmin(1.0, fmax(0.0, (x - start) / (end - start)))";
     const PIECEWISE_LINEAR: bool = true;
 
     fn relation(params: &[f64]) -> Result<(), FuzzyError> {

@@ -21,7 +21,6 @@ impl Shape for Rectangle {
         Param { name: "end", unit: "variable", range: Range::Extended },
     ];
     const EXAMPLE: &'static [f64] = &[-1.0, 1.0];
-    const C: &'static str = "start <= x && x <= end ? 1.0 : 0.0";
     const PIECEWISE_LINEAR: bool = true;
 
     fn relation(params: &[f64]) -> Result<(), FuzzyError> {

@@ -20,7 +20,6 @@ impl Shape for SemiEllipse {
         Param { name: "end", unit: "variable", range: Range::Finite },
     ];
     const EXAMPLE: &'static [f64] = &[-1.0, 1.0];
-    const C: &'static str = "sqrt(1.0 - fspid_square(fmin(1.0, fabs(x - (0.5 * start + 0.5 * end)) / (0.5 * (end - start)))))";
 
     fn relation(params: &[f64]) -> Result<(), FuzzyError> {
         let &[start, end] = params else { return Ok(()) };

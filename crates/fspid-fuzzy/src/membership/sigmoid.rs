@@ -21,7 +21,6 @@ impl Shape for Sigmoid {
         Param { name: "slope", unit: "1/variable", range: Range::NonZero },
     ];
     const EXAMPLE: &'static [f64] = &[0.0, 2.0];
-    const C: &'static str = "fspid_one_over_one_plus(exp(-slope * (x - centre)))";
 
     #[inline]
     fn grade<S: Scalar>(params: &[S], x: S) -> S {

@@ -22,8 +22,6 @@ impl Shape for SigmoidProduct {
         Param { name: "right_slope", unit: "1/variable", range: Range::NonZero },
     ];
     const EXAMPLE: &'static [f64] = &[-1.0, 10.0, 1.0, -10.0];
-    const C: &'static str = "fspid_one_over_one_plus(exp(-left_slope * (x - left_centre))) \
-                             * fspid_one_over_one_plus(exp(-right_slope * (x - right_centre)))";
 
     #[inline]
     fn grade<S: Scalar>(params: &[S], x: S) -> S {

@@ -17,7 +17,6 @@ impl Shape for Singleton {
     const PARAMS: &'static [Param] =
         &[Param { name: "value", unit: "variable", range: Range::Finite }];
     const EXAMPLE: &'static [f64] = &[0.0];
-    const C: &'static str = "x == value ? 1.0 : 0.0";
     const PIECEWISE_LINEAR: bool = true;
 
     #[inline]

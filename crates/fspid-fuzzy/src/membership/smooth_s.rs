@@ -24,7 +24,6 @@ impl Shape for SmoothS {
         Param { name: "shoulder", unit: "variable", range: Range::Finite },
     ];
     const EXAMPLE: &'static [f64] = &[-1.0, 1.0];
-    const C: &'static str = "fspid_smooth_s(x, foot, shoulder)";
 
     fn relation(params: &[f64]) -> Result<(), FuzzyError> {
         let &[foot, shoulder] = params else { return Ok(()) };

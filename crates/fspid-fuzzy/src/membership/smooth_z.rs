@@ -24,7 +24,6 @@ impl Shape for SmoothZ {
         Param { name: "foot", unit: "variable", range: Range::Finite },
     ];
     const EXAMPLE: &'static [f64] = &[-1.0, 1.0];
-    const C: &'static str = "fspid_smooth_z(x, shoulder, foot)";
 
     fn relation(params: &[f64]) -> Result<(), FuzzyError> {
         let &[shoulder, foot] = params else { return Ok(()) };

@@ -19,7 +19,6 @@ impl Shape for Spike {
         Param { name: "width", unit: "variable", range: Range::NonZero },
     ];
     const EXAMPLE: &'static [f64] = &[0.0, 4.0];
-    const C: &'static str = "exp(-fabs(10.0 * ((x - centre) / width)))";
 
     #[inline]
     fn grade<S: Scalar>(params: &[S], x: S) -> S {

@@ -20,7 +20,6 @@ impl Shape for Step {
         Param { name: "direction", unit: "1", range: Range::Sign },
     ];
     const EXAMPLE: &'static [f64] = &[0.0, 1.0];
-    const C: &'static str = "direction * (x - threshold) >= 0.0 ? 1.0 : 0.0";
     const PIECEWISE_LINEAR: bool = true;
 
     #[inline]

@@ -279,15 +279,6 @@ fn the_inverse_of_the_grade_of_a_place_is_the_place() {
 }
 
 #[test]
-fn every_member_names_its_parameters_in_its_c_expression() {
-    for kind in ShapeKind::ALL {
-        for param in kind.params() {
-            assert!(kind.c().contains(param.name), "{}: {}", kind.name(), param.name);
-        }
-    }
-}
-
-#[test]
 fn names_are_unique_and_of_lower_case_words() {
     for kind in ShapeKind::ALL {
         assert_eq!(ShapeKind::from_name(kind.name()), Some(*kind));

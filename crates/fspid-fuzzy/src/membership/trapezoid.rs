@@ -26,10 +26,6 @@ impl Shape for Trapezoid {
         Param { name: "right_foot", unit: "variable", range: Range::Extended },
     ];
     const EXAMPLE: &'static [f64] = &[-2.0, -1.0, 0.0, 2.0];
-    const C: &'static str = "fmin(left_foot == -INFINITY || left_top <= x ? 1.0 \
-                             : fmax(0.0, (x - left_foot) / (left_top - left_foot)), \
-                             right_foot == INFINITY || x <= right_top ? 1.0 \
-                             : fmax(0.0, (right_foot - x) / (right_foot - right_top)))";
     const PIECEWISE_LINEAR: bool = true;
 
     fn relation(params: &[f64]) -> Result<(), FuzzyError> {

@@ -23,9 +23,6 @@ impl Shape for Triangle {
         Param { name: "right", unit: "variable", range: Range::Finite },
     ];
     const EXAMPLE: &'static [f64] = &[-1.0, 0.0, 2.0];
-    const C: &'static str = "x < peak ? fmax(0.0, (x - left) / (peak - left)) : \
-                             peak < x ? fmax(0.0, (right - x) / (right - peak)) : \
-                             x == peak ? 1.0 : 0.0";
     const PIECEWISE_LINEAR: bool = true;
 
     fn relation(params: &[f64]) -> Result<(), FuzzyError> {

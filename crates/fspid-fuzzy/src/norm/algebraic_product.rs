@@ -12,7 +12,6 @@ pub enum AlgebraicProduct {}
 
 impl TNorm for AlgebraicProduct {
     const NAME: &'static str = "algebraic-product";
-    const C: &'static str = "a * b";
     const DUAL: SNormKind = SNormKind::AlgebraicSum;
 
     #[inline]

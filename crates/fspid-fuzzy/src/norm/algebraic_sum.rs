@@ -14,7 +14,6 @@ pub enum AlgebraicSum {}
 
 impl SNorm for AlgebraicSum {
     const NAME: &'static str = "algebraic-sum";
-    const C: &'static str = "fmax(a, b) + fmin(a, b) * (1.0 - fmax(a, b))";
 
     #[inline]
     fn apply<S: Scalar>(a: S, b: S) -> S {

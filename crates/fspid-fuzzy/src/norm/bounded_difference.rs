@@ -14,7 +14,6 @@ pub enum BoundedDifference {}
 
 impl TNorm for BoundedDifference {
     const NAME: &'static str = "bounded-difference";
-    const C: &'static str = "fmax(0.0, fmin(a, b) - (1.0 - fmax(a, b)))";
     const DUAL: SNormKind = SNormKind::BoundedSum;
 
     #[inline]

@@ -14,7 +14,6 @@ pub enum BoundedSum {}
 
 impl SNorm for BoundedSum {
     const NAME: &'static str = "bounded-sum";
-    const C: &'static str = "fmin(1.0, a + b)";
 
     #[inline]
     fn apply<S: Scalar>(a: S, b: S) -> S {

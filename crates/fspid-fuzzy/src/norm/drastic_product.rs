@@ -14,7 +14,6 @@ pub enum DrasticProduct {}
 
 impl TNorm for DrasticProduct {
     const NAME: &'static str = "drastic-product";
-    const C: &'static str = "fmax(a, b) < 1.0 ? 0.0 : fmin(a, b)";
     const DUAL: SNormKind = SNormKind::DrasticSum;
 
     #[inline]

@@ -14,7 +14,6 @@ pub enum DrasticSum {}
 
 impl SNorm for DrasticSum {
     const NAME: &'static str = "drastic-sum";
-    const C: &'static str = "0.0 < fmin(a, b) ? 1.0 : fmax(a, b)";
 
     #[inline]
     fn apply<S: Scalar>(a: S, b: S) -> S {

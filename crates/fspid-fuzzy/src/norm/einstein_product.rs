@@ -14,7 +14,6 @@ pub enum EinsteinProduct {}
 
 impl TNorm for EinsteinProduct {
     const NAME: &'static str = "einstein-product";
-    const C: &'static str = "a * b / (1.0 + (1.0 - a) * (1.0 - b))";
     const DUAL: SNormKind = SNormKind::EinsteinSum;
 
     #[inline]

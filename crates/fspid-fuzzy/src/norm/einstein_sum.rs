@@ -12,7 +12,6 @@ pub enum EinsteinSum {}
 
 impl SNorm for EinsteinSum {
     const NAME: &'static str = "einstein-sum";
-    const C: &'static str = "(a + b) / (1.0 + a * b)";
 
     #[inline]
     fn apply<S: Scalar>(a: S, b: S) -> S {

@@ -14,8 +14,6 @@ pub enum HamacherProduct {}
 
 impl TNorm for HamacherProduct {
     const NAME: &'static str = "hamacher-product";
-    const C: &'static str =
-        "fmin(a, b) * (fmax(a, b) / fmax(5e-324, fmax(a, b) + fmin(a, b) * (1.0 - fmax(a, b))))";
     const DUAL: SNormKind = SNormKind::HamacherSum;
 
     #[inline]

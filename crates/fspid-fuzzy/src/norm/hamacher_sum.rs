@@ -14,7 +14,6 @@ pub enum HamacherSum {}
 
 impl SNorm for HamacherSum {
     const NAME: &'static str = "hamacher-sum";
-    const C: &'static str = "fmax(a, b) + fmin(a, b) * (1.0 - fmax(a, b)) * ((1.0 - fmax(a, b)) / fmax(5e-324, 1.0 - a * b))";
 
     #[inline]
     fn apply<S: Scalar>(a: S, b: S) -> S {

@@ -14,7 +14,6 @@ pub enum Maximum {}
 
 impl SNorm for Maximum {
     const NAME: &'static str = "maximum";
-    const C: &'static str = "fmax(a, b)";
 
     #[inline]
     fn apply<S: Scalar>(a: S, b: S) -> S {

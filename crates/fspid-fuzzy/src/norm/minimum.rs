@@ -14,7 +14,6 @@ pub enum Minimum {}
 
 impl TNorm for Minimum {
     const NAME: &'static str = "minimum";
-    const C: &'static str = "fmin(a, b)";
     const DUAL: SNormKind = SNormKind::Maximum;
 
     #[inline]

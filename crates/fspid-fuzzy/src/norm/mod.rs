@@ -43,8 +43,6 @@ use fspid_numeric::scalar::Scalar;
 pub trait TNorm {
     /// Name in files and messages.
     const NAME: &'static str;
-    /// The norm as a C expression in `a` and `b`.
-    const C: &'static str;
     /// The "or" that is its mirror image: $a \oplus b = 1 - (1 - a) \otimes (1 - b)$.
     const DUAL: SNormKind;
 
@@ -56,8 +54,6 @@ pub trait TNorm {
 pub trait SNorm {
     /// Name in files and messages.
     const NAME: &'static str;
-    /// The norm as a C expression in `a` and `b`.
-    const C: &'static str;
 
     /// $a \oplus b$.
     fn apply<S: Scalar>(a: S, b: S) -> S;
@@ -85,12 +81,6 @@ macro_rules! family {
             #[must_use]
             pub const fn name(self) -> &'static str {
                 match self { $(Self::$member => <$member as $norm>::NAME,)* }
-            }
-
-            /// The norm as a C expression in `a` and `b`.
-            #[must_use]
-            pub const fn c(self) -> &'static str {
-                match self { $(Self::$member => <$member as $norm>::C,)* }
             }
 
             /// The norm of two grades in [0, 1].

@@ -14,7 +14,6 @@ pub enum NilpotentMaximum {}
 
 impl SNorm for NilpotentMaximum {
     const NAME: &'static str = "nilpotent-maximum";
-    const C: &'static str = "fmin(a, b) < 1.0 - fmax(a, b) ? fmax(a, b) : 1.0";
 
     #[inline]
     fn apply<S: Scalar>(a: S, b: S) -> S {

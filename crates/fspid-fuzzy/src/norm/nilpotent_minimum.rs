@@ -14,7 +14,6 @@ pub enum NilpotentMinimum {}
 
 impl TNorm for NilpotentMinimum {
     const NAME: &'static str = "nilpotent-minimum";
-    const C: &'static str = "1.0 - fmax(a, b) < fmin(a, b) ? fmin(a, b) : 0.0";
     const DUAL: SNormKind = SNormKind::NilpotentMaximum;
 
     #[inline]

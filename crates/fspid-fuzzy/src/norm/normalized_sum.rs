@@ -15,7 +15,6 @@ pub enum NormalizedSum {}
 
 impl SNorm for NormalizedSum {
     const NAME: &'static str = "normalized-sum";
-    const C: &'static str = "(a + b) / fmax(1.0, a + b)";
 
     #[inline]
     fn apply<S: Scalar>(a: S, b: S) -> S {

@@ -163,10 +163,8 @@ fn the_quotients_that_would_be_zero_by_zero_have_their_limits() {
 fn names_are_unique_and_found_again() {
     for kind in TNormKind::ALL {
         assert_eq!(TNormKind::from_name(kind.name()), Some(*kind));
-        assert!(kind.c().contains('a') && kind.c().contains('b'));
     }
     for kind in SNormKind::ALL {
         assert_eq!(SNormKind::from_name(kind.name()), Some(*kind));
-        assert!(kind.c().contains('a') && kind.c().contains('b'));
     }
 }

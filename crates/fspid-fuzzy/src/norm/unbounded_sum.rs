@@ -14,7 +14,6 @@ pub enum UnboundedSum {}
 
 impl SNorm for UnboundedSum {
     const NAME: &'static str = "unbounded-sum";
-    const C: &'static str = "a + b";
 
     #[inline]
     fn apply<S: Scalar>(a: S, b: S) -> S {

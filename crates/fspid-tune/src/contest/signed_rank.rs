@@ -1,11 +1,9 @@
 //! The test of Wilcoxon on paired differences, and the interval of Hodges and Lehmann that belongs to it.
 
-use super::student;
+use fspid_scenario::dispersion::standard_normal::{above, quantile};
 
 /// Most differences whose distribution is counted out; with more it is nearly normal.
 const MOST_EXACT: usize = 200;
-/// As many degrees of freedom as make Student's distribution normal to all digits that are shown.
-const NORMAL: f64 = 1e9;
 
 /// What paired differences say without a distribution of theirs being assumed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,7 +72,7 @@ fn outermost(count: usize, doubt: f64) -> usize {
     if count > MOST_EXACT {
         let n = count as f64;
         let spread = (n * (n + 1.0) * (2.0 * n + 1.0) / 24.0).sqrt();
-        let rank = n * (n + 1.0) / 4.0 - student::beyond(doubt, NORMAL) * spread;
+        let rank = n * (n + 1.0) / 4.0 + quantile(0.5 * doubt) * spread;
         return rank.max(0.0) as usize;
     }
     let ranks: Vec<usize> = (1..=count).collect();
@@ -121,7 +119,7 @@ fn p_value(differences: &[f64]) -> f64 {
         let spread = ranks.iter().map(|rank| (*rank * *rank) as f64).sum::<f64>().sqrt() / 2.0;
         // Half a rank of continuity, in doubled ranks.
         let distance = (whole as f64 / 2.0 - smaller as f64 - 1.0).max(0.0);
-        return student::two_sided(distance / spread, NORMAL);
+        return 2.0 * above(distance / spread);
     }
     let tail: f64 = chances(&ranks).iter().take(smaller + 1).sum();
     (2.0 * tail).min(1.0)

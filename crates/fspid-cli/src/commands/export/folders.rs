@@ -1,11 +1,12 @@
 //! Where an export is written to.
 
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::Arguments;
 use crate::exit::Failure;
 use fspid_export::{Export, File};
+use fspid_scenario::apart::from_root;
 use fspid_study::output::{self, Contents, Taken, is_free, write_folders};
 
 /// Refuses folders that may not be written into, before anything is computed.
@@ -13,7 +14,7 @@ pub(super) fn check(arguments: &Arguments) -> Result<(), Failure> {
     free("--out", &arguments.out, arguments.force)?;
     let Some(evidence) = &arguments.evidence else { return Ok(()) };
     free("--evidence", evidence, arguments.force)?;
-    if whole(&arguments.out).starts_with(whole(evidence)) {
+    if from_root(&arguments.out).starts_with(from_root(evidence)) {
         return Err(Failure::input(
             "--out is in the folder of --evidence, which has files of the same names; each needs a folder of its own",
         ));
@@ -37,18 +38,6 @@ fn free(option: &str, folder: &Path, force: bool) -> Result<(), Failure> {
             output::in_words(&error)
         ))),
     }
-}
-
-/// The path from the root, of what is not there yet too.
-fn whole(path: &Path) -> PathBuf {
-    let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-    let is_there = path.ancestors().find_map(|above| Some((above, above.canonicalize().ok()?)));
-    is_there.map_or_else(
-        || path.clone(),
-        |(above, found)| {
-            path.strip_prefix(above).map_or_else(|_| path.clone(), |it| found.join(it))
-        },
-    )
 }
 
 /// Bytes of a file's name: `NAME_MAX` of Linux is 255, and a number stands in front while files are exchanged.

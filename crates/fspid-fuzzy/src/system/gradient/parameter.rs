@@ -4,8 +4,6 @@ use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 
-use super::super::build::System;
-use super::super::error::SystemError;
 use super::super::parts::{Conclusion, Membership, Parts};
 
 /// A number in a system that answers depend on smoothly.
@@ -297,19 +295,5 @@ impl Membership {
     fn height_place(&mut self) -> &mut f64 {
         let (Self::Shape { height, .. } | Self::Formula { height, .. }) = self;
         height
-    }
-}
-
-impl System {
-    /// The same system with other values of some parameters.
-    ///
-    /// # Errors
-    /// What [`System::new`] says of the parts as they are then.
-    pub fn with_parameters(&self, values: &[(Parameter, f64)]) -> Result<Self, Vec<SystemError>> {
-        let mut parts = self.parts.clone();
-        for &(parameter, value) in values {
-            parts.set_parameter(parameter, value);
-        }
-        Self::new(parts)
     }
 }
