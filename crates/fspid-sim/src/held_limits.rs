@@ -1,32 +1,42 @@
-//! Whether limits leave what holds an unstable plant where its flight ends.
+//! Whether limits leave what holds a plant where its flight ends that does not come to rest by itself.
 //!
 //! Around a rest limits do not act. Where there is none, because what is held takes more command than there is, a plant that is
-//! unstable by itself leaves for good, however stable the loop would be around it.
+//! unstable by itself, or integrates, leaves for good, however stable the loop would be around it.
 
 use fspid_aircraft::ForceModel;
-use fspid_core::Limits;
+use fspid_core::{Gains, Limits};
 
 use crate::controller::Controller;
 use crate::plant::LinearPlant;
+use crate::rest::{RestPoint, pitches_without_integral};
 use crate::scenario::Scenario;
 use crate::signal::Entry;
 use crate::trace::Trace;
 
-/// A pole this far to the right, as a share of one and its size, is unstable, and no double pole at the origin after rounding.
-const UNSTABLE: f64 = 1e-6;
+/// A pole this far to the left, as a share of one and its size, comes to rest by itself; one nearer the axis may be on it but
+/// for rounding.
+const AT_REST: f64 = 1e-6;
 /// Fewest samples of a last tenth of which something is said.
 const LEAST_TAIL: usize = 10;
 
 /// True where set-point and loads of the last sample, held on, take more than the limits of controller, servo or elevator of a
-/// plant that is unstable by itself and stays to the end; of a nonlinear aircraft its linear model at the last of its trims, with
-/// the travel of its own elevator. Without an integral rest is elsewhere, and outer loops command another set-point: of these it
-/// is not asked.
-pub(crate) fn are_exceeded(scenario: &Scenario, controller: &Controller, ki: f64) -> bool {
-    if ki == 0.0 || scenario.autopilot.is_some() || is_unlimited(scenario, controller) {
+/// plant that does not come to rest by itself and stays to the end; of a nonlinear aircraft its linear model at the last of its
+/// trims, with the travel of its own elevator. Outer loops command another set-point: with them it is asked of plants alone
+/// that integrate, whose rest takes the same at every pitch.
+pub(crate) fn are_exceeded(
+    scenario: &Scenario,
+    controller: &Controller,
+    gains: Gains<f64>,
+) -> bool {
+    if is_unlimited(scenario, controller) {
         return false;
     }
     last_plant(scenario).is_some_and(|plant| {
-        is_unstable(&plant) && Held::at_the_end(scenario, &plant).exceeds(scenario, controller)
+        let is_asked = scenario.autopilot.is_none() || plant.steady_gain().is_infinite();
+        let exceeds = |held: Held| held.exceeds(scenario, controller);
+        is_asked
+            && moves_by_itself(&plant)
+            && Held::at_the_end(scenario, &plant, controller, gains).into_iter().any(exceeds)
     })
 }
 
@@ -60,9 +70,10 @@ fn last_plant(scenario: &Scenario) -> Option<LinearPlant> {
     }
 }
 
-fn is_unstable(plant: &LinearPlant) -> bool {
+/// True for a plant that does not come to rest under a command that stands still: it is unstable, or integrates.
+fn moves_by_itself(plant: &LinearPlant) -> bool {
     let poles = plant.transfer_function().poles().unwrap_or_default();
-    poles.iter().any(|pole| pole.re > UNSTABLE * (1.0 + pole.norm()))
+    poles.iter().any(|pole| pole.re > -AT_REST * (1.0 + pole.norm()))
 }
 
 /// What a rest takes, rad of elevator, nose up positive.
@@ -75,7 +86,13 @@ struct Held {
 }
 
 impl Held {
-    fn at_the_end(scenario: &Scenario, plant: &LinearPlant) -> Self {
+    /// At each rest that there is: without an integral there may be several.
+    fn at_the_end(
+        scenario: &Scenario,
+        plant: &LinearPlant,
+        controller: &Controller,
+        gains: Gains<f64>,
+    ) -> Vec<Self> {
         let setpoint = &scenario.setpoint;
         let setpoint_rad = match setpoint.is_sine() {
             true => 0.0,
@@ -85,12 +102,22 @@ impl Held {
         let scale = 1.0 + sensor.map_or(0.0, |it| it.model().scale_error);
         let bias_rad = sensor.map_or(0.0, |it| it.bias());
         let load = |entry| last_load_rad(scenario, entry);
-        let pitch_rad = (setpoint_rad - load(Entry::Measurement) - bias_rad) / scale;
-        Self {
-            elevator_rad: pitch_rad / plant.steady_gain(),
-            at_servo_rad: load(Entry::Servo),
-            at_elevator_rad: load(Entry::Elevator) + scenario.actuator.bias_rad(),
+        let offset_rad = load(Entry::Measurement) + bias_rad;
+        let at_servo_rad = load(Entry::Servo);
+        let at_elevator_rad = load(Entry::Elevator) + scenario.actuator.bias_rad();
+        let elevator_rad = |seen_rad: f64| (seen_rad - offset_rad) / (scale * plant.steady_gain());
+        let held =
+            |seen_rad| Self { elevator_rad: elevator_rad(seen_rad), at_servo_rad, at_elevator_rad };
+        if gains.ki != 0.0 {
+            return vec![held(setpoint_rad)];
         }
+        // What the command is with nothing seen.
+        let load_rad = elevator_rad(0.0) - at_servo_rad - at_elevator_rad;
+        let at = RestPoint { setpoint_rad, load_rad };
+        pitches_without_integral(scenario, plant, controller, gains, at)
+            .into_iter()
+            .map(held)
+            .collect()
     }
 
     fn exceeds(&self, scenario: &Scenario, controller: &Controller) -> bool {
@@ -113,8 +140,8 @@ fn last_load_rad(scenario: &Scenario, entry: Entry) -> f64 {
     values.last().copied().unwrap_or(0.0)
 }
 
-/// True where a flight of a plant that is unstable by itself ends at a limit of controller or servo with an error that is
-/// larger than ever before and grows: through the last tenth of it, at every sample.
+/// True where a flight of a plant that does not come to rest by itself ends at a limit of controller or servo with an error
+/// that grows: through the last tenth of it, at every sample.
 #[must_use]
 pub fn is_lost_at_a_limit(scenario: &Scenario, controller: &Controller, trace: &Trace) -> bool {
     let rows = trace.rows();
@@ -125,12 +152,10 @@ pub fn is_lost_at_a_limit(scenario: &Scenario, controller: &Controller, trace: &
     }
     let errors: Vec<f64> =
         trace.setpoint_rad.iter().zip(&trace.theta_rad).map(|(r, y)| (r - y).abs()).collect();
-    let Some((before, last)) = errors.split_at_checked(rows - tail) else { return false };
-    let largest = before.iter().copied().fold(0.0, f64::max);
-    let grows = last.windows(2).all(|two| two[0] < two[1]) && last.last() > Some(&largest);
+    let grows = errors.iter().skip(rows - tail).is_sorted_by(|one, next| one < next);
     grows
         && trace.command_rad.iter().rev().take(tail).all(is_cut)
-        && last_plant(scenario).is_some_and(|plant| is_unstable(&plant))
+        && last_plant(scenario).is_some_and(|plant| moves_by_itself(&plant))
 }
 
 fn is_at_a_limit(scenario: &Scenario, controller: &Controller, command_rad: f64) -> bool {

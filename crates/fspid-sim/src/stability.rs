@@ -214,14 +214,14 @@ pub fn growth_at_rest(
             found = found.and(growth_of_plant(scenario, (from_s, plant), controller, gains)?);
         }
     }
-    if held_limits::are_exceeded(scenario, controller, gains.ki) {
+    if held_limits::are_exceeded(scenario, controller, gains) {
         found.doubt(Undecided::beyond(Doubt::BeyondLimits));
     }
     Ok(found.settled())
 }
 
 /// Why a flight is undecided at rest although its loops with each plant may not be: what [`growth_at_rest`] says of an aircraft,
-/// and of limits that leave too little to a plant that is unstable by itself.
+/// and of limits that leave too little to a plant that does not come to rest by itself.
 ///
 /// # Errors
 /// As [`instability`].
@@ -233,7 +233,7 @@ pub fn doubt_beyond(
     if scenario.plant.aircraft().is_some() {
         return Ok(growth_at_rest(scenario, controller, gains)?.undecided);
     }
-    let exceeds = held_limits::are_exceeded(scenario, controller, gains.ki);
+    let exceeds = held_limits::are_exceeded(scenario, controller, gains);
     Ok(exceeds.then(|| Undecided::beyond(Doubt::BeyondLimits)))
 }
 

@@ -172,20 +172,14 @@ impl Rest {
         let still = vec![Self::still(gains)];
         let Controller::SelfTuning(fspid) = controller else { return still };
         let steady = scenario.resting();
-        // A bias is drawn once: with its sign.
-        let rate_rad_s = scenario.surroundings.rate_sensor.as_ref().map_or(0.0, Sensor::bias);
-        let leakage_per_s = match fspid.tuner().settings().law {
-            Law::Memoryless => None,
-            Law::Accumulating { leakage_per_s } => Some(leakage_per_s),
-        };
+        let rate_rad_s = rate_bias_rad_s(scenario);
+        let leakage_per_s = leakage_per_s(fspid);
         if leakage_per_s == Some(0.0) || is_the_same_everywhere(fspid, rate_rad_s) {
             return still;
         }
-        let scale = scenario.surroundings.pitch_sensor.map_or(1.0, |s| 1.0 + s.model().scale_error);
         let held = Holding {
             fspid,
-            // What the command has to be per rad of seen pitch.
-            command_per_pitch: 1.0 / (scale * plant.steady_gain()),
+            command_per_pitch: command_per_pitch(scenario, plant),
             gains,
             leakage_per_s,
         };
@@ -212,7 +206,7 @@ impl Rest {
     /// True where what is held changes the loop at rest.
     #[must_use]
     pub fn depends_on_what_is_held(scenario: &Scenario, controller: &Controller) -> bool {
-        let rate_rad_s = scenario.surroundings.rate_sensor.as_ref().map_or(0.0, Sensor::bias);
+        let rate_rad_s = rate_bias_rad_s(scenario);
         match controller {
             Controller::Fixed(_) => false,
             Controller::SelfTuning(fspid) => !is_the_same_everywhere(fspid, rate_rad_s),
@@ -222,6 +216,57 @@ impl Rest {
     /// Of the same controller.
     fn is_the_same_loop_as(&self, other: &Self) -> bool {
         self.sides == other.sides && self.of_direction == other.of_direction
+    }
+}
+
+/// What a rate sensor shows at rest; a bias is drawn once, with its sign.
+fn rate_bias_rad_s(scenario: &Scenario) -> f64 {
+    scenario.surroundings.rate_sensor.as_ref().map_or(0.0, Sensor::bias)
+}
+
+/// Leakage of a law that accumulates, 1/s.
+fn leakage_per_s(fspid: &Fspid<f64>) -> Option<f64> {
+    match fspid.tuner().settings().law {
+        Law::Memoryless => None,
+        Law::Accumulating { leakage_per_s } => Some(leakage_per_s),
+    }
+}
+
+/// What the command has to be per rad of seen pitch.
+fn command_per_pitch(scenario: &Scenario, plant: &LinearPlant) -> f64 {
+    let sensor = scenario.surroundings.pitch_sensor;
+    let scale = sensor.map_or(1.0, |it| 1.0 + it.model().scale_error);
+    1.0 / (scale * plant.steady_gain())
+}
+
+/// Pitches, as they are seen, at which a plant rests whose controller has no integral with `gains` at rest: where the command
+/// that they bring about is the one that holds it. A self-tuner whose integral acts elsewhere comes to the set-point; one whose
+/// gains gather without end comes from what `gains` hold towards the set-point.
+pub(crate) fn pitches_without_integral(
+    scenario: &Scenario,
+    plant: &LinearPlant,
+    controller: &Controller,
+    gains: Gains<f64>,
+    at: RestPoint,
+) -> Vec<f64> {
+    let command_per_pitch = command_per_pitch(scenario, plant);
+    let rate_rad_s = rate_bias_rad_s(scenario);
+    let RestPoint { setpoint_rad, load_rad } = at;
+    let config = controller.config_at(gains);
+    let by_setpoint = gains.kp * config.setpoint_weights.proportional + config.feedforward;
+    let commanded_rad = by_setpoint * setpoint_rad - config.rate_gain_s * rate_rad_s - load_rad;
+    let with_gains_rad = commanded_rad / (command_per_pitch + gains.kp);
+    match controller {
+        Controller::Fixed(_) => vec![with_gains_rad],
+        Controller::SelfTuning(fspid) if integrates(fspid) => vec![setpoint_rad],
+        Controller::SelfTuning(fspid) => match leakage_per_s(fspid) {
+            Some(0.0) => vec![with_gains_rad, setpoint_rad],
+            leakage_per_s => {
+                let held = Holding { fspid, command_per_pitch, gains, leakage_per_s };
+                let errors = held.errors_at_rest(at, rate_rad_s);
+                errors.into_iter().map(|error_rad| setpoint_rad - error_rad).collect()
+            }
+        },
     }
 }
 

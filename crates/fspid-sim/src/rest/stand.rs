@@ -80,8 +80,8 @@ pub enum Doubt {
     Kink,
     /// About the trim of an aircraft something moves so fast that the steps of the integration do not follow.
     FastMotion,
-    /// What is held at the end of the flight takes more than a limit leaves, of a plant that is unstable by itself; or the flight
-    /// of one ended at a limit with an error that grows.
+    /// What is held at the end of the flight takes more than a limit leaves, of a plant that does not come to rest by itself; or
+    /// the flight of one ended at a limit with an error that grows.
     BeyondLimits,
 }
 

@@ -167,9 +167,9 @@ pub enum Absent {
         "undecided: about the trim the airframe has a motion that is too fast for the steps of the integration, which are the sample period and 0.01 s at most: with a shorter period they follow it"
     )]
     FastMotion,
-    /// An unstable plant is to be held where the limits leave too little for it.
+    /// A plant that does not come to rest by itself is to be held where the limits leave too little for it.
     #[error(
-        "undecided: the plant is unstable by itself, and at the end of the flight set-point and loads take more elevator than a limit leaves, or the command is at a limit and the error grows"
+        "undecided: the plant does not come to rest by itself, and at the end of the flight set-point and loads take more elevator than a limit leaves, or the command is at a limit and the error grows"
     )]
     BeyondLimits,
     /// The loop has so many states that nothing bounds its peaks from above.
