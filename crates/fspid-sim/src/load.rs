@@ -13,8 +13,9 @@ use crate::plant::LinearPlant;
 use crate::scenario::Scenario;
 
 /// Points at which the error of a flight is looked at; in the last tenth it is looked at each sample, for swings that are
-/// faster than the points. Its largest value between them is missed by little where the slow part of the answer counts,
-/// and what is missed makes the share that is left look larger, on the safe side.
+/// faster than the points, and before the first point at ever longer intervals, for answers that are over by then. Its
+/// largest value between them is missed by little, and what is missed makes the share that is left look larger, on the
+/// safe side.
 const POINTS: usize = 64;
 /// The points before the last tenth.
 const EARLY_POINTS: usize = POINTS - POINTS / 10;
@@ -115,17 +116,18 @@ fn with_plant(
     let samples = scenario.timing.rows().saturating_sub(1).max(1);
     let points = samples.min(POINTS);
     let stretch = samples / points;
-    let several = power(&one, stretch)?;
+    // What is left over of whole stretches comes first, so that the last point is the end of the flight.
+    let mut at = samples % points;
+    let doubled = doubled(&one, at + stretch)?;
+    let several = power(&doubled, stretch)?;
     let mut state = vec![0.0; model.size() + 1];
     let mut next = state.clone();
     if let Some(load) = state.last_mut() {
         *load = 1.0;
     }
-    // What is left over of whole stretches comes first, so that the last point is the end of the flight.
-    let mut at = samples % points;
-    power(&one, at)?.apply(&state.clone(), &mut state)?;
+    let mut largest = largest_before(at + stretch, &doubled, &state)?;
+    power(&doubled, at)?.apply(&state.clone(), &mut state)?;
     let mut history: Vec<(usize, f64)> = Vec::new();
-    let mut largest: f64 = 0.0;
     for point in 1..=points {
         if point > EARLY_POINTS {
             history.extend(sizes_between(&one, &state, at, stretch)?);
@@ -133,13 +135,13 @@ fn with_plant(
         several.apply(&state, &mut next)?;
         std::mem::swap(&mut state, &mut next);
         at += stretch;
-        // The largest is that of the points: samples between them, found another way, have other last bits.
+        // The samples between the points, found another way, have other last bits.
         let here = size(&state);
         largest = if here <= largest { largest } else { here };
         history.push((at, here));
     }
     let at_end = left_at_end(&history);
-    let mut flight = power(&several, points)?;
+    let mut flight = power(&self::doubled(&several, points)?, points)?;
     for _ in 0..DOUBLINGS {
         flight = flight.product(&flight)?;
     }
@@ -154,6 +156,27 @@ fn with_plant(
 /// The size of the error: the pitch angle is the plant's first state, and the set-point stays at zero.
 fn size(state: &[f64]) -> f64 {
     state.first().copied().unwrap_or(0.0).abs()
+}
+
+/// The largest size of the error before a sample, by the samples 1, 2, 3, 4, 6, 8, 12 …: of a motion that rises and falls
+/// once, however fast, the largest of them is at most a twentieth less than its peak.
+fn largest_before(end: usize, doubled: &[Matrix], load: &[f64]) -> Result<f64, LtiError> {
+    let (mut state, mut later) = (load.to_vec(), load.to_vec());
+    let (mut at, mut largest) = (1, 0.0_f64);
+    let mut half: Option<&Matrix> = None;
+    for matrix in doubled {
+        matrix.apply(load, &mut state)?;
+        if at < end {
+            largest = largest.max(size(&state));
+        }
+        if let Some(half) = half.filter(|_| at + at / 2 < end) {
+            half.apply(&state, &mut later)?;
+            largest = largest.max(size(&later));
+        }
+        at *= 2;
+        half = Some(matrix);
+    }
+    Ok(largest)
 }
 
 /// The samples of a stretch but for its ends, with the size of the error at each.
@@ -209,17 +232,22 @@ fn loaded(model: &LoopModel<f64>, gains: Gains<f64>) -> Result<Matrix, LtiError>
     Matrix::from_rows(&rows)
 }
 
-/// A matrix to a whole power.
-fn power(matrix: &Matrix, mut exponent: usize) -> Result<Matrix, LtiError> {
-    let mut result = Matrix::identity(matrix.rows());
-    let mut factor = matrix.clone();
-    while exponent > 0 {
-        if exponent % 2 == 1 {
-            result = result.product(&factor)?;
-        }
-        exponent /= 2;
-        if exponent > 0 {
-            factor = factor.product(&factor)?;
+/// A matrix to the powers 1, 2, 4, 8 …, up to one.
+fn doubled(matrix: &Matrix, up_to: usize) -> Result<Vec<Matrix>, LtiError> {
+    let mut doubled = vec![matrix.clone()];
+    while let Some(last) = doubled.last().filter(|_| up_to >> doubled.len() > 0) {
+        doubled.push(last.product(last)?);
+    }
+    Ok(doubled)
+}
+
+/// A matrix to a whole power, from those that are [`doubled`] up to it.
+fn power(doubled: &[Matrix], exponent: usize) -> Result<Matrix, LtiError> {
+    let size = doubled.first().map_or(0, Matrix::rows);
+    let mut result = Matrix::identity(size);
+    for (place, factor) in doubled.iter().enumerate() {
+        if exponent >> place & 1 == 1 {
+            result = result.product(factor)?;
         }
     }
     Ok(result)
@@ -280,6 +308,54 @@ mod tests {
         assert!(!short.is_removed() && short.is_slow(), "{short:?}");
         assert!(long.is_removed() && long.is_half_gone(), "{long:?}");
         assert!(short.for_good < 1e-6 && long.for_good < 1e-6);
+    }
+
+    /// Its effect is over long before the first of 64 points of a long flight: what was largest of it there was what
+    /// rounding left, which does not shrink, so that nothing was removed in the longest.
+    #[test]
+    fn a_load_that_is_removed_in_seconds_is_removed_in_flights_of_any_length() {
+        for gains in [
+            Gains { kp: 2.0, ki: 1.0, kd: 0.0 },
+            Gains { kp: 20.0, ki: 80.0, kd: 0.0 },
+            // Swings with a period of 0.6 s that are gone after 10 s.
+            Gains { kp: 1.0, ki: 100.0, kd: 0.0 },
+        ] {
+            let each_sample = asked(0.6, gains).largest.max(asked(6.0, gains).largest);
+            for duration_s in [20.0, 60.0, 200.0, 600.0, 2000.0, 6000.0, 50_000.0] {
+                let load = asked(duration_s, gains);
+                let share = load.largest / each_sample;
+                assert!((0.9..1.0001).contains(&share), "{duration_s} {gains:?} {load:?}");
+                assert!(load.is_removed() && load.share_left() < 0.01, "{duration_s} {load:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_peak_before_the_first_point_is_missed_by_a_twentieth_at_most() {
+        // n r^n, whose peak is at -1 / ln r.
+        for peak in 1..300 {
+            let ratio = libm::exp(-1.0 / f64::from(peak));
+            let rows =
+                Matrix::from_rows(&[vec![ratio, ratio], vec![0.0, ratio]]).expect("a matrix");
+            let found = doubled(&rows, 4000).expect("no overflow");
+            let found = largest_before(4000, &found, &[0.0, 1.0]).expect("sizes that fit");
+            let exact = f64::from(peak) * libm::exp(-1.0);
+            assert!((0.95..1.0001).contains(&(found / exact)), "{peak} {found} {exact}");
+        }
+    }
+
+    #[test]
+    fn a_power_of_doubled_matrices_is_that_of_single_steps() {
+        let rows = Matrix::from_rows(&[vec![0.5, 0.25], vec![0.0, 1.0]]).expect("a matrix");
+        let mut expected = Matrix::identity(2);
+        for exponent in 0..20 {
+            let found = power(&doubled(&rows, exponent).expect("small"), exponent).expect("small");
+            assert!(
+                (found.get(0, 1).expect("there") - expected.get(0, 1).expect("there")).abs()
+                    < 1e-15
+            );
+            expected = expected.product(&rows).expect("small");
+        }
     }
 
     /// The error swings with a period of 6.3 s and a fiftieth of the damping: what was left used to be whatever the last

@@ -6,8 +6,37 @@ use crate::error::{SimError, positive};
 pub const MAX_ROWS: usize = 10_000_000;
 
 /// Of a sample period: how far before a sample an event may lie and still count as on it. Absorbs
-/// the rounding of times such as 0.7 s at 0.1 s a sample.
-const SAME_SAMPLE: f64 = 1e-6;
+/// the rounding of times such as 0.7 s at 0.1 s a sample. The same in flight and in the loop around rest.
+pub(crate) const SAME_SAMPLE: f64 = 1e-6;
+
+/// How old a value is, in samples.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Age {
+    /// Whole samples.
+    pub(crate) whole: usize,
+    /// Part of a sample beyond them; 0 for what rounding leaves.
+    pub(crate) part: f64,
+}
+
+impl Age {
+    /// An age of so many samples, which is not negative.
+    pub(crate) fn of(samples: f64) -> Self {
+        let whole = (samples + SAME_SAMPLE).floor();
+        let part = (samples - whole).max(0.0);
+        Self { whole: count(whole), part: if part <= SAME_SAMPLE { 0.0 } else { part } }
+    }
+}
+
+/// A whole number of samples, 0 for a negative one.
+pub(crate) fn count(samples: f64) -> usize {
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "the cast saturates"
+    )]
+    let count = samples as usize;
+    count
+}
 
 /// When samples are taken: at `k · dt_s` for k from 0 to `rows - 1`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,14 +99,7 @@ impl Timing {
     /// The first sample at or after `at_s`; `rows` if there is none.
     #[must_use]
     pub fn first_sample_at(&self, at_s: f64) -> usize {
-        let k = (at_s / self.dt_s - SAME_SAMPLE).ceil().max(0.0);
-        #[allow(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "not negative, and the cast saturates"
-        )]
-        let k = k as usize;
-        k.min(self.rows)
+        count((at_s / self.dt_s - SAME_SAMPLE).ceil().max(0.0)).min(self.rows)
     }
 }
 
@@ -100,6 +122,18 @@ mod tests {
             assert_eq!(timing.first_sample_at(f64::from(k) * 0.01), k as usize);
             assert_eq!(timing.first_sample_at(f64::from(k) / 100.0), k as usize);
         }
+    }
+
+    #[test]
+    fn an_age_is_whole_where_only_rounding_says_otherwise() {
+        let near = |found: Age, whole, part: f64| {
+            assert!(found.whole == whole && (found.part - part).abs() < 1e-12, "{found:?}");
+        };
+        near(Age::of(0.07 / 0.01), 7, 0.0);
+        near(Age::of(3.0 - 1e-9), 3, 0.0);
+        near(Age::of(3.0 + 1e-9), 3, 0.0);
+        near(Age::of(1.5), 1, 0.5);
+        near(Age::of(0.0), 0, 0.0);
     }
 
     #[test]

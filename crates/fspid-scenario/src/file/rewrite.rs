@@ -9,7 +9,9 @@ use crate::file::extra::Extra;
 use crate::file::files::Files;
 use crate::file::overrides::{self, Change};
 use crate::file::spec::SCENARIO;
-use crate::file::spec::scenario::{CONTEST, CONTROLLER, TUNING};
+use crate::file::spec::scenario::{
+    CONTEST, CONTROLLER, GLIDE_SLOPE, MODE, OUTER_LOOP, TOTAL_ENERGY, TUNING,
+};
 use crate::keyed::document::{Item, Member, Value};
 use crate::keyed::{Kind, Table};
 use crate::requirement::Requirement;
@@ -25,7 +27,8 @@ pub struct Replay<'a> {
     pub frozen: Option<(Gains<f64>, PidConfig<f64>)>,
     /// The one plant: 0 for the first, otherwise the number of its change.
     pub plant: Option<usize>,
-    /// Size of the one step of its command, deg, where it has a flight of its own.
+    /// Size of the one step of its command, deg, where it has a flight of its own: of the pitch loop without the autopilot
+    /// around it.
     pub own_step_deg: Option<f64>,
     /// Sign of the first plant's elevator, which changes have where they say none.
     pub sign: ElevatorSign,
@@ -52,7 +55,8 @@ pub fn replay(
     let kept = keep_controller(&mut members, replay);
     let listed = |change: &Change| {
         // A frozen controller has no supervisor any more.
-        let is_gone = replay.frozen.is_some() && change.path.contains(".supervisor.");
+        let is_gone = replay.frozen.is_some() && change.path.contains(".supervisor.")
+            || replay.own_step_deg.is_some() && is_of_autopilot(&change.path);
         let path = path_now(&change.path, replay.plant, kept).filter(|_| !is_gone)?;
         Some(item(text_value(&change.text(&path, written))))
     };
@@ -66,11 +70,7 @@ pub fn replay(
     }
     put(&mut members, "requirement", Value::Array(vec![requirement(replay)]));
     if let Some(step_deg) = replay.own_step_deg {
-        let mut step = Vec::new();
-        put(&mut step, "kind", text_value("step"));
-        put(&mut step, "amplitude_deg", Value::Float(step_deg));
-        put(&mut step, "at_s", Value::Float(0.0));
-        put(&mut members, "setpoint", Value::Table(step));
+        put_own_step(&mut members, step_deg);
     }
     move_paths(&SCENARIO, &mut members, moved);
     let mut out = String::new();
@@ -100,6 +100,24 @@ fn tables_of<'a>(members: &'a [Member], name: &str) -> &'a [Item] {
         Some(Value::Array(items)) => items,
         _ => &[],
     }
+}
+
+/// One step at the start in place of the command, and no autopilot, which would command another.
+fn put_own_step(members: &mut Vec<Member>, step_deg: f64) {
+    members.retain(|member| !is_of_autopilot(&member.name));
+    let mut step = Vec::new();
+    put(&mut step, "kind", text_value("step"));
+    put(&mut step, "amplitude_deg", Value::Float(step_deg));
+    put(&mut step, "at_s", Value::Float(0.0));
+    put(members, "setpoint", Value::Table(step));
+}
+
+/// True for a path that begins with one of the tables of which an autopilot is made. Engine and lateral motion are the
+/// aircraft's.
+fn is_of_autopilot(path: &str) -> bool {
+    let root = path.split(['.', '[']).next();
+    let tables = [OUTER_LOOP.name, MODE.name, TOTAL_ENERGY.name, GLIDE_SLOPE.name];
+    tables.into_iter().any(|table| Some(table.as_str()) == root)
 }
 
 /// Leaves one of the plants, and no change.

@@ -1,9 +1,9 @@
 //! Ages of what sensors with clocks of their own show, sample by sample until they come again.
 
-use super::sensing::count;
 use super::{LoopModel, Sensing};
 use crate::scenario::Scenario;
 use crate::sensor::SensorModel;
+use crate::timing::{Age, SAME_SAMPLE};
 
 /// Longest time after which ages have to come again, samples.
 const MOST_PHASES: usize = 1000;
@@ -13,8 +13,6 @@ const MOST_NEAR_PHASES: usize = 200;
 const COMES_AGAIN: f64 = 1e-12;
 /// Ages that only nearly come again move on slowly: these parts of a sample are looked at.
 const PARTS: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
-/// How far before a sampling time a sample may lie and still count as on it, as in flight.
-const SAME_SAMPLE: f64 = 1e-6;
 
 /// How a loop's sensors, pitch and rate, look at each sample of a time after which they look so again.
 pub(crate) type Phases = Vec<[Sensing; 2]>;
@@ -114,8 +112,6 @@ fn phases(
 
 /// A sensor that is taken at its largest age as it looks at another one.
 fn aged(oldest: Sensing, age: f64) -> Sensing {
-    let whole = (age + SAME_SAMPLE).floor();
-    let part = age - whole;
-    let part = if part <= SAME_SAMPLE { 0.0 } else { part };
-    Sensing { samples: count(whole), part, at_largest_age: false, ..oldest }
+    let Age { whole, part } = Age::of(age);
+    Sensing { samples: whole, part, at_largest_age: false, ..oldest }
 }

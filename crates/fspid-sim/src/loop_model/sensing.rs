@@ -1,9 +1,7 @@
 //! How a linear loop sees a quantity through a sensor.
 
 use crate::sensor::Sensor;
-
-/// How far from a whole number of samples an age may lie and still count as whole.
-const SAME_SAMPLE: f64 = 1e-6;
+use crate::timing::{Age, SAME_SAMPLE, count};
 
 /// A sensor as the loop around rest sees it: scale and age. Bias, drift and noise are no part of a linear
 /// loop; resolution is a bounded disturbance of it.
@@ -46,10 +44,8 @@ impl Sensing {
         let resolution = model.resolution;
         let delay = model.delay_s / dt_s;
         if model.period_s == 0.0 {
-            let whole = (delay + SAME_SAMPLE).floor();
-            let part = (delay - whole).max(0.0);
-            let part = if part <= SAME_SAMPLE { 0.0 } else { part };
-            return Self { scale, samples: count(whole), part, resolution, ..Self::DIRECT };
+            let Age { whole, part } = Age::of(delay);
+            return Self { scale, samples: whole, part, resolution, ..Self::DIRECT };
         }
         let period = model.period_s / dt_s;
         let aligned = (period - period.round()).abs() <= SAME_SAMPLE;
@@ -65,16 +61,6 @@ impl Sensing {
     pub(crate) fn remembered(&self) -> usize {
         self.keeps.max(self.samples + usize::from(self.part > 0.0))
     }
-}
-
-pub(super) fn count(samples: f64) -> usize {
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "not negative, and the cast saturates"
-    )]
-    let count = samples as usize;
-    count
 }
 
 #[cfg(test)]

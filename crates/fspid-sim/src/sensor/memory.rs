@@ -5,6 +5,7 @@ use crate::error::SimError;
 use crate::loop_model::Sensing;
 use crate::math::exp;
 use crate::signal::noise::standard_normal;
+use crate::timing::{Age, SAME_SAMPLE};
 
 /// The quantity at a sample of the loop.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -62,8 +63,6 @@ pub struct SensorState {
     value: f64,
 }
 
-/// Of a period: how far before a sampling time a sample may lie and still count as on it.
-const SAME_SAMPLE: f64 = 1e-6;
 /// Longest memory, samples of the loop.
 const MOST_SAMPLES: f64 = 1e6;
 
@@ -245,26 +244,12 @@ impl SensorState {
         } else {
             k as f64 * self.dt_s - delay_s
         };
-        let age = (k as f64 - at_s.max(0.0) / self.dt_s).max(0.0);
-        let whole = (age + SAME_SAMPLE).floor();
-        let part = (age - whole).max(0.0);
-        let newer = sample_before(k, whole);
-        if part <= SAME_SAMPLE {
-            return (newer, newer, 0.0);
-        }
-        (newer, sample_before(k, whole + 1.0), part)
+        let Age { whole, part } = Age::of((k as f64 - at_s.max(0.0) / self.dt_s).max(0.0));
+        // Before the start there was what there is at the first sample.
+        let newer = k.saturating_sub(whole);
+        let older = if part > 0.0 { newer.saturating_sub(1) } else { newer };
+        (newer, older, part)
     }
-}
-
-/// The sample a whole number of `samples` before sample `k`; the first one before the start.
-fn sample_before(k: usize, samples: f64) -> usize {
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "not negative, and the cast saturates"
-    )]
-    let samples = samples as usize;
-    k.saturating_sub(samples)
 }
 
 /// The nearest multiple of a resolution, ties away from zero.

@@ -10,8 +10,8 @@ use fspid_scenario::requirement::Requirement;
 use fspid_scenario::units::{degrees, radians};
 
 /// Judges anew what a ready set asks of a step that the command does not have: on a flight of the same scenario with
-/// one step of that size at its start in place of the command. Everything else is as the scenario says. The answer is
-/// those of these flights that fail whatever is required of them.
+/// one step of that size at its start in place of the command, and without the autopilot, which would command another.
+/// Everything else is as the scenario says. The answer is those of these flights that fail whatever is required of them.
 ///
 /// Requirements that are written out, and ask for a step by their own `step_deg`, choose among the steps that there are.
 ///

@@ -111,6 +111,12 @@ impl Verification {
                 sizes_deg.push(size_deg);
             }
         }
+        let around = match self.study.scenario.autopilot {
+            Some(_) => {
+                " and of the pitch loop alone, without the outer loops, modes, total energy and glide slope around it"
+            }
+            None => "",
+        };
         let own = |size_deg: f64| {
             let mut names: Vec<&str> = Vec::new();
             let of_it = self.judgements.iter().filter(|it| it.own_step_deg == Some(size_deg));
@@ -120,7 +126,7 @@ impl Verification {
                 }
             }
             format!(
-                "Judged on a flight of their own, because the command has no step of {0} deg: {1}. It is the scenario with a step of {0} deg at 0 s in place of its command; everything else is as written.",
+                "Judged on a flight of their own, because the command has no step of {0} deg: {1}. It is the scenario with a step of {0} deg at 0 s in place of its command{around}; everything else is as written.",
                 to_digits(size_deg, 6),
                 names.join(", ")
             )

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use fspid_scenario::file;
 use fspid_scenario::measure::Measure;
+use fspid_scenario::requirement::SET_NAMES;
 use fspid_study::judgement::{Judgement, NotEvaluated};
 use fspid_study::simulation::Simulation;
 use fspid_study::verify::Verification;
@@ -99,6 +100,65 @@ fn a_flight_of_a_set_s_own_that_fails_is_told_and_its_replay_fails_too() {
         let again = file::parse(&replay.text, "replay", Some(folder.path()), &[]).expect("read");
         let again = Simulation::of(&again).expect("it flies");
         assert_eq!(again.failed_flights()[0].failures, failed.failures, "{}", replay.name);
+    }
+}
+
+/// The scenarios of a folder and those below it that have an autopilot.
+fn with_autopilot(folder: &Path) -> Vec<std::path::PathBuf> {
+    let entries = std::fs::read_dir(folder).expect("a folder");
+    let mut paths: Vec<_> = entries.map(|entry| entry.expect("readable").path()).collect();
+    paths.sort();
+    let mut found = Vec::new();
+    for path in paths {
+        if path.is_dir() {
+            found.extend(with_autopilot(&path));
+        } else if path.extension().is_some_and(|extension| extension == "toml")
+            && file::load(&path, &[]).is_ok_and(|study| study.scenario.autopilot.is_some())
+        {
+            found.push(path);
+        }
+    }
+    found
+}
+
+/// Such a flight is one of the pitch loop alone. Its replay kept the outer loops, which commanded something else: a PASS
+/// with a final error of 0.0002 % was replayed as a FAIL with 90 %.
+#[test]
+fn a_line_on_a_flight_of_its_own_is_replayed_without_the_autopilot_that_the_flight_has_not() {
+    let mut paths = with_autopilot(&repository("scenarios"));
+    paths.push(repository("crates/fspid-scenario/tests/scenarios/every-key-autopilot.toml"));
+    assert!(paths.len() > 5, "{paths:?}");
+    // Nobody but who asks says which altitude is aimed at.
+    let aimed = |&name: &&'static str| match name {
+        "rvsm" => "rvsm:target_ft=1200",
+        name => name,
+    };
+    let sets: Vec<&str> = SET_NAMES.iter().map(aimed).collect();
+    for path in paths {
+        let folder = tempfile::tempdir().expect("a folder");
+        let verification = verified(&path, &sets, &[]);
+        replay_all(&verification, folder.path());
+        let own = verification.judgements.iter().filter(|it| it.own_step_deg.is_some());
+        assert!(own.count() > 3, "{}", path.display());
+        let told = verification.text(None).split_whitespace().collect::<Vec<_>>().join(" ");
+        let note = "in place of its command and of the pitch loop alone, without the outer loops, modes, total energy and glide slope around it; everything else is as written.";
+        assert!(told.contains(note), "{told}");
+    }
+}
+
+/// Changes of what is left out, in files that it names, would have no place in the replay.
+#[test]
+fn changes_inside_of_the_autopilot_are_not_in_replays_without_it() {
+    let path = repository("crates/fspid-scenario/tests/scenarios/every-key-autopilot.toml");
+    let folder = tempfile::tempdir().expect("a folder");
+    let inside = "outer_loop.climb.supervisor.table.name=another";
+    let verification = verified(&path, &["ctms", "mil-f-9490d", inside], &[]);
+    replay_all(&verification, folder.path());
+    for (replay, judgement) in
+        verification.replays(folder.path()).iter().zip(&verification.judgements)
+    {
+        let keeps = replay.text.contains("outer_loop[1].supervisor.table");
+        assert_eq!(keeps, judgement.own_step_deg.is_none(), "{}", replay.text);
     }
 }
 
