@@ -108,6 +108,14 @@ fn a_page_answers_first_and_has_the_same_bytes_twice() {
     let settings = Settings { folder: Some("my runs".to_owned()), ..Settings::default() };
     let named = super::page(&path, &settings).expect("a page");
     assert_says(&named, &["--out &#x27;my runs&#x27;", "<span>'my</span> <span>runs'</span>"]);
+    assert_says(&page, &["fspid campaign run SCENARIO.toml "]);
+    // The plan beside the rows knows what the scenario was called.
+    let scenario = flown.folder.plan().expect("a plan").scenario_path;
+    assert_says(
+        &named,
+        &[&format!("fspid campaign run {scenario} "), &format!("{scenario} of the command")],
+    );
+    assert!(!named.contains("SCENARIO.toml"));
 }
 
 #[test]
