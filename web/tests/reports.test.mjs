@@ -291,6 +291,18 @@ test("every report fits a phone and uses a wide screen, where figures stand in t
   }
 });
 
+test("what is folded on a page is printed, and folded again after it", async () => {
+  const page = await opened("campaign.html");
+  const folded = () => page.locator("details").evaluateAll((all) => all.filter((one) => !one.open).length);
+  const before = await folded();
+  assert.ok(before > 0);
+  await page.evaluate(() => addEventListener("beforeprint", () => (window.folded = document.querySelectorAll("details:not([open])").length)));
+  await page.pdf();
+  assert.equal(await page.evaluate(() => window.folded), 0);
+  assert.equal(await folded(), before);
+  await close(page);
+});
+
 test("the report of the paper prints on at most 25 pages", async () => {
   const page = await opened("paper/report.html");
   const pdf = (await page.pdf({ preferCSSPageSize: true })).toString("latin1");

@@ -202,9 +202,17 @@ fn failure(error: Error) -> Option<Failure> {
     if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
         return Some(Failure::plain(error.render()));
     }
-    let told = error.render().to_string();
+    let told = without_trailing_tip(&error.render().to_string());
     let told = told.strip_prefix("error: ").unwrap_or(&told).to_owned();
     Some(Failure::usage(told))
+}
+
+/// Without the advice to write a mistyped option behind `--`: no file of this program is called `--controller`.
+fn without_trailing_tip(told: &str) -> String {
+    let is_tip = |part: &&str| {
+        part.starts_with("  tip: to pass '") && part.contains(" as a value, use '-- ")
+    };
+    told.split("\n\n").filter(|part| !is_tip(part)).collect::<Vec<_>>().join("\n\n")
 }
 
 /// "--runs is -5; allowed is a whole number, 0 or more".

@@ -25,6 +25,7 @@ mod fmu_aircraft;
 mod foreign_fmu;
 mod fuzzy_system;
 mod guide;
+mod help_examples;
 mod hostile_answers;
 mod learn;
 mod limit;

@@ -73,6 +73,7 @@ fn bounds_of_gusts_are_told_written_checked_and_compared_with_the_air_that_flies
         "a disturbance at the servo or the elevator of at most 1 deg",
         "; no limit acts up to",
         "Moving air counts by the bounds above",
+        "Apart from the lines on disturbances the claim is about constant set-points and loads",
     ] {
         assert!(told.contains(words), "{words}: {told}");
     }

@@ -3,7 +3,7 @@
 use std::fs::read_to_string;
 use std::path::{Path, PathBuf};
 
-use crate::repository::{files, repository};
+use crate::repository::{files, links, repository};
 
 /// Folders of all packages of the workspace.
 fn packages() -> Vec<PathBuf> {
@@ -51,6 +51,20 @@ fn every_library_begins_with_its_readme_and_says_what_is_absent() {
         let readme = read_to_string(package.join("README.md")).expect("a readme");
         assert!(readme.contains("```rust\n"), "{name}: no example");
     }
+}
+
+/// Errata and assumptions named `claims.md`, which was not packed with them.
+#[test]
+fn documents_that_are_packed_with_the_data_lead_to_files() {
+    let documents = repository().join("data/documents");
+    let mut count = 0;
+    for name in ["assumptions.md", "claims.md", "errata.md"] {
+        for file in links(&documents.join(name)) {
+            assert!(file.exists(), "{name}: {}", file.display());
+            count += 1;
+        }
+    }
+    assert!(count > 10, "{count}");
 }
 
 /// A library that includes a text from beside its folder builds here and nowhere else.

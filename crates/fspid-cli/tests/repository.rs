@@ -59,7 +59,7 @@ pub(crate) fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
 }
 
 /// Where the links of a document lead, those to other places than files left out.
-fn links(document: &Path) -> Vec<PathBuf> {
+pub(crate) fn links(document: &Path) -> Vec<PathBuf> {
     let text = std::fs::read_to_string(document).expect("a text");
     let targets = text.split("](").skip(1).map(|it| it.split([')', '#', ' ']).next());
     let files = targets.flatten().filter(|it| !it.is_empty() && !it.contains("://"));

@@ -366,6 +366,41 @@ fn a_file_that_is_no_scenario_is_called_what_it_is() {
     }
 }
 
+/// "This is a fuzzy system" of a report.
+#[test]
+fn a_page_is_not_called_a_fuzzy_system() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    std::fs::write(folder.join("a.html"), "<!DOCTYPE html>\n<html></html>\n").expect("written");
+    std::fs::write(folder.join("a.svg"), "<?xml version=\"1.0\"?>\n<svg/>\n").expect("written");
+    for (file, what) in [("a.html", "HTML"), ("a.svg", "XML")] {
+        for command in ["simulate", "certify", "check"] {
+            let output = fspid(&[command, file], folder);
+            let told = text(&output.stderr);
+            assert_eq!(code(&output), 2, "{told}");
+            assert!(told.contains(&format!("this is {what}, and not a scenario")), "{told}");
+            assert!(told.contains("a scenario, which is TOML"), "{told}");
+        }
+    }
+}
+
+/// "to pass '--controller' as a value, use '-- --controller'", which no command takes.
+#[test]
+fn an_option_that_a_command_lacks_is_not_told_to_be_a_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = fspid(&["analyse", "a.toml", "--controller", "PID"], folder.path());
+    let told = text(&output.stderr);
+    assert_eq!(code(&output), 2, "{told}");
+    assert!(
+        told.contains("unexpected argument '--controller'") && !told.contains("tip:"),
+        "{told}"
+    );
+    assert!(told.contains("\n\nUsage: fspid analyse"), "{told}");
+    // Other advice stays.
+    let output = fspid(&["simulate", "a.toml", "--reprot", "a.html"], folder.path());
+    assert!(text(&output.stderr).contains("'--report'"), "{}", text(&output.stderr));
+}
+
 #[test]
 fn a_contest_says_how_long_it_takes_and_its_page_has_reasons_in_a_table() {
     let folder = tempfile::tempdir().expect("a folder");

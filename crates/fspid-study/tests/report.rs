@@ -17,6 +17,19 @@ fn of_flight(text: &str) -> String {
     report::of_simulation(&study, &simulation)
 }
 
+/// The card blamed the step for the load: "Settled. First step: … overshoot 22.77 %" where the step alone has 16.86 %.
+#[test]
+fn the_card_of_a_flight_says_that_a_load_is_in_the_measures_of_its_step() {
+    let load = "First step, with what disturbs from 4 s on in it: rise time";
+    let page = of_flight(file::starter());
+    assert_eq!(page.matches(load).count(), 2);
+    assert!(!page.contains("First step: "));
+    let calm = ["disturbance=[]".to_owned()];
+    let study = file::parse(file::starter(), "test.toml", None, &calm).expect("right");
+    let page = report::of_simulation(&study, &Simulation::of(&study).expect("it flies"));
+    assert!(page.matches("First step: rise time").count() == 2 && !page.contains(load));
+}
+
 /// A scenario with a hostile name, whose first controller diverges and whose second accumulates.
 const HOSTILE: &str = r#"
 schema = 1

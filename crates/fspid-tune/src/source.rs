@@ -16,6 +16,16 @@ pub struct Source {
     pub overrides: Vec<String>,
 }
 
+/// A path as commands on pages name it: as it was given, from the folder in which it was given. Of one from the root the
+/// name alone stands there: pages are handed on, and such folders are of one machine.
+pub(crate) fn in_commands(path: &Path) -> String {
+    let shown = match path.is_relative() {
+        true => path.as_os_str(),
+        false => path.file_name().unwrap_or_default(),
+    };
+    shown.to_string_lossy().into_owned()
+}
+
 impl Source {
     /// Reads the scenario.
     ///
@@ -61,4 +71,20 @@ pub(crate) fn cases(study: &Study) -> impl Iterator<Item = &Case> {
 /// The folder that paths in a scenario are relative to.
 pub(crate) fn folder_of(path: &Path) -> &Path {
     path.parent().unwrap_or(Path::new(""))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `fspid contest light-steps.toml` was told of `data/designs/learned/light-steps.toml`.
+    #[test]
+    fn a_path_in_a_command_is_the_one_that_was_given_and_no_folder_of_a_machine() {
+        let shown = |path: &str| in_commands(Path::new(path));
+        assert_eq!(shown("data/designs/light.toml"), "data/designs/light.toml");
+        assert_eq!(shown("../light.toml"), "../light.toml");
+        assert_eq!(shown("light.toml"), "light.toml");
+        let absolute = std::env::temp_dir().join("folder").join("light.toml");
+        assert_eq!(in_commands(&absolute), "light.toml");
+    }
 }

@@ -116,6 +116,11 @@ fn a_supervisor_that_says_nothing_explains_nothing_whatever_is_done_to_it() {
     assert!(answer.text().contains("kp: it does not move from 1"), "{}", answer.text());
     assert!(answer.steps.iter().all(|it| it.share.is_none_or(|share| share.value.abs() < 1e6)));
     assert!(answer.headline().contains("not shown to help"), "{}", answer.headline());
+    // Nothing is won: what there is is a difference.
+    for told in [answer.text(), answer.page()] {
+        assert!(told.contains("What the difference is made of"), "{told}");
+        assert!(told.contains("share of the difference") && !told.contains("he win is made of"));
+    }
 }
 
 #[test]

@@ -66,7 +66,7 @@ pub(super) fn facts(source: &Source<'_>) -> Vec<(String, String)> {
 /// The commands that make the file and the page again.
 pub(super) fn commands(source: &Source<'_>) -> String {
     let head = &source.summary.head;
-    let folder = shell::word(source.folder);
+    let [scenario, folder] = [source.scenario, source.folder].map(shell::word);
     let set: String =
         head.changes.iter().map(|change| format!(" --set {}", shell::word(change))).collect();
     let (runs, seed, sampling) = (head.planned_runs, head.seed, head.sampling.name());
@@ -76,7 +76,7 @@ pub(super) fn commands(source: &Source<'_>) -> String {
         (Some(_), Some(_)) => format!("{folder} --incomplete"),
     };
     format!(
-        "fspid campaign run SCENARIO.toml{set} --runs {runs} --seed {seed} --sampling {sampling} --out {folder}\nfspid campaign report {file} --out campaign.html"
+        "fspid campaign run {scenario}{set} --runs {runs} --seed {seed} --sampling {sampling} --out {folder}\nfspid campaign report {file} --out campaign.html"
     )
 }
 
@@ -97,7 +97,7 @@ pub(super) fn scenario(source: &Source<'_>) -> Chapter {
     let mut items = vec![
         Item::Table(table),
         Item::Fold(
-            "The scenario's text: SCENARIO.toml of the command above".to_owned(),
+            format!("The scenario's text: {} of the command above", cut(source.scenario, 200)),
             vec![Item::Code(shown.to_owned())],
         ),
     ];

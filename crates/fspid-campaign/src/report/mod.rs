@@ -29,6 +29,7 @@ use fspid_page::analysis::{Item, Picture};
 use fspid_page::campaign::CampaignPage;
 use fspid_plot::{SeriesStyle, Svg};
 
+use crate::folder::Folder;
 use crate::summary::{Files, Found, Summary, SummaryError, SummarySettings};
 pub use responses::{Envelope, Envelopes};
 
@@ -67,7 +68,17 @@ pub fn page_of(
         return page(path, settings);
     }
     let folder = settings.folder.as_deref().unwrap_or("DIR");
-    Ok(Source { summary, files: &found.files, folder }.page()?.render())
+    let scenario = settings.folder.as_ref().and_then(|_| scenario_beside(path, summary));
+    let scenario = scenario.as_deref().unwrap_or("SCENARIO.toml");
+    Ok(Source { summary, files: &found.files, folder, scenario }.page()?.render())
+}
+
+/// The scenario as it was given when the campaign was planned: rows keep its text, and the plan beside them its path.
+fn scenario_beside(path: &Path, summary: &Summary) -> Option<String> {
+    let folder = if path.is_dir() { path } else { path.parent()? };
+    let plan = Folder::new(folder).plan().ok()?;
+    let is_planned = plan.scenario_digest == summary.head.scenario_digest;
+    (is_planned && !plan.scenario_path.is_empty()).then_some(plan.scenario_path)
 }
 
 /// What pitch does over time in the first runs, `most` at most, of the merged file at a path or of the parts in a
@@ -84,7 +95,10 @@ pub fn envelopes(
 ) -> Result<Envelopes, String> {
     let found = Found::at(path, settings).map_err(|error| error.to_string())?;
     match found.is_of(summary) {
-        true => responses::envelopes(&Source { summary, files: &found.files, folder: "" }, most),
+        true => {
+            let source = Source { summary, files: &found.files, folder: "", scenario: "" };
+            responses::envelopes(&source, most)
+        }
         false => Err("the file has changed since it was summarised".to_owned()),
     }
 }
@@ -95,6 +109,7 @@ struct Source<'a> {
     summary: &'a Summary,
     files: &'a Files,
     folder: &'a str,
+    scenario: &'a str,
 }
 
 impl Source<'_> {

@@ -108,6 +108,14 @@ fn a_page_answers_first_and_has_the_same_bytes_twice() {
     let settings = Settings { folder: Some("my runs".to_owned()), ..Settings::default() };
     let named = super::page(&path, &settings).expect("a page");
     assert_says(&named, &["--out &#x27;my runs&#x27;", "<span>'my</span> <span>runs'</span>"]);
+    assert_says(&page, &["fspid campaign run SCENARIO.toml "]);
+    // The plan beside the rows knows what the scenario was called.
+    let scenario = flown.folder.plan().expect("a plan").scenario_path;
+    assert_says(
+        &named,
+        &[&format!("fspid campaign run {scenario} "), &format!("{scenario} of the command")],
+    );
+    assert!(!named.contains("SCENARIO.toml"));
 }
 
 #[test]
@@ -270,7 +278,8 @@ fn curves_are_those_of_the_run_as_it_is_flown_alone() {
     let path = flown.folder.merged_path();
     let summary = Summary::of(&path, SummarySettings::default()).expect("a summary");
     let found = Found::at(&path, SummarySettings::default()).expect("a file");
-    let source = Source { summary: &summary, files: &found.files, folder: "DIR" };
+    let source =
+        Source { summary: &summary, files: &found.files, folder: "DIR", scenario: "s.toml" };
     let reflown = reflown::reflown(&source, &[vec![7], vec![]], u64::MAX).expect("flown again");
     let campaign = crate::Campaign::new(flown.folder.plan().expect("a plan"), flown.folder.path());
     let replay = crate::replay::replay(&campaign.expect("a campaign"), 7).expect("flown");
@@ -312,7 +321,8 @@ fn a_file_of_another_program_is_not_flown_again() {
     summary.head.program = "fspid 0.0.1".to_owned();
     let found = Found::at(&flown.folder.merged_path(), SummarySettings::default());
     let found = found.expect("a file");
-    let source = Source { summary: &summary, files: &found.files, folder: "DIR" };
+    let source =
+        Source { summary: &summary, files: &found.files, folder: "DIR", scenario: "s.toml" };
     let page = source.page().expect("a page").render();
     assert_says(&page, &["could not be flown again: they were flown by fspid 0.0.1"]);
     assert_says(&page, &[&Plan::this_program()]);

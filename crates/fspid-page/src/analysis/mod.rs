@@ -76,7 +76,7 @@ impl Standing {
     const fn sign(self) -> &'static str {
         match self {
             Self::Good => "\u{2713}",
-            Self::Fair => "\u{2248}",
+            Self::Fair => "!",
             Self::Bad => "\u{2717}",
         }
     }

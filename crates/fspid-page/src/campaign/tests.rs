@@ -91,6 +91,17 @@ fn ids_within_folds_are_unique_too() {
     assert!(page.matches("<details>").count() == 2);
 }
 
+/// What was folded on the screen was missing in print.
+#[test]
+fn what_is_folded_is_printed() {
+    let page = full().render();
+    let (_, print) = page.split_once("details::details-content{").expect("a rule");
+    assert!(print.starts_with("content-visibility:visible"), "{}", &print[..80]);
+    assert!(!page.contains("details:not([open]){display:none}"));
+    let (_, script) = page.split_once("addEventListener(\"beforeprint\"").expect("a script");
+    assert!(script.contains("details:not([open])") && script.contains("one.open = true"));
+}
+
 #[test]
 fn a_page_on_which_nothing_flew_says_so() {
     let page = CampaignPage::default().render();

@@ -583,6 +583,16 @@
     });
   }
 
+  // So is a page: what is folded is printed, and folded again after it.
+  let unfolded = [];
+  addEventListener("beforeprint", () => {
+    unfolded = [...unfolded, ...document.querySelectorAll("details:not([open])")];
+    for (const one of unfolded) one.open = true;
+  });
+  addEventListener("afterprint", () => {
+    for (const one of unfolded.splice(0)) one.open = false;
+  });
+
   for (const svg of document.querySelectorAll(".drawing > svg")) {
     if (svg.querySelector("[data-panel]") && svg.querySelector("[data-curve],[data-cells],[data-points],[data-at]")) enliven(svg.parentElement, svg);
   }

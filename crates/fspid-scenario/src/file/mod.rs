@@ -333,7 +333,10 @@ fn changed_document(
         return None;
     }
     if let Some(what) = other_kind(text) {
-        let allowed = "a scenario; `check` and `infer` read fuzzy systems and rule tables";
+        let allowed = match what {
+            "HTML" | "XML" => "a scenario, which is TOML",
+            _ => "a scenario; `check` and `infer` read fuzzy systems and rule tables",
+        };
         return not_a_scenario(report, what, allowed);
     }
     let mut document = document::read(report, None, text)?;

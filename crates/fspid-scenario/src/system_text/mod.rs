@@ -1,5 +1,6 @@
 //! Texts of fuzzy systems: which format they are in, and what they say.
 
+mod markup;
 mod numbers;
 mod toml_file;
 
@@ -171,6 +172,7 @@ pub(crate) fn other_kind(text: &str) -> Option<&'static str> {
         Format::Toml => None,
         // The words may stand in a text of a scenario.
         Format::Fcl if !text.lines().any(begins_block) => None,
+        Format::Fml if !markup::is_fml(text) => Some(markup::called(text)),
         Format::Fis | Format::T2fis | Format::Fcl | Format::Fll | Format::Fml => {
             Some("a fuzzy system")
         }

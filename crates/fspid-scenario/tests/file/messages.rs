@@ -9,9 +9,12 @@ use crate::file::{repository, text};
 const GOLDEN: &str = "crates/fspid-scenario/tests/scenarios/messages.txt";
 
 /// A mistake: what it is, what is replaced in the starter, and by what.
-const MISTAKES: [(&str, &str, &str); 37] = [
+const MISTAKES: [(&str, &str, &str); 40] = [
     ("a mistyped key", "sample_period_s", "sample_perod_s"),
     ("a key without its unit", "duration_s", "duration"),
+    ("a key in another unit", "sample_period_s = 0.01", "sample_period_ms = 10"),
+    ("an angle in radians", "amplitude_deg = 5.0", "amplitude_rad = 0.08"),
+    ("a number with its unit in a text", "duration_s = 10.0", "duration_s = \"500 ms\""),
     ("a key that does not exist", "name = \"my first flight\"", "name = \"x\"\ncolour = \"red\""),
     ("a missing table", "[loop]\nsample_period_s = 0.01\nduration_s = 10.0", ""),
     ("a missing key", "amplitude_deg = 5.0", ""),

@@ -252,6 +252,49 @@ fn an_event_after_the_end_and_a_sine_too_fast_for_the_samples_are_warned_of() {
     assert!(warnings.len() == 1 && warnings[0].contains("at most 50.0 Hz"), "{warnings:?}");
 }
 
+fn warnings(changes: &[&str]) -> Vec<String> {
+    let changes: Vec<String> = changes.iter().map(|&it| it.to_owned()).collect();
+    let study = file::parse(file::starter(), "test.toml", None, &changes);
+    study.expect("it is allowed").warnings
+}
+
+/// "good; … 2 samples of 20.0 s" of a flight of 10 s, and half a sample was one without a word.
+#[test]
+fn a_sample_that_is_longer_than_the_flight_is_warned_of() {
+    let long = warnings(&["loop.sample_period_s=20", "disturbance=[]"]);
+    let told = "loop.sample_period_s is 20.0 s, longer than the flight of 10.0 s: one sample period is flown, and the flight ends at 20.0 s";
+    assert!(long.iter().any(|it| it == told), "{long:?}");
+    let brief = warnings(&["loop.duration_s=0.005", "disturbance=[]"]);
+    assert!(brief.iter().any(|it| it.ends_with("the flight ends at 0.01 s")), "{brief:?}");
+    assert!(warnings(&["loop.duration_s=0.01", "disturbance=[]"]).is_empty());
+}
+
+#[test]
+fn a_supervisor_that_sees_nothing_is_warned_of() {
+    let scale = |which| format!("controller.FSPID.supervisor.{which}_scale=0");
+    let [error, change] = [scale("error"), scale("change")];
+    let found = warnings(&[&error, &change]);
+    assert!(found.len() == 1 && found[0].contains("the supervisor sees nothing"), "{found:?}");
+    assert!(warnings(&[&error]).is_empty() && warnings(&[&change]).is_empty());
+}
+
+#[test]
+fn a_controller_that_commands_nothing_is_warned_of() {
+    let zero = |name: &str| ["kp", "ki", "kd"].map(|gain| format!("controller.{name}.{gain}=0"));
+    let [kp, ki, kd] = zero("PID");
+    let found = warnings(&[&kp, &ki, &kd]);
+    assert!(found.len() == 1 && found[0].contains("this controller commands nothing"), "{found:?}");
+    assert!(warnings(&[&kp, &ki]).is_empty());
+    assert!(warnings(&[&kp, &ki, &kd, "controller.PID.feedforward=1"]).is_empty());
+    // A self-tuner begins at 0 and moves.
+    let [kp, ki, kd] = zero("FSPID.nominal");
+    let none = |gain| format!("controller.FSPID.supervisor.output_scale.{gain}=0");
+    let none = ["kp", "ki", "kd"].map(none);
+    assert!(warnings(&[&kp, &ki, &kd]).is_empty());
+    let found = warnings(&[&kp, &ki, &kd, &none[0], &none[1], &none[2]]);
+    assert!(found.len() == 1 && found[0].contains("this controller commands nothing"), "{found:?}");
+}
+
 #[test]
 fn the_digest_follows_text_overrides_and_the_files_referred_to() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -135,12 +135,25 @@ impl Margins {
     #[must_use]
     pub fn are_poor(&self) -> bool {
         // Written so that NaN is poor.
-        !(self.smaller_gain_margin_db() >= 6.0 && self.phase_margin_deg >= 45.0)
+        !(self.smaller_gain_margin_db() >= LEAST_DB && self.phase_margin_deg >= LEAST_DEG)
     }
 }
 
-/// What is said of a stable loop whose margins are poor.
-pub(crate) const POOR_MARGINS: &str = "margins below 6 dB or 45 deg";
+const LEAST_DB: f64 = 6.0;
+const LEAST_DEG: f64 = 45.0;
+
+/// What is said of a stable loop whose margins are poor: which of the two is, with any of its plants; nothing of good ones.
+pub(super) fn poor_in_words(all: &[Margins]) -> Option<&'static str> {
+    // Written so that NaN is poor.
+    let gain = all.iter().any(|it| !(it.smaller_gain_margin_db() >= LEAST_DB));
+    let phase = all.iter().any(|it| !(it.phase_margin_deg >= LEAST_DEG));
+    match (gain, phase) {
+        (true, true) => Some("gain margin below 6 dB, phase margin below 45 deg"),
+        (true, false) => Some("gain margin below 6 dB"),
+        (false, true) => Some("phase margin below 45 deg"),
+        (false, false) => None,
+    }
+}
 
 /// Why an end of the gain margin is infinite, in words.
 pub(super) const NO_LOWER_LIMIT: &str = "no smaller gain makes the loop unstable";

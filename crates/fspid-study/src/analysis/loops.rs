@@ -11,7 +11,7 @@ use fspid_sim::{
 };
 
 use super::Question;
-use super::answer::Margins;
+use super::answer::{Margins, poor_in_words};
 use super::equilibrium::{Equilibrium, equilibrium};
 use super::flights::Flights;
 use super::frozen::{Frozen, FrozenGains, FrozenMap, FrozenPoint, FrozenReach};
@@ -180,6 +180,13 @@ impl AnalysedLoop {
     pub fn has_poor_margins(&self) -> bool {
         let mut margins = self.plants.iter().map(|plant| plant.margins);
         self.is_held() && margins.any(|margins| margins.is_ok_and(|it| it.are_poor()))
+    }
+
+    /// Which margins are poor, in words, of a loop that [`Self::has_poor_margins`].
+    pub(crate) fn poor_margins_in_words(&self) -> Option<&'static str> {
+        let margins: Vec<Margins> =
+            self.plants.iter().filter_map(|plant| plant.margins.ok()).collect();
+        poor_in_words(&margins).filter(|_| self.has_poor_margins())
     }
 
     /// True if every plant is held with margins that are proved, at rest and at every gain of the map.

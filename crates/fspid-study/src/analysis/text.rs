@@ -3,7 +3,7 @@
 use fspid_core::Gains;
 use fspid_lti::{Complex, Mode, modulus};
 
-use super::answer::{Margins, NO_CROSSOVER, NO_LOWER_LIMIT, NO_UPPER_LIMIT, POOR_MARGINS};
+use super::answer::{Margins, NO_CROSSOVER, NO_LOWER_LIMIT, NO_UPPER_LIMIT};
 
 use super::{
     AnalysedLoop, Analysis, Equilibrium, Flights, Frozen, FrozenMap, FrozenReach, PlantLoop,
@@ -67,7 +67,7 @@ fn verdict(found: &AnalysedLoop) -> String {
     if unproved > 0 {
         return format!("stable {gains}; NO MARGINS PROVED{}{held}", plants(unproved));
     }
-    let poor = if found.has_poor_margins() { format!("; {POOR_MARGINS}") } else { String::new() };
+    let poor = found.poor_margins_in_words().map_or(String::new(), |poor| format!("; {poor}"));
     format!("stable {gains}{poor}{held}")
 }
 
@@ -90,6 +90,7 @@ fn push_loop(out: &mut String, found: &AnalysedLoop) {
             Some(Frozen::WithinReach(reach)) => push_reach(out, reach),
             None => {}
         }
+        push_unseen(out, plant);
     }
     for mode in &found.modes {
         out.push_str(&format!("  mode {}\n", mode.in_words()));
@@ -207,6 +208,18 @@ fn push_map(out: &mut String, map: &FrozenMap) {
         Err(_) => not_holding(map),
     };
     push_frozen(out, &all, &worst.margins, &at);
+}
+
+/// Where a set-point that is held makes a loop unstable whose frozen gains all hold: why the two lines differ.
+fn push_unseen(out: &mut String, plant: &PlantLoop) {
+    let frozen = plant.frozen.as_ref().map(|frozen| match frozen {
+        Frozen::OfInputs(map) => map.stability(),
+        Frozen::WithinReach(reach) => reach.stability(),
+    });
+    let differs = plant.stability() != Stability::Stable && frozen == Some(Stability::Stable);
+    if differs && !plant.others.is_empty() {
+        out.push_str("                     what the motion of the gains adds at a held set-point is not among gains that stand still\n");
+    }
 }
 
 /// What is found of frozen gains, and where it is worst.

@@ -13,7 +13,12 @@ impl CheckedFile {
     #[must_use]
     pub fn text(&self) -> String {
         let (certificate, origin) = (&self.certificate, &self.origin);
-        let claims = if self.answer().is_refused() { "a claim that DOES NOT HOLD: " } else { "" };
+        let claims = match self.answer() {
+            // The claim may well hold of its own loop.
+            Answer::AnotherLoop => "a claim that DOES NOT HOLD FOR THIS SCENARIO: ",
+            answer if answer.is_refused() => "a claim that DOES NOT HOLD: ",
+            _ => "",
+        };
         let mut out = format!(
             "{} of \"{}\": {claims}{}\n",
             origin.controller,

@@ -169,6 +169,10 @@ pub(super) fn left_out(one: LeftOut, scope: Option<&Scope>) -> String {
             "Set-points and loads that move otherwise than in the lines above are left out."
                 .to_owned()
         }
+        (LeftOut::MovingSetpoint, _) if !disturbed.is_empty() => {
+            "Apart from the lines on disturbances the claim is about constant set-points and loads: it says nothing of the time while they move."
+                .to_owned()
+        }
         (LeftOut::Disturbances, None) if scope.is_some_and(|it| it.ended.is_some()) => {
             "Disturbances that move otherwise than in the lines above count while they stand still, as loads."
                 .to_owned()

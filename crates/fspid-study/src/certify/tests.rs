@@ -425,6 +425,9 @@ fn every_field_that_flies_otherwise_is_told_with_both_values() {
     ] {
         assert!(told.contains(expected), "{expected}\n{told}");
     }
+    // The claim holds of its own loop: the first line does not say otherwise.
+    let first = told.lines().next().expect("a line");
+    assert!(first.contains(": a claim that DOES NOT HOLD FOR THIS SCENARIO: "), "{first}");
     assert_eq!(other.json()["against"]["same"], false);
     assert!(other.json()["against"]["differences"].as_array().is_some_and(|it| it.len() >= 3));
 }

@@ -40,13 +40,8 @@ pub(super) fn report(audit: &Audit<'_>) -> String {
 /// How many findings of each kind, and those that are probably not meant.
 fn summary(chapters: &[Chapter]) -> PageSection {
     let marks = [Mark::Holds, Mark::Worth, Mark::NotMeant, Mark::Open];
-    let head = [
-        "about",
-        "\u{2713} holds",
-        "\u{2248} worth knowing",
-        "\u{2717} probably not meant",
-        "? open",
-    ];
+    let head =
+        ["about", "\u{2713} holds", "! worth knowing", "\u{2717} probably not meant", "? open"];
     let mut table = PageTable::new("Findings by kind.", &head);
     for chapter in chapters {
         let of = |mark| chapter.findings.iter().filter(|found| found.mark == mark).count();

@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::supervisor;
 use super::traces::{Drawing, fails, is_cut_short};
 use super::{command, measures, settings};
-use crate::metrics::Verdict;
+use crate::metrics::{EdgeMetrics, Verdict, short};
 use crate::report::templates::render;
 use crate::simulation::{ControllerResult, Simulation};
 use fspid_page::context;
@@ -72,7 +72,7 @@ fn outcome(result: &ControllerResult) -> Outcome {
     let (class, word) = match verdict {
         Verdict::Settled => ("good", "\u{2713} Settled"),
         Verdict::Flown => ("good", "\u{2713} Flown"),
-        Verdict::NotSettled { .. } => ("fair", "\u{2248} Not settled"),
+        Verdict::NotSettled { .. } => ("fair", "! Not settled"),
         Verdict::Diverged { .. } => ("bad", "\u{2717} DIVERGED"),
         Verdict::HitGround { .. } => ("bad", "\u{2717} HIT THE GROUND"),
         Verdict::ControllerLost { .. } => ("bad", "\u{2717} CONTROLLER LOST"),
@@ -116,10 +116,15 @@ fn outcome(result: &ControllerResult) -> Outcome {
     Outcome { name: result.name.clone(), class, word, detail }
 }
 
+/// Its measures; where a load is among what they measure, that goes first, so that nobody takes them for the step's own.
 fn first_step(result: &ControllerResult) -> String {
     let first = result.metrics.first_step();
+    let from_s = result.metrics.edges.first().and_then(EdgeMetrics::measured_with_load_from_s);
+    let load = from_s.map_or(String::new(), |from_s| {
+        format!(", with what disturbs from {} s on in it", short(from_s))
+    });
     format!(
-        "First step: rise time {}, overshoot {}.",
+        "First step{load}: rise time {}, overshoot {}.",
         with_unit(first.rise_time_s, 3, "s"),
         with_unit(first.overshoot_pct, 2, "%")
     )

@@ -119,8 +119,13 @@ impl EdgeMetrics {
         Some(format!("the measures of the step at {} s are those {of_both}", short(self.at_s)))
     }
 
+    /// When what disturbs begins, where the measures of the step have it in them.
+    pub(crate) fn measured_with_load_from_s(&self) -> Option<f64> {
+        self.disturbed_from_s.filter(|_| self.step.overshoot_pct.is_ok())
+    }
+
     fn of_both_in_words(&self) -> Option<String> {
-        let from_s = self.disturbed_from_s.filter(|_| self.step.overshoot_pct.is_ok())?;
+        let from_s = self.measured_with_load_from_s()?;
         Some(format!("of the step and of what disturbs from {} s on", short(from_s)))
     }
 }

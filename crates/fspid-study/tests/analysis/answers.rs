@@ -1,5 +1,8 @@
 //! The answers for people and programs, and what is told beside the numbers.
 
+use fspid_scenario::file;
+use fspid_study::analysis::{Analysis, Question};
+
 use super::{LOOP, analysed, margins};
 
 #[test]
@@ -36,8 +39,44 @@ fn a_stable_loop_with_poor_margins_is_told_apart_from_a_good_one() {
     assert_eq!(poor, [phase(0) < 45.0, phase(1) < 45.0, phase(2) < 45.0]);
     assert!(poor[0] && !poor[2]);
     let text = analysis.text();
-    let verdict = "stable with kp 3.5287, ki 0.0000, kd 0.0000; margins below 6 dB or 45 deg";
+    let verdict = "stable with kp 3.5287, ki 0.0000, kd 0.0000; phase margin below 45 deg";
     assert_eq!(text.matches(verdict).count(), 1, "{text}");
+}
+
+fn transport(name: &str) -> Analysis {
+    let path = format!("{}/../../data/designs/learned/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    let study = file::load(std::path::Path::new(&path), &[]).unwrap_or_else(|it| panic!("{it}"));
+    Analysis::of(&study, Question::default()).expect("loops")
+}
+
+/// It said that each has more than 1 at rest.
+#[test]
+fn the_guide_tells_the_margins_of_the_designs_for_transports_as_they_are() {
+    let guide = include_str!("../../../../docs/guide/margins-requirements-proof.md");
+    let names = ["transport", "transport-steps", "transport-damped"];
+    let found = names.map(|name| {
+        let analysis = transport(name);
+        let own = analysis.loops.iter().find(|it| it.name == "FSPID").expect("the design");
+        let reach = own.plants[0].reach().expect("a law that remembers");
+        [own.margins(), reach.worst.margins]
+            .map(|it| format!("{:.2}", it.expect("held").disk_margin))
+    });
+    let [[rest, stands], [steps_rest, steps_stands], [damped_rest, damped_stands]] = found;
+    let words = format!(
+        "{stands} (`transport.toml`), {steps_stands} (`transport-steps.toml`) and {damped_stands} (`transport-damped.toml`), where they have {rest}, {steps_rest} and {damped_rest} at rest"
+    );
+    assert!(guide.contains(&words), "{words}");
+}
+
+/// "UNSTABLE at rest" stood beside "all 94 … hold", and nothing said why.
+#[test]
+fn a_loop_that_a_held_set_point_makes_unstable_says_why_its_frozen_gains_hold() {
+    let text = transport("transport").text();
+    let (_, own) = text.split_once("FSPID, by formula  ").expect("a design");
+    assert!(own.trim_start().starts_with("UNSTABLE at rest"), "{own}");
+    let why =
+        "what the motion of the gains adds at a held set-point is not among gains that stand still";
+    assert_eq!((text.matches(why).count(), own.matches(why).count()), (1, 1), "{text}");
 }
 
 #[test]

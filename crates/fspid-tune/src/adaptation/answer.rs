@@ -7,6 +7,7 @@ use super::flown::{First, Treated};
 use super::means::{Draws, Estimate, Kind, Means, Quantity, Weights, line};
 use super::treatment::Treatment;
 use super::{Adaptation, Plants};
+use crate::source::in_commands;
 
 /// What flew in the place of the self-tuner, beside the self-tuner as it is.
 #[derive(Clone, Debug, PartialEq)]
@@ -105,7 +106,7 @@ pub struct PlantRow {
 pub struct Answer {
     /// Name of the scenario.
     pub scenario: String,
-    /// Its file.
+    /// Its file, as commands name it.
     pub file: String,
     /// Changes from outside.
     pub overrides: Vec<String>,
@@ -163,8 +164,6 @@ pub(super) fn answer(
     let seeds = usize::try_from(asked.options.seeds).unwrap_or(1);
     let draws = Draws::new(plants.keys.len(), seeds);
     let told = Told { means: &means, draws: &draws };
-    let path = &asked.source.path;
-    let file = path.file_name().map(|name| name.to_string_lossy().into_owned());
     let facts = Facts { firsts, plants, best };
     let nominal = asked.flights.jobs().next().and_then(|(case, run)| {
         let study = asked.flights.study(&[], case, run).ok()?;
@@ -173,7 +172,7 @@ pub(super) fn answer(
     let chain = &means.chain;
     Answer {
         scenario: asked.name.clone(),
-        file: file.unwrap_or_default(),
+        file: in_commands(&asked.source.path),
         overrides: asked.source.overrides.clone(),
         digest: asked.digest.clone(),
         controller: asked.controller.clone(),

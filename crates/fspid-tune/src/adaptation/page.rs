@@ -11,7 +11,7 @@ use fspid_study::shell::word;
 
 use super::answer::{Answer, PlantRow};
 use super::means::Estimate;
-use super::text::{broken, change, gains, known, lost, moved, name, share};
+use super::text::{UNDEFINED, broken, change, gains, known, lost, moved, name, share};
 use super::treatment::Treatment;
 
 impl Answer {
@@ -89,13 +89,24 @@ impl Answer {
                 number(step.travel, change),
             ]
         });
-        let caption = "What the win is made of, one thing after the other; shares are of the logarithm of the ratio, and add up. A share below zero makes it worse.";
-        let head = ["what comes in", "IAE", "share of the win", "travel of the elevator"];
-        let shares = "Change of the IAE as one thing after the other comes in, left of 0 is better, with 95 % over plants and seeds.";
+        let (what, whole) = (self.made_of(), self.whole());
+        let caption = format!(
+            "{what}, one thing after the other; shares are of the logarithm of the ratio, and add up. A share below zero makes it worse."
+        );
+        let of_whole = format!("share of the {whole}");
+        let head = ["what comes in", "IAE", &of_whole, "travel of the elevator"];
+        let sure = match self.steps.iter().any(|it| it.iae.is_some_and(|it| it.interval.is_some()))
+        {
+            true => ", with 95 % over plants and seeds",
+            false => "",
+        };
+        let shares = format!(
+            "Change of the IAE as one thing after the other comes in, left of 0 is better{sure}."
+        );
         vec![
-            Item::Heading("What the win is made of".to_owned()),
-            picture("steps", self.steps_figure(), shares),
-            Item::Table(table(caption, &head, rows.collect())),
+            Item::Heading(what),
+            picture("steps", self.steps_figure(), &shares),
+            Item::Table(table(&caption, &head, rows.collect())),
         ]
     }
 
@@ -215,7 +226,7 @@ impl Answer {
 }
 
 fn number(found: Option<Estimate>, of: fn(Estimate) -> String) -> Datum {
-    found.map_or_else(|| Datum::Absent("none".to_owned()), |it| Datum::Number(of(it)))
+    found.map_or_else(|| Datum::Absent(UNDEFINED.to_owned()), |it| Datum::Number(of(it)))
 }
 
 fn marks(iae: Option<Estimate>, travel: Option<Estimate>) -> Vec<IntervalMark> {

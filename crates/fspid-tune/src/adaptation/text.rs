@@ -13,7 +13,7 @@ impl Answer {
     #[must_use]
     pub fn text(&self) -> String {
         let mut out = format!("{}\n{}\n\n", self.headline(), self.detail());
-        out.push_str("What the win is made of, one thing after the other:\n");
+        out.push_str(&format!("{}, one thing after the other:\n", self.made_of()));
         out.push_str(&steps(self));
         out.push_str("\nThe same flights with something else in the place of the supervisor, beside them as they are:\n");
         out.push_str(&rows(self));
@@ -24,6 +24,17 @@ impl Answer {
         out.push('\n');
         self.notes().iter().for_each(|it| out.push_str(&format!("{it}\n")));
         out
+    }
+
+    /// What the steps add up to: a win only where the error is smaller for certain.
+    pub(super) fn whole(&self) -> &'static str {
+        let is_win = self.win.is_some_and(|it| it.interval.is_some_and(|[_, upper]| upper < 1.0));
+        if is_win { "win" } else { "difference" }
+    }
+
+    /// The heading of the steps.
+    pub(super) fn made_of(&self) -> String {
+        format!("What the {} is made of", self.whole())
     }
 
     /// Name of a step, and what it is in words.
@@ -151,6 +162,9 @@ impl Answer {
     }
 }
 
+/// In the place of a number that there is not; "none" is a count of 0.
+pub(super) const UNDEFINED: &str = "\u{2013}";
+
 /// What moves by less, as a share of its mean, moves by rounding.
 const STILL: f64 = 1e-9;
 
@@ -211,12 +225,13 @@ pub(super) fn broken(row: &Row) -> String {
 }
 
 fn steps(answer: &Answer) -> String {
-    let heads = ["what comes in", "IAE", "share of the win", "travel"];
+    let of_whole = format!("share of the {}", answer.whole());
+    let heads = ["what comes in", "IAE", &of_whole, "travel"];
     let mut table = Columns::new(&heads.map(|head| (head, Align::Left)));
     for step in &answer.steps {
         let (_, words) = answer.called(step);
         let number =
-            |it: Option<Estimate>, of: fn(Estimate) -> String| it.map_or("none".to_owned(), of);
+            |it: Option<Estimate>, of: fn(Estimate) -> String| it.map_or(UNDEFINED.to_owned(), of);
         table.row(vec![
             words.to_owned(),
             number(step.iae, change),
@@ -231,7 +246,7 @@ fn rows(answer: &Answer) -> String {
     let heads = ["flown", "IAE", "travel", "lost", "breaks a requirement"];
     let mut table = Columns::new(&heads.map(|head| (head, Align::Left)));
     for row in &answer.rows {
-        let number = |it: Option<Estimate>| it.map_or("none".to_owned(), change);
+        let number = |it: Option<Estimate>| it.map_or(UNDEFINED.to_owned(), change);
         let (iae, travel) = match row.treatment {
             Treatment::AsItIs => ("1".to_owned(), "1".to_owned()),
             _ => (number(row.iae), number(row.travel)),
@@ -250,7 +265,7 @@ pub(super) fn name(answer: &Answer, row: &Row) -> String {
 }
 
 pub(super) fn moved(it: &Moved) -> String {
-    let part = |found: Option<Estimate>| found.map_or("none".to_owned(), share);
+    let part = |found: Option<Estimate>| found.map_or(UNDEFINED.to_owned(), share);
     if !(it.deviation > STILL * it.mean.abs()) {
         return format!("{}: it does not move from {}", it.gain, to_digits(it.mean, 4));
     }
@@ -275,7 +290,7 @@ pub(super) fn known(value: Option<f64>) -> String {
 pub(super) fn gains(row: &PlantRow) -> [[String; 2]; 3] {
     let of = |gain: fn(&fspid_core::Gains<f64>) -> f64| {
         let best = row.best.as_ref().map(gain);
-        [to_digits(gain(&row.mean), 4), best.map_or("none".to_owned(), |it| to_digits(it, 4))]
+        [to_digits(gain(&row.mean), 4), best.map_or(UNDEFINED.to_owned(), |it| to_digits(it, 4))]
     };
     [of(|it| it.kp), of(|it| it.ki), of(|it| it.kd)]
 }

@@ -236,6 +236,11 @@ impl Judged {
         self.is_tuned_once() && tuned.all(|it| it.designs.len() > 1)
     }
 
+    /// Whether there is a controller of which several seeds found a design each.
+    pub(crate) fn has_several_designs(&self) -> bool {
+        self.contestants.iter().any(|it| it.designs.len() > 1)
+    }
+
     /// Whether anybody was tuned.
     #[must_use]
     pub fn is_tuned(&self) -> bool {

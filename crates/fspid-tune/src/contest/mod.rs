@@ -66,7 +66,7 @@ use crate::error::TuneError;
 use crate::flights::{Flights, each_once};
 use crate::problem::TuningProblem;
 use crate::search::Effort;
-use crate::source::Source;
+use crate::source::{Source, in_commands};
 use tuning::Task;
 
 /// What can be chosen about a contest.
@@ -318,15 +318,12 @@ impl Contest {
     }
 
     fn setting(&self, folder: &Path) -> Setting {
-        let path = &self.source.path;
-        let file = path.file_name().map(|name| name.to_string_lossy().into_owned());
         let training = self.tuning.as_ref().map(|it| it.cases.as_slice()).unwrap_or_default();
-        let folder = folder.file_name().map(|name| name.to_string_lossy().into_owned());
         Setting {
             scenario: self.name.clone(),
-            file: file.unwrap_or_default(),
+            file: in_commands(&self.source.path),
             overrides: self.source.overrides.clone(),
-            folder: folder.unwrap_or_default(),
+            folder: in_commands(folder),
             digest: self.digest.clone(),
             efforts: self.efforts.clone(),
             training: training.iter().map(|case| case.name.clone()).collect(),

@@ -13,11 +13,11 @@ use crate::search::Effort;
 pub struct Setting {
     /// Name of the scenario; may be empty.
     pub scenario: String,
-    /// Name of its file.
+    /// Its file, as commands name it.
     pub file: String,
     /// Changes from outside.
     pub overrides: Vec<String>,
-    /// Name of the folder that it is kept in.
+    /// The folder that it is kept in, as commands name it.
     pub folder: String,
     /// Digest of the scenario.
     pub digest: String,

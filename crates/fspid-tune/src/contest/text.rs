@@ -6,7 +6,7 @@ use super::compare::Comparison;
 use super::judged::{Judged, Quantity};
 use super::outcome::Outcome;
 use super::words::{
-    by_group, cautions, counted, cut, headline, name, number, over_kept, p_value, sentence, signed,
+    by_group, cautions, columns, counted, cut, headline, name, number, p_value, sentence, signed,
     spread_of, standing,
 };
 
@@ -94,10 +94,8 @@ fn table(outcome: &Outcome, out: &mut String) {
         ]);
     }
     out.push_str(&rows.to_string());
-    out.push_str(&format!(
-        "  Medians over the seeds (quartiles) of means over {}.\n",
-        over_kept(outcome)
-    ));
+    out.push_str(&format!("  {}\n", columns(outcome)));
+    out.push_str("  Differences: geometric means of the ratios case by case, over the cases that neither lost; not ratios of these columns.\n");
 }
 
 fn stands(outcome: &Outcome, place: usize) -> String {

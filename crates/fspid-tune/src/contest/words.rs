@@ -128,6 +128,14 @@ pub(super) fn over_kept(outcome: &Outcome) -> String {
     }
 }
 
+/// What the columns of the measures hold: of several designs each a median, of one its means as they are.
+pub(super) fn columns(outcome: &Outcome) -> String {
+    match outcome.judged.has_several_designs() {
+        true => format!("Medians over the seeds (quartiles) of means over {}.", over_kept(outcome)),
+        false => format!("Means over {}.", over_kept(outcome)),
+    }
+}
+
 /// A p-value in words.
 pub(super) fn p_value(p: f64) -> String {
     match p {

@@ -31,7 +31,7 @@ use crate::contest::{Contest, Judged, Options, Outcome, Progress, Then};
 use crate::crew::Crew;
 use crate::error::TuneError;
 use crate::limit::NearLimit;
-use crate::source::Source;
+use crate::source::{Source, in_commands};
 
 /// A ladder that nobody gave: shares of the limit that the scenario has.
 const LADDER: [f64; 5] = [0.5, 0.7, 1.0, 1.4, 2.0];
@@ -165,10 +165,7 @@ impl Front {
     }
 
     fn command(&self, folder: &Path, held: &[Rung]) -> String {
-        let name = |path: &Path| {
-            path.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned())
-        };
-        let mut words = vec![format!("fspid contest {}", word(&name(&self.source.path)))];
+        let mut words = vec![format!("fspid contest {}", word(&in_commands(&self.source.path)))];
         words.extend(self.source.overrides.iter().map(|it| format!("--set {}", word(it))));
         let travels: Vec<String> = self.rungs.iter().map(|(deg, _)| deg.to_string()).collect();
         let efforts = held.first().map_or(&[][..], |it| it.outcome.setting.efforts.as_slice());
@@ -176,7 +173,7 @@ impl Front {
             words.push(format!("--seeds {} --budget {}", efforts.len(), effort.budget));
         }
         words.push(format!("--front travel={}", travels.join(",")));
-        words.push(format!("--out {}", word(&name(folder))));
+        words.push(format!("--out {}", word(&in_commands(folder))));
         words.join(" ")
     }
 }

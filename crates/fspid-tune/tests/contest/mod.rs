@@ -401,6 +401,8 @@ fn one_tuning_each_names_no_winner_in_text_json_and_page() {
         "{told}"
     );
     assert!(!told.contains(" wins"), "{told}");
+    // There are neither seeds nor quartiles.
+    assert!(told.contains("  Means over ") && !told.contains("quartiles"), "{told}");
     // With one tuning each nothing is significant, and the head does not say so of anybody.
     let head_line = told.lines().next().expect("a line");
     assert!(!head_line.contains("significant"), "{head_line}");
@@ -586,6 +588,10 @@ fn the_page_is_small_and_needs_nothing_else() {
         assert!(page.contains(part), "{part}");
     }
     assert!(page.contains("fspid contest contest.toml --seeds 2 --budget 24 --out out"));
+    // Differences are of cases, and not of the columns beside them.
+    let told = outcome.text();
+    assert!(told.contains("Medians over the seeds (quartiles) of means over the cases."), "{told}");
+    assert!(told.contains("Differences: geometric means of the ratios case by case"), "{told}");
     let json = outcome.json();
     assert_eq!(json["schema"], 1);
     assert_eq!(json["controllers"][0]["designs"][1]["seed"], 4);

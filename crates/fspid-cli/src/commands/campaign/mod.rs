@@ -47,17 +47,17 @@ enum Command {
     Rare(rare::Arguments),
 }
 
-const HELP: &str = "Examples:
-  fspid campaign run pitch.toml --runs 10000 --seed 1 --out robust
+const HELP: &str = "Examples, after `fspid init --template campaign drawn.toml`:
+  fspid campaign run drawn.toml --runs 10000 --seed 1 --out robust
   fspid campaign report robust/campaign.parquet --out robust.html
   fspid campaign replay robust --run 137 --trace run-137.csv
-  fspid campaign search pitch.toml --measure overshoot_pct --controller FSPID
-  fspid campaign rare pitch.toml --fails overshoot_pct
+  fspid campaign search drawn.toml --measure overshoot_pct --controller FSPID
+  fspid campaign rare drawn.toml --fails overshoot_pct
 On a cluster: --engine ray, dask, slurm or command; or by hand: plan once, fly each shard anywhere, merge:
-  fspid campaign plan pitch.toml --runs 1000000 --out robust
-  fspid campaign shard 0 --out robust
-  fspid campaign merge --out robust
-  fspid campaign report robust                     # from the parts, merged or not
+  fspid campaign plan drawn.toml --runs 1000000 --out many
+  fspid campaign shard 0 --out many
+  fspid campaign merge --out many
+  fspid campaign report many                       # from the parts, merged or not
 More, with every distribution: fspid campaign --help";
 
 const LONG_HELP: &str = "A dispersion in the scenario:
@@ -90,12 +90,12 @@ run and controller; docs/campaigns.md says what the columns are). Interrupted, r
 whole stays, and the merged file has the same bytes as without the interruption.
 
 Examples:
-  fspid campaign run pitch.toml --runs 10000 --seed 1 --out robust
+  fspid campaign run drawn.toml --runs 10000 --seed 1 --out robust
   fspid campaign run --out robust                  # go on where it was interrupted
   fspid campaign report robust/campaign.parquet --out robust.html
   fspid campaign replay robust --run 137 --trace run-137.csv
-  fspid campaign search pitch.toml --measure overshoot_pct --controller FSPID --budget 5000
-  fspid campaign rare pitch.toml --fails overshoot_pct --flights 100000 --most 1e-6
+  fspid campaign search drawn.toml --measure overshoot_pct --controller FSPID --budget 5000
+  fspid campaign rare drawn.toml --fails overshoot_pct --flights 100000 --most 1e-6
   python -c \"import pandas; print(pandas.read_parquet('robust/campaign.parquet').describe())\"
 Exit codes: 0 done, failed flights are results; 2 the input is wrong; 4 the output could not be written.";
 

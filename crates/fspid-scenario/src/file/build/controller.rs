@@ -9,7 +9,7 @@ use fspid_core::{
 use fspid_sim::Controller;
 
 use super::schedule::{self, Pressure};
-use super::{judged, lqi, rad, supervisor};
+use super::{idle, judged, lqi, rad, supervisor};
 use crate::file::files::Files;
 use crate::file::spec::autopilot::OuterKind;
 use crate::file::spec::controller as keys;
@@ -20,6 +20,17 @@ use fspid_diagnostics::Report;
 
 /// The controller of a sound section; one with equations.
 pub(super) fn controller(
+    report: &mut Report,
+    files: &mut Files<'_>,
+    section: &Section,
+    (dt_s, pressure): (f64, Pressure),
+) -> Option<Controller> {
+    let controller = built(report, files, section, (dt_s, pressure))?;
+    idle::warn(report, section, &controller);
+    Some(controller)
+}
+
+fn built(
     report: &mut Report,
     files: &mut Files<'_>,
     section: &Section,

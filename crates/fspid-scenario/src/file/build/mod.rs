@@ -15,6 +15,7 @@ mod external;
 mod flight;
 mod flight_stack;
 mod flown;
+mod idle;
 mod linear_aircraft;
 mod loading;
 pub(super) mod loops;

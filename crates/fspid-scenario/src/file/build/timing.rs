@@ -41,7 +41,23 @@ pub(super) fn timing(report: &mut Report, section: &Section) -> Option<Timing> {
             section.wrong(report, keys::DURATION_S, "shorter than a sample", allowed);
             None
         }
-        other => judged(report, (section, keys::DURATION_S), other),
+        other => {
+            let timing = judged(report, (section, keys::DURATION_S), other)?;
+            warn_of_one_sample(report, section, (duration_s, timing));
+            Some(timing)
+        }
+    }
+}
+
+/// Warns of a sample that takes longer than the flight: half of it and more is rounded up to the whole.
+fn warn_of_one_sample(report: &mut Report, section: &Section, (duration_s, timing): (f64, Timing)) {
+    let dt_s = timing.dt_s();
+    if duration_s < dt_s {
+        let path = section.path(keys::SAMPLE_PERIOD_S);
+        report.warn(format!(
+            "{path} is {dt_s:?} s, longer than the flight of {duration_s:?} s: one sample period is flown, and the flight ends at {:?} s",
+            timing.end_s()
+        ));
     }
 }
 

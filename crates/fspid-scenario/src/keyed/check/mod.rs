@@ -3,6 +3,7 @@
 mod choice;
 mod grid;
 pub(crate) mod number_grid;
+mod unit;
 mod value;
 
 pub(crate) use grid::grid_text;
@@ -109,9 +110,13 @@ impl<'a> Checker<'a> {
                 continue;
             }
             let (owners, meant) = (owners(spec, name), nearest(name, &known));
+            let other_unit = unit::other_unit(name, &member.item.value, &unit::numbers(keys));
             let message = if !owners.is_empty() {
                 let kind = self.section.kind;
                 format!("belongs to kind {}, not to kind \"{kind}\"", quoted_or(&owners))
+            } else if let Some((meant, told)) = other_unit {
+                all_meant.push(meant);
+                format!("unknown key; {told}")
             } else if let Some(meant) = meant {
                 all_meant.push(meant);
                 format!("unknown key; did you mean `{meant}`?")

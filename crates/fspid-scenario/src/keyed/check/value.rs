@@ -2,6 +2,7 @@
 
 use fspid_fuzzy::Defuzzifier;
 
+use crate::keyed::check::unit::in_text;
 use crate::keyed::check::{grid, in_words, number_grid, quoted, table};
 use crate::keyed::document::{Item, Value};
 use crate::keyed::{Checked, Kind, Range, Table};
@@ -105,7 +106,13 @@ pub(super) fn number(
     unit: &'static str,
 ) -> Option<f64> {
     let (Value::Integer(value, _) | Value::Float(value)) = item.value else {
-        return wrong_type(report, item, path, &Kind::Number { unit, range });
+        let found = item.value.type_name();
+        let instead = match &item.value {
+            Value::Text(text) => in_text(text, unit).unwrap_or_default(),
+            _ => String::new(),
+        };
+        report.value(item.place, path, format!("wrong type: {found}{instead}"), range.words(unit));
+        return None;
     };
     if range.contains(value) {
         return Some(value);

@@ -58,7 +58,7 @@ impl Mark {
     pub const fn sign(self) -> &'static str {
         match self {
             Self::Holds => "\u{2713}",
-            Self::Worth => "\u{2248}",
+            Self::Worth => "!",
             Self::NotMeant => "\u{2717}",
             Self::Open => "?",
         }

@@ -8,7 +8,7 @@ use crate::contest::compare::{Comparison, Standing};
 use crate::contest::flight::{FAILED, LOST};
 use crate::contest::judged::{CaseGroup, Quantity};
 use crate::contest::words::{
-    counted, cut, group, kept, kinds, name, number, over_kept, p_value, per_cent, signed,
+    columns, counted, cut, group, kept, kinds, name, number, p_value, per_cent, signed,
     signed_interval, spread, spread_of,
 };
 use crate::contest::{First, Flight, Outcome, text, words};
@@ -57,8 +57,8 @@ pub(super) fn controllers(outcome: &Outcome) -> DataTable {
         ]
     });
     let caption = format!(
-        "Medians over the seeds (and quartiles) of means over {}. Differences are those from {reference} in the geometric mean over the cases that neither lost; their intervals hold together at {}. p is the larger of two tests, after Holm's correction.",
-        over_kept(outcome),
+        "{} Differences are those from {reference} in the geometric mean over the cases that neither lost; their intervals hold together at {}. p is the larger of two tests, after Holm's correction.",
+        columns(outcome),
         per_cent()
     );
     table(caption, &head, rows.collect())
@@ -96,8 +96,8 @@ pub(super) fn more(outcome: &Outcome) -> DataTable {
         row
     });
     let caption = format!(
-        "Medians over the seeds (and quartiles) of means over {}. Cost: what the tuning made small, on the cases of the contest. Ratio of mean IAE: the mean over all cases and seeds by that of {reference}. Typical case: the median over pairs of cases by Hodges and Lehmann, lost cases as the worst, with its own {} interval over cases.",
-        over_kept(outcome),
+        "{} Cost: what the tuning made small, on the cases of the contest. Ratio of mean IAE: the mean over all cases and seeds by that of {reference}. Typical case: the median over pairs of cases by Hodges and Lehmann, lost cases as the worst, with its own {} interval over cases.",
+        columns(outcome),
         per_cent()
     );
     let head: Vec<&str> = head.iter().map(String::as_str).collect();
@@ -325,7 +325,10 @@ pub(super) fn cases(outcome: &Outcome) -> DataTable {
     });
     let left = judged.cases.len().saturating_sub(MOST_ROWS);
     let left = if left > 0 { format!(" {left} cases are left out.") } else { String::new() };
-    let caption =
-        format!("IAE [deg s] of each case: median over the seeds; the smallest is marked.{left}");
+    let median = match judged.has_several_designs() {
+        true => ": median over the seeds",
+        false => "",
+    };
+    let caption = format!("IAE [deg s] of each case{median}; the smallest is marked.{left}");
     table(caption, &head, rows.collect())
 }
