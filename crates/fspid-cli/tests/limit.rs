@@ -127,6 +127,11 @@ fn a_travel_that_a_push_at_the_elevator_needs_alone_has_no_limit_and_says_so() {
     let output = fspid(&words, folder.path());
     assert_eq!(code(&output), 0, "{}", text(&output.stderr));
     assert!(text(&output.stdout).contains("needs more"), "{}", text(&output.stdout));
+    let words = [words.as_slice(), &["--format", "json"]].concat();
+    let ladder = &json(&fspid(&words, folder.path()))["ladder"];
+    assert!(ladder[0]["why_none"].is_string() && ladder[0]["reached"].is_null(), "{ladder}");
+    let reached = ladder[1]["reached_travel_deg"].as_f64().expect("flown");
+    assert!(ladder[1]["proved"].is_f64() && reached <= 20.0 * (1.0 + 1e-6), "{ladder}");
 }
 
 #[test]

@@ -4,91 +4,138 @@
 //! the same programme, as if everything stayed as it is now. A planner that had a travel to spend would spend all of it on
 //! the first event; so travel has a price, one for the whole flight, and the price is chosen such that the flight spends
 //! what it may. Gains that are tuned on the flight are chosen with the same hindsight.
+//!
+//! Neither travel nor error need fall or rise with the price: plans go wrong that take everything for over. So every flight
+//! is kept, whoever asked for it, and the best one within a travel is told.
 
 use fspid_sim::Scenario;
 
 use crate::error::LimitError;
-use crate::history::{Flown, commands, fly_commands};
+use crate::history::{fly_commands, target};
 use crate::measure::Measure;
 use crate::programme::{Begin, Coming, Programme, Solution, Spending};
 use crate::question::Question;
+use crate::reach::keeps_within;
 use crate::travel::Travel;
 
 /// Most samples at which something may change: each is planned anew.
 pub const MOST_EVENTS: usize = 24;
-/// Halvings of the price.
-const HALVINGS: usize = 12;
+/// Exponents of the prices of which every search begins: from one that forbids nothing to one that forbids all motion.
+const EXPONENTS: [i32; 2] = [-8, 3];
+/// Halvings of what lies between two of them.
+const HALVINGS: usize = 9;
 
-/// What somebody reached who knows no future.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Causal {
-    /// How often it planned.
-    pub plans: usize,
-    /// What the simulator flew by its commands.
-    pub reached: Flown,
+/// What a flight reached, and what it took.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reached {
+    /// The measure, rad.
+    pub measure: f64,
+    /// The travel, rad.
+    pub travel_rad: f64,
 }
 
-/// What a planner without a future reaches within a travel, rad; `None` where something changes at more than
-/// [`MOST_EVENTS`] samples, as noise and turbulence do.
-///
-/// # Errors
-/// As [`limit`](crate::limit()).
-pub fn causal(
-    scenario: &Scenario,
-    question: &Question,
-    asked: (Measure, Travel),
-    travel_rad: f64,
-    stop: fn() -> bool,
-) -> Result<Option<Causal>, LimitError> {
-    let programme = Programme::new(question, asked.0);
-    let events = events(question, &programme);
-    if events.len() > MOST_EVENTS {
-        return Ok(None);
+impl Reached {
+    /// The least measure of these within a travel, rad; of equals the first.
+    #[must_use]
+    pub fn least_within(travel_rad: f64, all: impl IntoIterator<Item = Self>) -> Option<Self> {
+        let within = all.into_iter().filter(|it| keeps_within(it.travel_rad, travel_rad));
+        within.fold(None, |best: Option<Self>, it| match best {
+            Some(best) if best.measure <= it.measure => Some(best),
+            _ => Some(it),
+        })
     }
-    let planner = Planner { question, programme: &programme, events: &events, stop };
-    let mut best: Option<Flown> = None;
-    // From a price that forbids all motion to one that forbids nothing.
-    let (mut low, mut high) = (-8.0_f64, 3.0_f64);
-    for _ in 0..HALVINGS {
-        let exponent = 0.5 * (low + high);
-        let flown = planner.flown(libm::exp10(exponent))?;
-        let flown = fly_commands(scenario, &commands(question, &flown), asked)?;
-        if flown.travel_rad <= travel_rad * (1.0 + 1e-6) {
-            high = exponent;
-            if best.as_ref().is_none_or(|best| flown.measure < best.measure) {
-                best = Some(flown);
+}
+
+/// Somebody who plans without a future, with every flight that he made.
+#[derive(Debug)]
+pub struct Planner<'a> {
+    scenario: &'a Scenario,
+    question: &'a Question,
+    programme: Programme<'a>,
+    asked: (Measure, Travel),
+    events: Vec<usize>,
+    stop: fn() -> bool,
+    /// By the exponent of the price, ascending; nothing where its plans lose the aircraft or have no answer.
+    flown: Vec<(f64, Option<Reached>)>,
+}
+
+impl<'a> Planner<'a> {
+    /// Of a flight; `None` where something changes at more than [`MOST_EVENTS`] samples, as noise and turbulence do.
+    #[must_use]
+    pub fn new(
+        scenario: &'a Scenario,
+        question: &'a Question,
+        asked: (Measure, Travel),
+        stop: fn() -> bool,
+    ) -> Option<Self> {
+        let programme = Programme::new(question, asked.0);
+        let events = events(question, &programme);
+        let few = events.len() <= MOST_EVENTS;
+        let flown = Vec::new();
+        few.then_some(Self { scenario, question, programme, asked, events, stop, flown })
+    }
+
+    /// How often it plans in a flight.
+    #[must_use]
+    pub fn plans(&self) -> usize {
+        self.events.len()
+    }
+
+    /// What every flight so far reached and took: the better for each travel that was searched.
+    pub fn reached(&self) -> impl Iterator<Item = Reached> + '_ {
+        self.flown.iter().filter_map(|(_, it)| *it)
+    }
+
+    /// Looks for the flights that come nearest to a travel, rad.
+    ///
+    /// # Errors
+    /// [`LimitError::Stopped`]; errors of the scenario.
+    pub fn search(&mut self, travel_rad: f64) -> Result<(), LimitError> {
+        let keeps =
+            |it: Option<Reached>| it.is_some_and(|it| keeps_within(it.travel_rad, travel_rad));
+        let exponents = EXPONENTS[0]..=EXPONENTS[1];
+        let mut begin = Vec::new();
+        for exponent in exponents.map(f64::from) {
+            begin.push((exponent, keeps(self.at(exponent)?)));
+        }
+        // Wherever one keeps to it and the next does not, the price is made as low as may be.
+        for pair in begin.windows(2).filter(|pair| pair[0].1 != pair[1].1) {
+            let [(mut low, from), (mut high, _)] = [pair[0], pair[1]];
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (low + high);
+                *(if keeps(self.at(middle)?) == from { &mut low } else { &mut high }) = middle;
             }
-        } else {
-            low = exponent;
+        }
+        Ok(())
+    }
+
+    /// The flight at a price, flown once.
+    fn at(&mut self, exponent: f64) -> Result<Option<Reached>, LimitError> {
+        match self.flown.binary_search_by(|(known, _)| known.total_cmp(&exponent)) {
+            Ok(place) => Ok(self.flown.get(place).and_then(|(_, it)| *it)),
+            Err(place) => {
+                let reached = self.fly(libm::exp10(exponent))?;
+                self.flown.insert(place, (exponent, reached));
+                Ok(reached)
+            }
         }
     }
-    Ok(best.map(|reached| Causal { plans: events.len(), reached }))
-}
 
-/// Samples at which something is not what it was, the first among them.
-fn events(question: &Question, programme: &Programme<'_>) -> Vec<usize> {
-    let Coming { setpoint_rad, entering } = programme.coming();
-    let differs = |k: &usize| {
-        let k = *k;
-        k == 0
-            || setpoint_rad.get(k) != setpoint_rad.get(k - 1)
-            || question.at_servo(k).to_bits() != question.at_servo(k - 1).to_bits()
-            || entering.get(k) != entering.get(k - 1)
-    };
-    // What changes at the last sample changes nothing any more.
-    (0..question.rows.saturating_sub(1)).filter(differs).collect()
-}
+    fn fly(&self, price: f64) -> Result<Option<Reached>, LimitError> {
+        let planned = self
+            .planned(price)
+            .and_then(|planned| fly_commands(self.scenario, &planned, self.asked));
+        match planned {
+            Ok(flown) => Ok(Some(Reached { measure: flown.measure, travel_rad: flown.travel_rad })),
+            // Nothing is reached at this price; others may do.
+            Err(LimitError::Solver { .. } | LimitError::TravelTooSmall) => Ok(None),
+            Err(other) => Err(other),
+        }
+    }
 
-struct Planner<'a> {
-    question: &'a Question,
-    programme: &'a Programme<'a>,
-    events: &'a [usize],
-    stop: fn() -> bool,
-}
-
-impl Planner<'_> {
-    /// The whole flight at a price of travel.
-    fn flown(&self, price: f64) -> Result<Solution, LimitError> {
+    /// The commands of the whole flight at a price of travel, rad, as they are given: nobody takes back what he gave before
+    /// he knew better, even where the actuator cuts it.
+    fn planned(&self, price: f64) -> Result<Vec<f64>, LimitError> {
         let question = self.question;
         let (rows, delay) = (question.rows, question.delay());
         let all = self.programme.coming();
@@ -99,7 +146,8 @@ impl Planner<'_> {
             multipliers: crate::bound::Multipliers::default(),
         };
         let mut state = vec![0.0; question.plant.states];
-        // Commands on their way, as they were given.
+        let mut commands_rad = Vec::with_capacity(rows);
+        // Those on their way, as the plans have them: what they amount to where a rate limit holds the elevator.
         let mut given_rad = vec![0.0; delay];
         for (place, &k) in self.events.iter().enumerate() {
             let until = self.events.get(place + 1).copied().unwrap_or(rows - 1);
@@ -114,14 +162,17 @@ impl Planner<'_> {
                 before_rad: given_rad.iter().take(rows - 1 - k).map(arriving).collect(),
                 state: state.clone(),
             };
-            let coming = Coming { setpoint_rad: &setpoint, entering: &entering };
+            let quiet = question.quiet_as_at(k, at(&state, question.plant.deflection));
+            let coming = Coming { setpoint_rad: &setpoint, entering: &entering, quiet_rad: &quiet };
             let plan = self.programme.solve_from(&begin, Spending::At(price), coming, self.stop)?;
             // Commands as they are given now, for the servo as it is disturbed now.
-            let new = (k + delay..until + delay).map(|j| {
-                let target = at(&plan.target_rad, j.min(question.target_end() - 1));
-                question.command_of(target) - question.at_servo(k)
-            });
-            given_rad.extend(new);
+            let command = |target: f64| question.command_of(target) - question.at_servo(k);
+            for j in k..until {
+                let arrives = (j + delay).min(question.target_end() - 1);
+                given_rad.push(question.allowed(j, command(at(&plan.target_rad, arrives))));
+                let own = command(target(question, &plan, arrives));
+                commands_rad.push(question.allowed(j, own));
+            }
             for j in k..until {
                 let target = question.target_of(given_rad[j - k] + question.at_servo(j));
                 flight.target_rad[j] = target;
@@ -135,7 +186,7 @@ impl Planner<'_> {
             }
             given_rad.drain(..until - k);
         }
-        Ok(flight)
+        Ok(commands_rad)
     }
 
     /// What counted as travel at the sample before, rad.
@@ -148,6 +199,20 @@ impl Planner<'_> {
         };
         Some(at(of, before) + counted.offset(before))
     }
+}
+
+/// Samples at which something is not what it was, the first among them.
+fn events(question: &Question, programme: &Programme<'_>) -> Vec<usize> {
+    let Coming { setpoint_rad, entering, .. } = programme.coming();
+    let differs = |k: &usize| {
+        let k = *k;
+        k == 0
+            || setpoint_rad.get(k) != setpoint_rad.get(k - 1)
+            || question.at_servo(k).to_bits() != question.at_servo(k - 1).to_bits()
+            || entering.get(k) != entering.get(k - 1)
+    };
+    // What changes at the last sample changes nothing any more.
+    (0..question.rows.saturating_sub(1)).filter(differs).collect()
 }
 
 fn at(values: &[f64], k: usize) -> f64 {

@@ -90,7 +90,7 @@ pub(crate) fn commands(question: &Question, solution: &Solution) -> Vec<f64> {
 }
 
 /// The target that brings the deflection where a solution has it at the next sample, rad.
-fn target(question: &Question, solution: &Solution, k: usize) -> f64 {
+pub(crate) fn target(question: &Question, solution: &Solution, k: usize) -> f64 {
     let plain = solution.target_rad.get(k).copied().unwrap_or(0.0);
     let Some(rate) = question.actuator.rate_limit_rad_s else { return plain };
     let here = solution.deflection_rad.get(k).copied().unwrap_or(0.0);

@@ -23,11 +23,11 @@ mod reach;
 mod travel;
 
 pub use bound::{Multipliers, prove};
-pub use causal::{Causal, MOST_EVENTS, causal};
+pub use causal::{MOST_EVENTS, Planner, Reached};
 pub use error::{LimitError, Refusal};
 pub use history::{Flown, fly_commands, measured};
 pub use measure::Measure;
 pub use programme::{Programme, Solution};
 pub use question::{Assumed, Question, SaidBeside, Still};
-pub use reach::{Limit, limit};
+pub use reach::{Limit, keeps_within, limit};
 pub use travel::Travel;

@@ -53,6 +53,8 @@ pub(crate) enum Spending {
 pub(crate) struct Coming<'a> {
     pub(crate) setpoint_rad: &'a [f64],
     pub(crate) entering: &'a [Vec<f64>],
+    /// What targets are within at the first samples of the flight, rad.
+    pub(crate) quiet_rad: &'a [(f64, f64)],
 }
 
 /// Where a programme begins: at rest, or in flight at an event.
@@ -115,7 +117,7 @@ impl<'a> Programme<'a> {
     /// What will come.
     pub(crate) fn coming(&self) -> Coming<'_> {
         let setpoint_rad = self.question.setpoint_rad();
-        Coming { setpoint_rad, entering: &self.entering }
+        Coming { setpoint_rad, entering: &self.entering, quiet_rad: self.question.quiet_rad() }
     }
 
     /// The states a sample later, rad, with a target and what enters at it.
@@ -144,7 +146,7 @@ impl<'a> Programme<'a> {
         let layout = Layout::new(self.question, begin, self.measure);
         self.motion(&mut rows, &layout, begin, coming.entering);
         let equalities = rows.bounds.len();
-        let places = self.inequalities(&mut rows, &layout, begin, spending, coming.setpoint_rad);
+        let places = self.inequalities(&mut rows, &layout, begin, spending, coming);
         let (cost, squares) = self.cost(&layout, spending, &places);
         let cones = [
             SupportedConeT::ZeroConeT(equalities),
@@ -226,14 +228,14 @@ impl<'a> Programme<'a> {
         layout: &Layout,
         begin: &Begin,
         spending: Spending,
-        setpoint_rad: &[f64],
+        coming: Coming<'_>,
     ) -> Places {
         let question = self.question;
         let mut places = Places::default();
         // Errors: r - θ within ± s; of a quadratic cost they are variables of their own.
         for k in layout.first + 1..=layout.last {
             let theta = (layout.state(k, 0), self.units[0]);
-            let setpoint = setpoint_rad.get(k).copied().unwrap_or(0.0) * DEG;
+            let setpoint = coming.setpoint_rad.get(k).copied().unwrap_or(0.0) * DEG;
             if let Some(size) = layout.error(k) {
                 places.error.push((k, rows.len()));
                 rows.push(&[(theta.0, -theta.1), (size, -1.0)], -setpoint);
@@ -271,7 +273,7 @@ impl<'a> Programme<'a> {
         }
         for k in layout.first..=layout.last {
             let Some(place) = layout.target(k) else { continue };
-            let (low, high) = question.target_at(k);
+            let (low, high) = question.within(coming.quiet_rad.get(k));
             rows.push(&[(place, 1.0)], high * DEG);
             rows.push(&[(place, -1.0)], -low * DEG);
         }

@@ -127,13 +127,13 @@ pub struct Question {
     /// Limits of the target of the lag, rad; of what it amounts to where rate or stops hold the elevator.
     target_rad: (f64, f64),
     still: Option<Still>,
-    /// What targets are within while commands are still, rad.
-    moved_rad: (f64, f64),
+    /// Limits of the targets at the first samples, rad: before a command arrives, and while commands are still.
+    quiet_rad: Vec<(f64, f64)>,
     /// Largest change of the deflection over a sample, rad, rounded up.
     pub(crate) most_change_rad: Option<f64>,
     pub(crate) between: Option<Between>,
     pub(crate) counted: Counted,
-    /// Targets before the first command arrives, rad.
+    /// Targets before the first command arrives, rad; none where they are not known.
     pub(crate) before_rad: Vec<f64>,
     /// What is said beside the answer.
     pub(crate) beside: Vec<SaidBeside>,
@@ -181,7 +181,7 @@ impl Question {
             actuator,
             target_rad: limits.target_rad,
             still: assumed.still,
-            moved_rad: (0.0, 0.0),
+            quiet_rad: Vec::new(),
             most_change_rad: limits.most_change_rad,
             between,
             counted: Counted::none(),
@@ -189,10 +189,8 @@ impl Question {
             inflow,
             beside,
         };
-        question.before_rad = (0..actuator.delay_samples.min(rows))
-            .map(|k| question.target_of(question.at_servo(k)))
-            .collect();
-        question.moved_rad = question.moved();
+        question.before_rad = question.before();
+        question.quiet_rad = question.quiet();
         question.inflow.at_elevator_rad.iter_mut().for_each(|it| *it += actuator.bias_rad);
         question.counted = question.counted(travel);
         question.say(scenario, travel);
@@ -224,7 +222,7 @@ impl Question {
 
     /// Samples until a command arrives at the actuator.
     pub(crate) fn delay(&self) -> usize {
-        self.before_rad.len()
+        self.actuator.delay_samples.min(self.rows)
     }
 
     pub(crate) fn at_servo(&self, k: usize) -> f64 {
@@ -246,22 +244,60 @@ impl Question {
 
     /// Limits of the target at a sample, rad, outward.
     pub(crate) fn target_at(&self, k: usize) -> (f64, f64) {
-        let (low, high) = self.target_rad;
-        if !self.is_still(k) {
-            return (low, high);
-        }
-        // Where rate or stops hold the elevator, what the target amounts to lies between it and where the elevator is,
-        // which is where targets before have brought it.
-        let (least, most) = match self.between.is_some() {
-            true => self.moved_rad,
-            false => self.still_target(k),
-        };
-        (low.max(least), high.min(most))
+        self.within(self.quiet_rad.get(k))
     }
 
-    /// True for a target of a command of the time before anything happens.
-    fn is_still(&self, k: usize) -> bool {
-        self.still.is_some_and(|still| k < still.until.saturating_add(self.actuator.delay_samples))
+    /// Limits of any target, rad, and of one that is within these as well.
+    pub(crate) fn within(&self, quiet_rad: Option<&(f64, f64)>) -> (f64, f64) {
+        let (low, high) = self.target_rad;
+        let cut = |(least, most): &(f64, f64)| (least.clamp(low, high), most.clamp(low, high));
+        quiet_rad.map_or((low, high), cut)
+    }
+
+    /// Limits of the targets at the first samples, rad.
+    pub(crate) fn quiet_rad(&self) -> &[(f64, f64)] {
+        &self.quiet_rad
+    }
+
+    /// The same for somebody who takes the servo for disturbed as it is at a sample, and whose elevator is here, rad.
+    pub(crate) fn quiet_as_at(&self, k: usize, here_rad: f64) -> Vec<(f64, f64)> {
+        let own_rad = self.still.map_or(0.0, |still| still.within_rad);
+        let (least, most) = self.still_target(self.at_servo(k), own_rad);
+        // What a target amounts to lies between it and where the elevator is.
+        let held = (least.min(here_rad), most.max(here_rad));
+        let range = if self.between.is_some() { held } else { (least, most) };
+        vec![range; self.quiet_rad.len()]
+    }
+
+    /// Targets before the first command arrives, rad. Where rate or stops hold the elevator, what one amounts to is known
+    /// only if it is where the elevator begins.
+    fn before(&self) -> Vec<f64> {
+        let before: Vec<f64> =
+            (0..self.delay()).map(|k| self.target_of(self.at_servo(k))).collect();
+        let known = self.between.is_none() || before.iter().all(|it| it.abs() <= 0.0);
+        if known { before } else { Vec::new() }
+    }
+
+    /// What targets are within before a command arrives, and while commands are still, rad. No zero is among these:
+    /// commands that are still cannot take back what disturbs the servo.
+    fn quiet(&self) -> Vec<(f64, f64)> {
+        let still = self.still.map_or(0, |still| still.until.saturating_add(self.delay()));
+        let each = (0..self.rows.min(still.max(self.delay()))).map(|k| self.quiet_target(k));
+        if self.between.is_none() {
+            return each.collect();
+        }
+        // Where rate or stops hold the elevator, a target amounts to what would have brought it as far by the lag alone.
+        // From further up, and with a target further up, it ends further up.
+        let held = Held::new(self.actuator, self.dt_s);
+        let each = each.scan((0.0_f64, 0.0_f64), |here, (least, most)| {
+            let from = Interval::between(here.0, here.1);
+            *here = (held.moved(here.0, least).lower(), held.moved(here.1, most).upper());
+            let amounts = held.amounts(from, Interval::between(here.0, here.1));
+            // It lies between the target and where the elevator is.
+            let (low, high) = (least.min(from.lower()), most.max(from.upper()));
+            Some((amounts.lower().clamp(low, high), amounts.upper().clamp(low, high)))
+        });
+        each.collect()
     }
 
     /// A command as it may be given at a sample, rad. A solver keeps a range to its tolerance only, and a deadband makes a
@@ -273,31 +309,31 @@ impl Question {
         }
     }
 
-    /// What a target of that time may be, rad, zero among it.
-    fn still_target(&self, k: usize) -> (f64, f64) {
-        let own = Interval::point(self.still.map_or(0.0, |still| still.within_rad));
-        let at_servo = Interval::point(self.at_servo(k));
+    /// What a target of that time may be, rad.
+    fn quiet_target(&self, k: usize) -> (f64, f64) {
+        let given = self.still.filter(|_| k >= self.delay());
+        self.still_target(self.at_servo(k), given.map_or(0.0, |still| still.within_rad))
+    }
+
+    /// What the target of a command within ± `own_rad` may be, rad.
+    fn still_target(&self, at_servo_rad: f64, own_rad: f64) -> (f64, f64) {
+        let (at_servo, own) = (Interval::point(at_servo_rad), Interval::point(own_rad));
         let least = self.target_of((at_servo - own).lower());
         let most = self.target_of((at_servo + own).upper());
         match self.actuator.deadband_rad > 0.0 {
             // Subtracting the deadband rounds.
-            true => (least.next_down().min(0.0), most.next_up().max(0.0)),
-            false => (least.min(0.0), most.max(0.0)),
+            true => (least.next_down(), most.next_up()),
+            false => (least, most),
         }
     }
 
-    /// What all of them are within, rad.
-    fn moved(&self) -> (f64, f64) {
-        let still = (0..self.rows).filter(|k| self.is_still(*k)).map(|k| self.still_target(k));
-        still.fold((0.0, 0.0), |(low, high), (least, most)| (low.min(least), high.max(most)))
-    }
-
-    /// The target of the lag for what arrives at the actuator, rad.
+    /// The target of the lag for what arrives at the actuator, rad; without a lag a stop cuts it.
     pub(crate) fn target_of(&self, arriving_rad: f64) -> f64 {
         let limits = self.actuator.command_limits_rad;
         let cut = limits.map_or(arriving_rad, |(least, most)| arriving_rad.clamp(least, most));
         let dead = self.actuator.deadband_rad;
-        cut - cut.clamp(-dead, dead)
+        let target = cut - cut.clamp(-dead, dead);
+        self.bare_stops().map_or(target, |(least, most)| target.clamp(least, most))
     }
 
     /// What has to arrive for a target, rad.
@@ -306,8 +342,15 @@ impl Question {
         if target_rad == 0.0 { 0.0 } else { target_rad + dead.copysign(target_rad) }
     }
 
-    fn limited(&self) -> bool {
-        self.actuator.command_limits_rad.is_some()
+    /// Stops that no lag stands before, rad.
+    fn bare_stops(&self) -> Option<(f64, f64)> {
+        self.actuator.travel_rad.filter(|_| self.actuator.lag.order() == 0)
+    }
+
+    /// True where commands may differ of which the actuator makes the same.
+    fn cuts(&self) -> bool {
+        let limited = self.actuator.command_limits_rad.is_some() || self.bare_stops().is_some();
+        limited || self.actuator.deadband_rad > 0.0
     }
 
     /// First sample whose target does nothing and counts for nothing.
@@ -332,7 +375,7 @@ impl Question {
             Travel::Command | Travel::CommandFromRest => {
                 let from_rest = travel == Travel::CommandFromRest;
                 let at_servo = &self.inflow.at_servo_rad;
-                let cut = self.limited() || self.actuator.deadband_rad > 0.0;
+                let cut = self.cuts();
                 let way = way_up(at_servo.get(delay..).unwrap_or_default(), from_rest);
                 Counted {
                     state: None,
@@ -468,6 +511,54 @@ impl Limits {
             }
         }
         Self { target_rad, most_change_rad, assumed_rad: given.is_none().then_some(within_rad) }
+    }
+}
+
+/// An elevator of a lag of first order, or none, between rate limit and stops, over a sample whose target is held.
+struct Held {
+    actuator: ActuatorParts,
+    dt_s: Interval,
+    covered: Interval,
+}
+
+impl Held {
+    fn new(actuator: ActuatorParts, dt_s: f64) -> Self {
+        Self { actuator, dt_s: printed(dt_s), covered: covered(actuator, dt_s) }
+    }
+
+    /// Where it is at the end, rad.
+    fn moved(&self, here_rad: f64, target_rad: f64) -> Interval {
+        let (here, target) = (Interval::point(here_rad), Interval::point(target_rad));
+        let down = target_rad < here_rad;
+        let gap = if down { here - target } else { target - here };
+        let way = match self.actuator.rate_limit_rad_s {
+            Some(rate) => self.way(gap, printed(rate)),
+            None => gap * self.covered,
+        };
+        let end = if down { here - way } else { here + way };
+        let (least, most) = self.actuator.travel_rad.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+        Interval::between(end.lower().clamp(least, most), end.upper().clamp(least, most))
+    }
+
+    /// How far it goes towards a target that is so far away, rad: at its rate for a time d, and by the lag from then on,
+    /// $R d + (g - R d) (1 - e^{-(T - d) / \tau})$.
+    fn way(&self, gap: Interval, rate: Interval) -> Interval {
+        let tau_s = self.actuator.lag.time_constant_s().map_or(Interval::ZERO, printed);
+        let most_s = self.dt_s.upper();
+        let time = (gap - rate * tau_s) / rate;
+        let held =
+            Interval::between(time.lower().clamp(0.0, most_s), time.upper().clamp(0.0, most_s));
+        let far = rate * held;
+        if self.actuator.lag.order() == 0 {
+            return far;
+        }
+        let left = self.dt_s - held;
+        far + (gap - far) * (Interval::ONE - (-(left / tau_s)).exp())
+    }
+
+    /// The target by which the lag alone would have gone as far, rad.
+    fn amounts(&self, from: Interval, to: Interval) -> Interval {
+        from + (to - from) / self.covered
     }
 }
 

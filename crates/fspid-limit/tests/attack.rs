@@ -86,7 +86,8 @@ fn actuator(random: &mut Random) -> Actuator {
 }
 
 fn shape(random: &mut Random) -> Shape {
-    let at_s = random.between(0.0, 3.0);
+    // Many at once, before any command arrives.
+    let at_s = if random.chance(0.3) { 0.0 } else { random.between(0.0, 3.0) };
     match random.one_of(5) {
         0 => Shape::Step { at_s },
         1 => Shape::Pulse { at_s, width_s: random.between(0.1, 2.0) },
@@ -128,6 +129,8 @@ struct Told {
     compared: usize,
     refused: usize,
     none: usize,
+    /// Limits of which nothing was flown within the travel.
+    beyond: usize,
     nearest: f64,
 }
 
@@ -171,8 +174,16 @@ fn attack(seed: u64, scenarios: usize) -> Told {
             told.none += 1;
             continue;
         };
+        let Some(reached) = best.reached else {
+            told.beyond += 1;
+            continue;
+        };
+        let flown = fly_commands(&scenario, &reached.command_rad, (measure, travel));
+        assert_eq!(flown.as_ref(), Ok(&reached), "{number}: {scenario:#?}");
+        assert!(reached.measure >= best.proved * (1.0 - 1e-5), "{number}: {scenario:#?}");
+        assert!(reached.travel_rad <= way * (1.0 + 1e-6), "{number}: {way} {scenario:#?}");
         for _ in 0..3 {
-            let mut commands = best.reached.command_rad.clone();
+            let mut commands = reached.command_rad.clone();
             let size = random.between(0.0, 0.5) * DEG;
             let until = still.map_or(0, |still| still.until);
             let later = commands.iter_mut().skip(until);

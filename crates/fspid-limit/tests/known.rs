@@ -1,8 +1,8 @@
 //! Limits that another programme and another solver found (`oracles/make_limit.py`), and what is refused.
 
 use fspid_limit::{
-    Assumed, LimitError, Measure, Question, Refusal, SaidBeside, Still, Travel, causal, limit,
-    measured,
+    Assumed, LimitError, Measure, Planner, Question, Reached, Refusal, SaidBeside, Still, Travel,
+    fly_commands, limit, measured,
 };
 use fspid_sim::actuator::Lag;
 use fspid_sim::core::{Gains, Pid, PidConfig};
@@ -44,6 +44,19 @@ fn light() -> Scenario {
     scenario
 }
 
+/// How often somebody without a future plans, and the best that he reaches within a travel.
+fn planned(
+    scenario: &Scenario,
+    question: &Question,
+    asked: (Measure, Travel),
+    travel_rad: f64,
+) -> (usize, Reached) {
+    let mut planner = Planner::new(scenario, question, asked, || false).expect("few events");
+    planner.search(travel_rad).expect("allowed");
+    let best = Reached::least_within(travel_rad, planner.reached()).expect("one keeps within");
+    (planner.plans(), best)
+}
+
 #[test]
 fn limits_are_those_that_another_solver_found() {
     let mut compared = 0;
@@ -58,14 +71,15 @@ fn limits_are_those_that_another_solver_found() {
         let budget = travel_deg.parse::<f64>().expect("allowed") * DEG;
         let limit =
             limit(&scenario, &question, (Measure::Iae, travel), budget, || false).expect("allowed");
-        let (proved, reached) = (limit.proved / DEG, limit.reached.measure / DEG);
+        let flown = limit.reached.expect("flown within the travel");
+        let (proved, reached) = (limit.proved / DEG, flown.measure / DEG);
         // The other solver is right to some 1e-7; what the proof gives away is below 2e-6 of it.
         assert!(
             proved <= expected * (1.0 + 1e-7) && proved > expected * (1.0 - 2e-6),
             "{line}: {proved}"
         );
         assert!((reached - expected).abs() < 1e-6 * expected, "{line}: {reached}");
-        assert!((limit.reached.travel_rad / budget - 1.0).abs() < 1e-6, "{line}");
+        assert!((flown.travel_rad / budget - 1.0).abs() < 1e-6, "{line}");
         compared += 1;
     }
     assert_eq!(compared, 22);
@@ -91,12 +105,11 @@ fn who_does_not_know_the_future_reaches_no_more_than_the_limit() {
     let question = Question::of(&scenario, asked.1, Assumed::within(90.0 * DEG)).expect("allowed");
     let budget = 12.0 * DEG;
     let limit = limit(&scenario, &question, asked, budget, || false).expect("allowed");
-    let causal =
-        causal(&scenario, &question, asked, budget, || false).expect("allowed").expect("allowed");
+    let (plans, reached) = planned(&scenario, &question, asked, budget);
     // The push and the step each make a new plan.
-    assert_eq!(causal.plans, 3);
-    assert!(causal.reached.travel_rad <= budget * (1.0 + 1e-6));
-    let ratio = causal.reached.measure / limit.proved;
+    assert_eq!(plans, 3);
+    assert!(reached.travel_rad <= budget * (1.0 + 1e-6));
+    let ratio = reached.measure / limit.proved;
     // Who knows the step before begins it before.
     assert!(ratio > 2.0 && ratio < 5.0, "{ratio}");
 }
@@ -107,11 +120,9 @@ fn with_one_event_at_the_start_the_future_is_worth_nothing() {
     let asked = (Measure::Iae, Travel::CommandFromRest);
     let question = Question::of(&scenario, asked.1, Assumed::within(90.0 * DEG)).expect("allowed");
     let limit = limit(&scenario, &question, asked, 10.0 * DEG, || false).expect("allowed");
-    let causal = causal(&scenario, &question, asked, 10.0 * DEG, || false)
-        .expect("allowed")
-        .expect("allowed");
-    assert_eq!(causal.plans, 1);
-    assert!(causal.reached.measure < limit.proved * 1.02, "{}", causal.reached.measure);
+    let (plans, reached) = planned(&scenario, &question, asked, 10.0 * DEG);
+    assert_eq!(plans, 1);
+    assert!(reached.measure < limit.proved * 1.02, "{}", reached.measure);
 }
 
 #[test]
@@ -187,15 +198,14 @@ fn who_keeps_still_until_something_happens_cannot_be_early() {
     };
     let (early, late) = (limit_of(None), limit_of(Some(still)));
     assert!(late.proved > 1.2 * early.proved, "{} {}", late.proved, early.proved);
-    assert!(late.reached.measure < late.proved * (1.0 + 1e-5));
-    assert!(late.reached.command_rad.iter().take(75).all(|u| *u == 0.0));
+    let reached = late.reached.expect("flown within the travel");
+    assert!(reached.measure < late.proved * (1.0 + 1e-5));
+    assert!(reached.command_rad.iter().take(75).all(|u| *u == 0.0));
     // One that only knows when it happens does as well.
     let assumed = Assumed { within_rad: 1.0, still: Some(still) };
     let question = Question::of(&scenario, asked.1, assumed).expect("allowed");
-    let causal = causal(&scenario, &question, asked, 10.0 * DEG, || false)
-        .expect("allowed")
-        .expect("allowed");
-    assert!(causal.reached.measure < 1.02 * late.proved);
+    let (_, reached) = planned(&scenario, &question, asked, 10.0 * DEG);
+    assert!(reached.measure < 1.02 * late.proved);
 }
 
 #[test]
@@ -209,7 +219,130 @@ fn a_deadband_makes_no_command_of_what_a_solver_leaves_over_before_anything_happ
         let asked = (measure, Travel::Elevator);
         let question = Question::of(&scenario, asked.1, assumed).expect("allowed");
         let found = limit(&scenario, &question, asked, travel_deg * DEG, || false);
-        let reached = found.expect("allowed").reached;
+        let reached = found.expect("allowed").reached.expect("flown within the travel");
         assert!(reached.command_rad.iter().take(75).all(|u| *u == 0.0), "{measure:?}");
     }
+}
+
+/// A plant without a lag of its servo, which something pushes by 3 deg at 1 s while nobody moves, a sample late.
+fn pushed_servo() -> Scenario {
+    let mut scenario = paper();
+    scenario.setpoint = Profile::new(0.0, Shape::Step { at_s: 0.0 }).expect("allowed");
+    scenario.timing = Timing::new(0.05, 6.0).expect("allowed");
+    scenario.actuator = Actuator::ideal().with_delay(1).expect("allowed");
+    let push = Disturbance::new(Entry::Servo, 3.0 * DEG, Shape::Step { at_s: 1.0 });
+    scenario.disturbances.push(push.expect("allowed"));
+    scenario
+}
+
+/// The programme took the push back before anybody could know of it: "reached" was told within 0.1 deg, flown with 6.
+#[test]
+fn commands_that_are_still_cannot_take_back_what_pushes_the_servo() {
+    for deadband_deg in [0.0, 0.3] {
+        let mut scenario = pushed_servo();
+        scenario.actuator = scenario.actuator.with_deadband(deadband_deg * DEG).expect("allowed");
+        let asked = (Measure::Iae, Travel::Elevator);
+        let still = Still::of(&scenario, [].into_iter());
+        let assumed = Assumed { within_rad: 1.0, still };
+        let question = Question::of(&scenario, asked.1, assumed).expect("allowed");
+        let limit_of = |deg: f64| limit(&scenario, &question, asked, deg * DEG, || false);
+        for travel_deg in [0.1, 1.0, 2.6] {
+            assert_eq!(limit_of(travel_deg), Err(LimitError::TravelTooSmall), "{travel_deg}");
+        }
+        let within = limit_of(6.5).expect("allowed");
+        let reached = within.reached.expect("flown within the travel");
+        assert!(reached.travel_rad <= 6.5 * DEG * (1.0 + 1e-6));
+        assert!(
+            reached.measure < within.proved * (1.0 + 1e-4) && reached.measure > 0.01 * DEG,
+            "{} {}",
+            reached.measure,
+            within.proved
+        );
+    }
+}
+
+/// The programme allows commands that are cut as much more as the servo is moved; what they take in flight counts.
+#[test]
+fn what_is_flown_beyond_the_travel_is_not_reached() {
+    let mut scenario = light();
+    let push = Disturbance::new(Entry::Servo, DEG, Shape::Pulse { at_s: 2.0, width_s: 1.0 });
+    scenario.disturbances.push(push.expect("allowed"));
+    for (travel, travel_deg) in [(Travel::Command, 1.0), (Travel::CommandFromRest, 4.0)] {
+        let asked = (Measure::Iae, travel);
+        let assumed = Assumed { within_rad: 1.0, still: Still::of(&scenario, [].into_iter()) };
+        let question = Question::of(&scenario, travel, assumed).expect("allowed");
+        assert!(question.beside().contains(&SaidBeside::ServoDisturbance));
+        let found = limit(&scenario, &question, asked, travel_deg * DEG, || false);
+        let found = found.expect("allowed");
+        if let Some(reached) = &found.reached {
+            assert!(reached.travel_rad <= travel_deg * DEG * (1.0 + 1e-6), "{travel:?}");
+            assert!(reached.measure >= found.proved, "{travel:?}");
+        }
+    }
+}
+
+/// What the servo is pushed by before the first command arrives was taken to move the elevator by its lag alone, and no
+/// command kept within any travel.
+#[test]
+fn before_a_command_arrives_rate_and_stops_hold_the_elevator_too() {
+    let lag = Actuator::new(Lag::first_order(0.1).expect("allowed"));
+    let held = [
+        Actuator::ideal().with_rate_limit(5.0 * DEG),
+        lag.with_rate_limit(5.0 * DEG),
+        Actuator::ideal().with_travel(-DEG, DEG),
+        lag.with_travel(-DEG, DEG),
+    ];
+    for actuator in held {
+        let mut scenario = pushed_servo();
+        scenario.actuator = actuator.expect("allowed").with_delay(5).expect("allowed");
+        let push = Disturbance::new(Entry::Servo, 3.0 * DEG, Shape::Step { at_s: 0.0 });
+        scenario.disturbances = vec![push.expect("allowed")];
+        let asked = (Measure::Iae, Travel::Elevator);
+        let question = Question::of(&scenario, asked.1, Assumed::within(1.0)).expect("allowed");
+        let flown = fly_commands(&scenario, &[], asked).expect("allowed");
+        let found = limit(&scenario, &question, asked, flown.travel_rad + 1e-9, || false);
+        let found = found.expect("somebody flew it");
+        assert!(found.proved <= flown.measure, "{} {}", found.proved, flown.measure);
+        assert!(found.proved > 1e-3 * flown.measure, "{} {}", found.proved, flown.measure);
+    }
+}
+
+/// What stands at a stop is not moved by the servo, and no command has to hold against it.
+#[test]
+fn a_servo_that_is_pushed_against_a_stop_costs_no_travel_of_commands() {
+    let mut scenario = pushed_servo();
+    scenario.actuator = Actuator::ideal().with_travel(-DEG, DEG).expect("allowed");
+    for travel in [Travel::Command, Travel::CommandFromRest] {
+        let asked = (Measure::Iae, travel);
+        let flown = fly_commands(&scenario, &[], asked).expect("allowed");
+        assert!(flown.travel_rad.abs() <= 0.0);
+        let question = Question::of(&scenario, travel, Assumed::within(1.0)).expect("allowed");
+        let found = limit(&scenario, &question, asked, 1e-9, || false).expect("somebody flew it");
+        assert!(found.proved <= flown.measure, "{} {}", found.proved, flown.measure);
+    }
+}
+
+/// A price that is halved as if travel fell with it: who may take more reached less.
+#[test]
+fn who_has_more_travel_and_no_future_never_reaches_less() {
+    let mut scenario = pushed_servo();
+    let push = |entry, deg: f64, at_s| Disturbance::new(entry, deg * DEG, Shape::Step { at_s });
+    scenario.disturbances = [push(Entry::Servo, 0.5, 1.0), push(Entry::Elevator, -1.0, 3.33)]
+        .into_iter()
+        .map(|it| it.expect("allowed"))
+        .collect();
+    let asked = (Measure::Iae, Travel::Elevator);
+    let assumed = Assumed { within_rad: 1.0, still: Still::of(&scenario, [].into_iter()) };
+    let question = Question::of(&scenario, asked.1, assumed).expect("allowed");
+    let mut planner = Planner::new(&scenario, &question, asked, || false).expect("few events");
+    let travels_rad = [2.1, 2.5, 3.2, 3.6].map(|it| it * DEG);
+    travels_rad.iter().for_each(|it| planner.search(*it).expect("allowed"));
+    let told = travels_rad.map(|it| Reached::least_within(it, planner.reached()));
+    let [_, _, near, far] = told.map(|it| it.expect("one keeps within").measure);
+    for (it, travel_rad) in told.iter().zip(travels_rad) {
+        assert!(it.is_some_and(|it| it.travel_rad <= travel_rad * (1.0 + 1e-6)), "{told:?}");
+    }
+    let values: Vec<f64> = told.iter().flatten().map(|it| it.measure).collect();
+    assert!(values.windows(2).all(|pair| pair[1] <= pair[0]), "{values:?}");
+    assert!(far < 0.1 * DEG && far <= near, "{} {}", near / DEG, far / DEG);
 }

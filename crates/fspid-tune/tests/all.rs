@@ -6,5 +6,6 @@ mod contest;
 mod crew;
 mod designs;
 mod free_places;
+mod limit;
 mod problem;
 mod rules;

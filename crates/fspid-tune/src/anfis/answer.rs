@@ -23,6 +23,12 @@ impl Learned {
             };
             out.push_str(&format!("validation  {best:.6e}, {first} at first\n"));
         }
+        if let Some(it) = self.judges.filter(|it| it.also_learned > 0) {
+            out.push_str(&format!(
+                "{} of the {} rows for validation are among those learned from as well, number by number: of them the error of validation says nothing.\n",
+                it.also_learned, it.rows
+            ));
+        }
         out.push_str("Errors are roots of the mean square over rows and outputs.\n");
         out
     }
@@ -30,11 +36,16 @@ impl Learned {
     /// The answer of `learn --format json`.
     #[must_use]
     pub fn json(&self) -> Value {
-        json!({
+        let mut answer = json!({
             "stop": self.stop.to_string(),
             "best_epoch": self.best + 1,
             "epochs": self.history.iter().map(epoch).collect::<Vec<_>>(),
-        })
+        });
+        if let Some(judges) = self.judges {
+            answer["validation_rows"] = json!(judges.rows);
+            answer["validation_rows_also_learned"] = json!(judges.also_learned);
+        }
+        answer
     }
 }
 

@@ -1,5 +1,6 @@
 //! What is learned from: rows of inputs and the answers that belong to them.
 
+use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader};
 use std::path::Path;
@@ -183,6 +184,18 @@ impl Data {
             }
         }
         (self.chosen(&judges, false), Some(self.chosen(&judges, true)))
+    }
+
+    /// How many of these rows are among those of others, number by number.
+    #[must_use]
+    pub fn rows_among(&self, others: &Self) -> usize {
+        // The two zeros are one number.
+        let bits = |row: DataRow<'_>| {
+            let numbers = row.inputs.iter().chain(row.outputs);
+            numbers.map(|it| (it + 0.0).to_bits()).collect::<Vec<u64>>()
+        };
+        let known: BTreeSet<Vec<u64>> = others.rows().map(bits).collect();
+        self.rows().filter(|row| known.contains(&bits(*row))).count()
     }
 
     /// The rows that are so marked.

@@ -41,6 +41,16 @@ pub enum AnfisError {
         /// What they would be for.
         what: &'static str,
     },
+    /// A share for validation that leaves no row to learn from.
+    #[error(
+        "of {rows} row(s) a share of {share} judges, rounded to whole rows all of them, and none is left to learn from; give more rows or a smaller share"
+    )]
+    AllJudge {
+        /// The share of the plan.
+        share: f64,
+        /// How many rows there are.
+        rows: usize,
+    },
     /// A system that is wrong.
     #[error("{}", words(.0))]
     System(Vec<SystemError>),

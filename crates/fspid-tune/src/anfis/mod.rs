@@ -122,7 +122,8 @@ impl Plan {
     }
 }
 
-/// Errors after the forward pass of an epoch: roots of the mean square over rows and outputs.
+/// Errors after the forward pass of an epoch, of the system as it would be kept: roots of the mean square over rows and
+/// outputs, of answers that are moved into the universe of an output that clamps them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Epoch {
     /// Over the rows that are learned from.
@@ -185,6 +186,17 @@ pub struct Learned {
     pub best: usize,
     /// Why learning ended.
     pub stop: Stop,
+    /// The rows that judged; none where none did.
+    pub judges: Option<Judges>,
+}
+
+/// Rows that judge only.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Judges {
+    /// How many there are.
+    pub rows: usize,
+    /// How many of them are among those that are learned from, number by number, and judge nothing.
+    pub also_learned: usize,
 }
 
 impl Learned {
@@ -198,7 +210,8 @@ impl Learned {
 
 /// Learns from data, a share of which judges only if the plan says so.
 ///
-/// Answers are those before they are moved into the universe of an output. What an output shows with several rules of
+/// What is learned are answers before they are moved into the universe of an output; errors are those of the answers that
+/// are given. What an output shows with several rules of
 /// one term is learned once for the term.
 ///
 /// # Errors
@@ -206,6 +219,9 @@ impl Learned {
 pub fn learn(parts: &Parts, data: &Data, plan: &Plan) -> Result<Learned, AnfisError> {
     plan.check()?;
     let (training, validation) = data.split(plan.validation_share, plan.seed);
+    if training.is_empty() && !data.is_empty() {
+        return Err(AnfisError::AllJudge { share: plan.validation_share, rows: data.len() });
+    }
     learn_beside(parts, &training, validation.as_ref(), plan)
 }
 
@@ -228,15 +244,17 @@ pub fn learn_beside(
     start.outputs.iter_mut().for_each(|output| output.clamp = false);
     let consequents = Consequents::of(&start, training, plan.regularisation)?;
     let premises = Premises::of(&start, training);
-    let session = Session { training, validation, plan, consequents, premises };
+    let clamps = parts.outputs.iter().map(|output| output.clamp).collect();
+    let session = Session { training, validation, plan, consequents, premises, clamps };
     let mut learned = session.run(&start)?;
     // Nothing was judged: no epoch is better than another.
     if let Some(found) = learned.best().validation.filter(|error| !error.is_finite()) {
         return Err(AnfisError::Validation { found });
     }
-    for (output, given) in learned.parts.outputs.iter_mut().zip(&parts.outputs) {
-        output.clamp = given.clamp;
-    }
+    learned.judges = validation.map(|validation| Judges {
+        rows: validation.len(),
+        also_learned: validation.rows_among(training),
+    });
     Ok(learned)
 }
 
@@ -255,14 +273,21 @@ struct Session<'a> {
     plan: &'a Plan,
     consequents: Consequents,
     premises: Premises,
+    /// Which outputs move their answers into their universe, once they are learned.
+    clamps: Vec<bool>,
 }
 
 impl Session<'_> {
     fn run(&self, start: &Parts) -> Result<Learned, AnfisError> {
         let mut system = self.fitted(start)?;
         let mut pace = Pace::new(self.plan.step);
-        let mut learned =
-            Learned { parts: Parts::default(), history: Vec::new(), best: 0, stop: Stop::Epochs };
+        let mut learned = Learned {
+            parts: Parts::default(),
+            history: Vec::new(),
+            best: 0,
+            stop: Stop::Epochs,
+            judges: None,
+        };
         if !self.plan.premises || self.premises.is_empty() {
             let squared = squared_error(&system, self.training)?;
             if !squared.is_finite() {
@@ -326,17 +351,34 @@ impl Session<'_> {
         squared: f64,
         step: f64,
     ) -> Result<(), AnfisError> {
+        let clamping = self.clamping(system)?;
+        let (kept, squared) = match &clamping {
+            Some(clamping) => (clamping, squared_error(clamping, self.training)?),
+            None => (system, squared),
+        };
         let validation = match self.validation {
-            Some(data) => Some(root_mean(squared_error(system, data)?, data)),
+            Some(data) => Some(root_mean(squared_error(kept, data)?, data)),
             None => None,
         };
         let epoch = Epoch { training: root_mean(squared, self.training), validation, step };
         if learned.history.is_empty() || epoch.cost() < learned.best().cost() {
             learned.best = learned.history.len();
-            learned.parts = system.parts().clone();
+            learned.parts = kept.parts().clone();
         }
         learned.history.push(epoch);
         Ok(())
+    }
+
+    /// The system as it is kept where an output moves its answers into its universe; none where none does.
+    fn clamping(&self, system: &System) -> Result<Option<System>, AnfisError> {
+        if !self.clamps.contains(&true) {
+            return Ok(None);
+        }
+        let mut parts = system.parts().clone();
+        for (output, clamp) in parts.outputs.iter_mut().zip(&self.clamps) {
+            output.clamp = *clamp;
+        }
+        System::new(parts).map(Some).map_err(AnfisError::System)
     }
 
     fn stop(&self, learned: &Learned, step: f64, norm: f64) -> Option<Stop> {

@@ -26,12 +26,12 @@ fn rung(answer: &Answer, rung: &Rung) -> Value {
     let value = |value: f64| in_unit(answer.options.measure, value);
     let mut told = json!({ "travel_deg": degrees(rung.travel_rad) });
     match &rung.limit {
-        Ok(limit) => {
-            told["proved"] = json!(value(limit.proved));
-            told["reached"] = json!(value(limit.reached.measure));
-            told["reached_travel_deg"] = json!(degrees(limit.reached.travel_rad));
-        }
+        Ok(limit) => told["proved"] = json!(value(limit.proved)),
         Err(_) => told["why_none"] = json!(none(rung)),
+    }
+    if let Some(reached) = rung.reached {
+        told["reached"] = json!(value(reached.measure));
+        told["reached_travel_deg"] = json!(degrees(reached.travel_rad));
     }
     if let Some(causal) = &rung.causal {
         told["without_future"] = json!({

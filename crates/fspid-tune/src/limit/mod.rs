@@ -6,11 +6,12 @@
 mod json;
 mod near;
 mod page;
+mod rung;
 mod text;
 mod words;
 
 use fspid_diagnostics::digits::rounded;
-use fspid_limit::{Assumed, Causal, Limit, Question, SaidBeside, Still, measured};
+use fspid_limit::{Assumed, Question, SaidBeside, Still, measured};
 pub use fspid_limit::{LimitError, Measure, Travel};
 use fspid_scenario::file::Study;
 use fspid_scenario::units::{degrees, radians};
@@ -18,6 +19,8 @@ use fspid_sim::Scenario;
 use fspid_study::simulation::{ControllerResult, Simulation};
 pub use near::NearLimit;
 pub(crate) use near::{refusal, shares};
+use rung::Asker;
+pub use rung::{Causal, Rung};
 pub(crate) use words::proved_percent;
 
 /// Rungs of a ladder that nobody gave.
@@ -82,17 +85,6 @@ pub struct Answer {
     pub digest: String,
 }
 
-/// A travel and what is possible within it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Rung {
-    /// The travel, rad.
-    pub travel_rad: f64,
-    /// The limit, or why there is none.
-    pub limit: Result<Limit, LimitError>,
-    /// What was reached without knowledge of the future; none where it was not asked or is not told.
-    pub causal: Option<Causal>,
-}
-
 /// A controller beside the limit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Standing {
@@ -142,19 +134,24 @@ impl Answer {
         if travels_rad.is_empty() && options.ladder != Ladder::None {
             return Err(LimitError::NoTravel);
         }
-        let asker = Asker { study, question: &question, options: &options, stop };
+        let mut asker = Asker::new(study, &question, &options, &flown, stop);
         let (count, whole) = (travels_rad.len(), travels_rad.len() + flown.len());
         let mut rungs = Vec::with_capacity(count);
         for (place, travel_rad) in travels_rad.into_iter().enumerate() {
             told(&format!("limit {} of {whole}", place + 1));
-            rungs.push(asker.rung(travel_rad)?);
+            rungs.push(asker.ask(travel_rad)?);
         }
-        let mut controllers = Vec::with_capacity(flown.len());
+        let mut controllers: Vec<Standing> = Vec::with_capacity(flown.len());
         for (place, (name, flown)) in flown.into_iter().enumerate() {
             told(&format!("limit {} of {whole}", count + place + 1));
             let way = flown.as_ref().ok().map(|(_, way)| unrounded(*way));
-            let rung = way.map(|way| asker.rung(way)).transpose()?;
+            let rung = way.map(|way| asker.ask(way)).transpose()?;
             controllers.push(Standing { name, flown, rung });
+        }
+        // What was flown for one rung serves all others.
+        let rungs = rungs.into_iter().map(|it| asker.with_flights(it)).collect();
+        for it in &mut controllers {
+            it.rung = it.rung.take().map(|rung| asker.with_flights(rung));
         }
         let timing = study.scenario.timing;
         Ok(Self {
@@ -196,30 +193,6 @@ impl Answer {
     #[must_use]
     pub fn page(&self, command: &str) -> String {
         page::page(self, command)
-    }
-}
-
-struct Asker<'a> {
-    study: &'a Study,
-    question: &'a Question,
-    options: &'a Options,
-    stop: fn() -> bool,
-}
-
-impl Asker<'_> {
-    /// Everything at a travel; what ends all of the work is an error.
-    fn rung(&self, travel_rad: f64) -> Result<Rung, LimitError> {
-        let asked = (self.options.measure, self.options.travel);
-        let scenario = &self.study.scenario;
-        let limit = fspid_limit::limit(scenario, self.question, asked, travel_rad, self.stop);
-        let causal = match (&limit, self.options.causal) {
-            (Err(LimitError::Stopped), _) => return Err(LimitError::Stopped),
-            (Ok(_), true) => {
-                fspid_limit::causal(scenario, self.question, asked, travel_rad, self.stop)?
-            }
-            _ => None,
-        };
-        Ok(Rung { travel_rad, limit, causal })
     }
 }
 

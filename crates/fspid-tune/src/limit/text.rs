@@ -73,12 +73,9 @@ fn ladder(answer: &Answer) -> String {
 /// What is proved, and what is reached.
 pub(super) fn limits(answer: &Answer, rung: &Rung) -> [String; 2] {
     let measure = answer.options.measure;
-    match &rung.limit {
-        Ok(limit) => {
-            [down(in_unit(measure, limit.proved)), up(in_unit(measure, limit.reached.measure))]
-        }
-        Err(_) => ["\u{2013}".to_owned(), "\u{2013}".to_owned()],
-    }
+    let proved = rung.limit.as_ref().ok().map(|it| down(in_unit(measure, it.proved)));
+    let reached = rung.reached.map(|it| up(in_unit(measure, it.measure)));
+    [proved, reached].map(|it| it.unwrap_or("\u{2013}".to_owned()))
 }
 
 pub(super) fn without_future(answer: &Answer, rung: &Rung) -> String {
@@ -123,8 +120,7 @@ pub(super) fn flown(answer: &Answer, standing: &Standing) -> [String; 2] {
 
 /// How much of what is possible a controller reaches.
 pub(super) fn possible(standing: &Standing) -> String {
-    let limit = standing.rung.as_ref().and_then(|it| it.limit.as_ref().ok());
     let flown = standing.flown.as_ref().ok();
-    let told = limit.zip(flown).and_then(|(limit, (value, _))| share(limit, *value));
+    let told = standing.rung.as_ref().zip(flown).and_then(|(rung, (value, _))| share(rung, *value));
     told.unwrap_or("\u{2013}".to_owned())
 }

@@ -1,6 +1,6 @@
 //! Numbers and sentences of the answer.
 
-use fspid_limit::{Limit, Measure, SaidBeside, Travel};
+use fspid_limit::{Measure, SaidBeside, Travel};
 use fspid_page::number::fixed;
 use fspid_scenario::units::degrees;
 
@@ -63,13 +63,12 @@ pub(crate) fn proved_percent(share_pct: f64) -> String {
 }
 
 /// How much of what is possible a controller reaches: a per cent, or between which two where the limit is not known closer.
-pub(super) fn share(limit: &Limit, measure: f64) -> Option<String> {
-    if !(measure > 0.0) {
-        return None;
-    }
+pub(super) fn share(rung: &Rung, measure: f64) -> Option<String> {
+    let limit = rung.limit.as_ref().ok().filter(|_| measure > 0.0)?;
     let percent = |limit: f64| 100.0 * limit / measure;
     let least = libm::floor(percent(limit.proved));
-    let most = libm::ceil(percent(limit.reached.measure.min(measure)));
+    let Some(reached) = rung.reached else { return Some(format!("at least {least:.0} %")) };
+    let most = libm::ceil(percent(reached.measure.min(measure)));
     // Two apart is what rounding outwards makes of numbers that differ by little more than one.
     Some(if most - least <= 2.0 {
         format!("{least:.0} %")
@@ -88,7 +87,7 @@ pub(super) fn lead(answer: &Answer) -> String {
     let (end_s, dt_s) = answer.times_s;
     let options = &answer.options;
     format!(
-        "The least {} that any commands reach within a given {}, over {} s at {} ms. Nobody gets below what is proved, whatever the controller: the solver's multipliers were added up in interval arithmetic. What is reached was flown, by commands that know the whole flight before it begins.",
+        "The least {} that any commands reach within a given {}, over {} s at {} ms. Nobody gets below what is proved, whatever the controller: the solver's multipliers were added up in interval arithmetic. What is reached was flown within the travel, by commands that know the whole flight before it begins or by anybody here who does not.",
         called(options.measure),
         options.travel.words(),
         short(end_s),
@@ -106,19 +105,28 @@ pub(super) fn beside(answer: &Answer) -> Vec<String> {
     if answer.options.travel == Travel::Command {
         told.push("The jump of the first command does not count as travel, as in reports: who knows the flight before begins wherever he likes for nothing. `--travel-of command-from-rest` counts it.".to_owned());
     }
+    let unreached = |it: &&Rung| it.limit.is_ok() && it.reached.is_none();
+    if all_rungs(answer).any(|it| unreached(&it)) {
+        told.push("Where nothing stands as reached, nobody here kept within the travel, the commands of the programme neither: it knows what holds the elevator, or what is cut, from one side only.".to_owned());
+    }
     if answer.options.causal {
         told.push(if causal_is_told(answer) {
-            "Without the future: plant, past and present known, planned anew at each change of set-point or disturbance as if nothing came after it, travel at one price for the whole flight. It is what such a planner reached, and no bound.".to_owned()
+            "Without the future: plant, past and present known, planned anew at each change of set-point or disturbance as if nothing came after it, travel at one price for the whole flight. Told is the least of what such a planner, a controller of the scenario and nobody at all reached within the travel, and no bound.".to_owned()
         } else {
-            format!("Without the future nothing is told: something changes at more than {} samples, or no price of travel kept within it.", fspid_limit::MOST_EVENTS)
+            format!("Without the future nothing is told: something changes at more than {} samples, or nobody kept within any of these travels.", fspid_limit::MOST_EVENTS)
         });
     }
     told
 }
 
 pub(super) fn causal_is_told(answer: &Answer) -> bool {
+    all_rungs(answer).any(|it| it.causal.is_some())
+}
+
+/// Rungs of the ladder, and those of the controllers.
+fn all_rungs(answer: &Answer) -> impl Iterator<Item = &Rung> {
     let own = answer.controllers.iter().filter_map(|it| it.rung.as_ref());
-    answer.rungs.iter().chain(own).any(|it| it.causal.is_some())
+    answer.rungs.iter().chain(own)
 }
 
 fn sentence(beside: SaidBeside) -> String {

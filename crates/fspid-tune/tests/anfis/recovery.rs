@@ -2,7 +2,7 @@
 
 use fspid_fuzzy::OutOfRange;
 use fspid_fuzzy::system::{Conclusion, Defuzzifier, Parameter, Parts, SetReading};
-use fspid_tune::anfis::{Curve, Data, Order, Plan, Stop, grid, learn_beside, sugeno};
+use fspid_tune::anfis::{Curve, Data, Judges, Order, Plan, Stop, grid, learn_beside, sugeno};
 
 use crate::anfis::{answer, axis, learned, root_mean_square, samples, teacher};
 
@@ -117,8 +117,49 @@ fn an_output_that_is_clamped_is_learned_before_its_ends_act_and_stays_clamped() 
     start.outputs[0].clamp = true;
     let data = samples(0.0, 1.0, 21, |x| x);
     let found = learned(&start, &data, &fit());
-    assert!(found.best().training < 1e-9 && found.parts.outputs[0].clamp);
+    assert!(found.parts.outputs[0].clamp);
     assert_eq!(answer(&found.parts, &[0.8]), 0.5);
+    let mut before = found.parts.clone();
+    before.outputs[0].clamp = false;
+    assert!(root_mean_square(&before, &data) < 1e-9);
+}
+
+/// The error of the answers before they were moved was told: 53.0 of a file whose answers are 59.1 from the data.
+#[test]
+fn the_errors_that_are_told_of_a_clamped_output_are_those_of_the_answers_it_gives() {
+    let mut start = grid(&[axis("x", 0.0, 1.0, 3)], &["y"], Curve::Gaussian, Order::One);
+    start.outputs[0].universe = Some(fspid_fuzzy::system::Universe { lower: 0.0, upper: 0.5 });
+    start.outputs[0].clamp = true;
+    let data = samples(0.0, 1.0, 21, |x| x);
+    let beside = samples(0.03, 0.97, 12, |x| x);
+    for plan in [fit(), Plan { epochs: 6, ..Plan::default() }] {
+        let found = learn_beside(&start, &data, Some(&beside), &plan).expect("it is learned");
+        let (training, validation) = (found.best().training, found.best().validation);
+        let own = [root_mean_square(&found.parts, &data), root_mean_square(&found.parts, &beside)];
+        assert!(own[0] > 0.1 && (own[0] / training - 1.0).abs() < 1e-12, "{own:?} {training}");
+        let validation = validation.expect("it is judged");
+        assert!((own[1] / validation - 1.0).abs() < 1e-12, "{own:?} {validation}");
+    }
+}
+
+#[test]
+fn rows_that_judge_and_are_learned_from_as_well_are_counted() {
+    let once = samples(0.0, 3.0, 20, |x| libm::sin(2.0 * x));
+    let start = grid(&[axis("x", 0.0, 3.0, 3)], &["y"], Curve::Bell, Order::One);
+    let plan = Plan { epochs: 2, validation_share: 0.25, ..Plan::default() };
+    let found = learned(&start, &once, &plan);
+    assert_eq!(found.judges, Some(Judges { rows: 5, also_learned: 0 }));
+    assert!(!found.text().contains("learned from as well"), "{}", found.text());
+    let mut twice = once.clone();
+    once.rows().for_each(|row| twice.push(row.inputs, row.outputs).expect("finite"));
+    let found = learned(&start, &twice, &plan);
+    let judges = found.judges.expect("a quarter of the rows");
+    // Of ten that are drawn of pairs, few pairs are drawn whole.
+    assert!(judges.rows == 10 && judges.also_learned >= 6, "{judges:?}");
+    let told = format!("{} of the 10 rows for validation", judges.also_learned);
+    assert!(found.text().contains(&told), "{}", found.text());
+    assert_eq!(found.json()["validation_rows_also_learned"], judges.also_learned);
+    assert_eq!(learned(&start, &once, &fit()).judges, None);
 }
 
 #[test]

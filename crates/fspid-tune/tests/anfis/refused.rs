@@ -112,3 +112,19 @@ fn a_grid_needs_universes_and_at_least_two_points_an_input() {
     let wrong = Data::taught(&teacher, &[3]);
     assert_eq!(wrong, Err(AnfisError::NoUniverse { input: "x".to_owned() }));
 }
+
+#[test]
+fn a_share_that_leaves_no_row_to_learn_from_is_told_with_the_rows() {
+    for (share, rows) in [(0.999, 41), (0.5, 1)] {
+        let mut data = Data::new(1, 1);
+        for k in 0..rows {
+            data.push(&[f64::from(k) / 41.0], &[1.0]).expect("finite");
+        }
+        let plan = Plan { validation_share: share, ..Plan::default() };
+        let refused = learn(&start(), &data, &plan).expect_err("none is left").to_string();
+        let told = format!("of {rows} row(s) a share of {share} judges");
+        assert!(refused.starts_with(&told), "{refused}");
+    }
+    let none = learn(&start(), &Data::new(1, 1), &Plan::default()).expect_err("no rows");
+    assert_eq!(none, AnfisError::NoData { what: "learn from" });
+}
