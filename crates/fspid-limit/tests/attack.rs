@@ -142,11 +142,8 @@ fn attack(seed: u64, scenarios: usize) -> Told {
         let measure = Measure::ALL[random.one_of(3)];
         let travel = Travel::ALL[random.one_of(3)];
         let flight = simulate(&scenario).expect("allowed");
-        let within = flight
-            .traces
-            .iter()
-            .flat_map(|it| &it.command_rad)
-            .fold(0.0, |most: f64, u| most.max(u.abs()));
+        let flown = flight.traces.iter().flat_map(|it| &it.command_rad);
+        let within = flown.fold(0.0, |most: f64, u| most.max(u.abs()));
         // Half of them against who keeps as still as these controllers do until something happens.
         let commands = flight.traces.iter().map(|it| it.command_rad.as_slice());
         let still = Still::of(&scenario, commands).filter(|_| random.chance(0.5));

@@ -1,0 +1,158 @@
+//! Where limits leave less than what is held takes, and what such flights come to.
+
+use fspid_sim::Doubt;
+use fspid_study::metrics::Verdict;
+
+use crate::flying::what_is_held::result;
+
+/// An unstable plant under a load that it holds with nine tenths of its limit, and to which it comes with a jump.
+const AT_A_LIMIT: &str = r#"
+schema = 1
+name = "at a limit"
+[plant]
+numerator = [1.0]
+denominator = [1.0, 0.6, -0.4]
+elevator_sign = "nose-up-positive"
+[loop]
+sample_period_s = 0.02
+duration_s = 15.0
+[setpoint]
+kind = "ramp"
+amplitude_deg = 1.0
+at_s = 0.0
+width_s = 2.0
+[[disturbance]]
+kind = "step"
+enters_at = "servo"
+amplitude_deg = 9.0
+at_s = 1.0
+[[controller]]
+name = "PID"
+kind = "pid"
+kp = 3.0
+ki = 0.5
+kd = 1.5
+output_limits_deg = [-10.0, 10.0]
+"#;
+
+/// It went through 467 deg and further, without a step that it could have failed to settle after: "flown", `stable` met.
+#[test]
+fn an_unstable_plant_that_is_lost_at_a_limit_is_not_called_stable() {
+    let doubt = |set: &[&str]| result(AT_A_LIMIT, set).at_rest.undecided.map(|it| it.doubt);
+    let of = |load: f64, more: &[&str]| {
+        let load = format!("disturbance[0].amplitude_deg={load:?}");
+        doubt(&[&[load.as_str()], more].concat())
+    };
+    assert_eq!(of(9.0, &[]), Some(Doubt::BeyondLimits));
+    assert_eq!(of(3.0, &[]), None);
+    // Beyond what there is, however short the flight.
+    assert_eq!(of(11.0, &["loop.duration_s=1.5"]), Some(Doubt::BeyondLimits));
+    assert_eq!(of(9.0, &["loop.duration_s=1.5"]), None);
+    // A servo's own limits as well, which a load at it does not reach.
+    let servo = ["actuator={time_constant_s=0.05, position_limit_deg=2.0}", "loop.duration_s=1.5"];
+    assert_eq!(of(3.0, &servo), None);
+    let elevator = [&servo[..], &["disturbance[0].enters_at=elevator"]].concat();
+    assert_eq!(of(3.0, &elevator), Some(Doubt::BeyondLimits));
+    // A plant that holds by itself rests somewhere, and its flight tells where.
+    assert_eq!(of(11.0, &["plant.denominator=[1.0, 0.6, 0.4]"]), None);
+}
+
+/// Feedforward holds an unstable plant with half a degree, and the limit ends a fiftieth before that.
+const FED_FORWARD: &str = r#"
+schema = 1
+name = "held by feedforward"
+[plant]
+numerator = [1.0]
+denominator = [1.0, 1.0, -0.05]
+elevator_sign = "nose-up-positive"
+[loop]
+sample_period_s = 0.01
+duration_s = 20.0
+[setpoint]
+kind = "step"
+amplitude_deg = 10.0
+at_s = 0.0
+[[controller]]
+name = "C"
+kind = "pid"
+kp = 1.0
+rate_gain = 1.0
+feedforward = -0.05
+output_limits_deg = [-0.49, 10.0]
+"#;
+
+/// It was settled in 6 s, `stable` met, and diverged after 333 s: without an integral limits were not asked.
+#[test]
+fn a_rest_without_an_integral_beyond_a_limit_is_undecided_and_is_left_in_a_longer_flight() {
+    let doubt = |set: &[&str]| result(FED_FORWARD, set).at_rest.undecided.map(|it| it.doubt);
+    assert_eq!(doubt(&[]), Some(Doubt::BeyondLimits));
+    assert_eq!(doubt(&["controller.C.output_limits_deg=[-0.51, 10.0]"]), None);
+    let long = result(FED_FORWARD, &["loop.duration_s=400.0"]);
+    assert!(matches!(long.metrics.verdict, Verdict::Diverged { .. }), "{:?}", long.metrics.verdict);
+}
+
+/// A load on a plant that integrates, of which the limit leaves a tenth.
+const RUNS_AWAY: &str = r#"
+schema = 1
+name = "a load that the limit does not hold"
+[plant]
+preset = "navion-paper"
+[actuator]
+time_constant_s = 0.1
+[loop]
+sample_period_s = 0.01
+duration_s = 60.0
+[setpoint]
+kind = "ramp"
+amplitude_deg = 5.0
+at_s = 0.0
+width_s = 3.0
+[[disturbance]]
+kind = "step"
+enters_at = "elevator"
+amplitude_deg = 12.0
+at_s = 5.0
+[[controller]]
+name = "PID"
+kind = "pid"
+kp = 1.0
+ki = 0.5
+kd = 0.3
+rate_gain = 0.3
+output_limits_deg = [-8.0, 8.0]
+anti_windup = { kind = "conditional" }
+"#;
+
+/// It ended at 392 deg, and `stable` was met: a pole at the origin was none that is unstable.
+#[test]
+fn a_load_that_a_limit_does_not_hold_makes_a_plant_that_integrates_undecided() {
+    let doubt = |set: &[&str]| result(RUNS_AWAY, set).at_rest.undecided.map(|it| it.doubt);
+    let load = |size: f64| format!("disturbance[0].amplitude_deg={size:?}");
+    assert_eq!(doubt(&[]), Some(Doubt::BeyondLimits));
+    assert_eq!(doubt(&[&load(7.9)]), None);
+    assert_eq!(doubt(&[&load(8.1)]), Some(Doubt::BeyondLimits));
+    assert_eq!(doubt(&[&load(-8.1), "controller.PID.ki=0.0"]), Some(Doubt::BeyondLimits));
+}
+
+/// A pulse takes it beyond what the limit holds back: 19.8 deg and growing, where its first step was 10 deg off.
+#[test]
+fn a_flight_lost_at_a_limit_after_a_larger_step_is_not_called_stable() {
+    let pulse = r#"
+[[disturbance]]
+kind = "pulse"
+enters_at = "servo"
+amplitude_deg = 0.2
+at_s = 20.0
+width_s = 20.0
+"#;
+    let text = FED_FORWARD.to_owned() + pulse;
+    let law = ["controller.C.ki=0.1", "controller.C.feedforward=0.0"];
+    let winds = "controller.C.anti_windup={ kind = \"conditional\" }";
+    let of = |least: f64| {
+        let limit = format!("controller.C.output_limits_deg=[{least:?}, 10.0]");
+        let found = result(&text, &[&law[..], &[&limit, winds, "loop.duration_s=45.0"]].concat());
+        found.at_rest.undecided.map(|it| it.doubt)
+    };
+    assert_eq!(of(-0.6), Some(Doubt::BeyondLimits));
+    assert_eq!(of(-2.0), None);
+}
