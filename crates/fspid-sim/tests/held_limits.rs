@@ -283,7 +283,7 @@ fn limit(scenario: &mut Scenario, most_rad: f64) {
             Controller::Fixed(Pid::new(pid.gains(), config).expect("allowed"))
         }
         Controller::SelfTuning(fspid) => {
-            let tuner = fspid.tuner().clone();
+            let tuner = *fspid.tuner();
             Controller::SelfTuning(Fspid::new(tuner, config).expect("allowed"))
         }
     };
