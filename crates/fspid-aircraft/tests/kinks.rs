@@ -86,12 +86,15 @@ fn a_corner_at_the_trim_is_a_kink_and_one_a_centimetre_a_second_beside_it_is_non
     }
 }
 
-/// An aircraft with a drag of its own around an airspeed, in m/s^2 for each m/s of which it is faster.
+/// Drag over the mass in m/s^2 of what is so much faster, m/s.
+type Drag = fn(f64) -> f64;
+
+/// An aircraft with a drag of its own around an airspeed.
 struct Dragged<M> {
     of: M,
     mass_kg: f64,
     airspeed_m_s: f64,
-    drag_m_s2: fn(f64) -> f64,
+    drag_m_s2: Drag,
 }
 
 impl<M: ForceModel> ForceModel for Dragged<M> {
@@ -124,7 +127,7 @@ fn a_slope_that_changes_within_the_width_of_its_differences_is_no_kink_where_it_
     let data = derivative_data(NAVION);
     let target = TrimTarget { airspeed_m_s: 45.0, ..target(&data) };
     // Over the width of 4.5e-4 m/s the first two come to slopes that differ by 9e-3 and 9e-4 1/s.
-    let drags: [(fn(f64) -> f64, bool); 6] = [
+    let drags: [(Drag, bool); 6] = [
         (|faster| 10.0 * faster * faster, false),
         (|faster| -faster * faster, false),
         (|faster| 0.01 * faster.abs(), true),
