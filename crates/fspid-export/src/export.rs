@@ -218,7 +218,7 @@ const SINGLE: &str =
     "settings were rounded to 32 bits; verdicts, margins and certificates are of 64 bits";
 
 /// Of the vectors' samples.
-const SEED: u64 = 1;
+pub(crate) const SEED: u64 = 1;
 
 /// How the supervisor infers.
 fn way<R: Real>(controller: &Controller<R>) -> Option<String> {

@@ -8,6 +8,7 @@
 
 mod directed;
 mod drawn;
+mod telling;
 
 use fspid_core::{Controller, Faults, Previous, Sample, State, Step};
 use fspid_numeric::Real;
@@ -17,6 +18,7 @@ use crate::compose::GAINS;
 use crate::program::{Part, Program};
 pub(crate) use drawn::Draw;
 pub use drawn::samples;
+pub use telling::{Stretch, telling};
 
 /// What is done with a controller at a vector.
 #[derive(Clone, Copy, Debug, PartialEq)]
