@@ -93,15 +93,16 @@ pub fn export_called(
     request: &Request<'_>,
     prefix: &str,
 ) -> Result<Export, ExportError> {
+    let period_s = controller.config().dt_s;
     match request.precision {
-        Precision::Double => exported(controller, request, prefix),
+        Precision::Double => exported(controller, request, prefix, period_s),
         Precision::Single => {
             let rounded = controller.rounded::<f32>().map_err(|reason| ExportError::Rounded {
                 name: request.name.to_owned(),
                 reason,
                 is_table: request.target == Target::Table,
             })?;
-            exported(&rounded, request, prefix)
+            exported(&rounded, request, prefix, period_s)
         }
     }
 }
@@ -110,6 +111,7 @@ fn exported<R: Real>(
     controller: &Controller<R>,
     request: &Request<'_>,
     prefix: &str,
+    period_s: f64,
 ) -> Result<Export, ExportError> {
     let refused = |reason| ExportError::Refused { name: request.name.to_owned(), reason };
     let program = match program(controller, request.angles) {
@@ -138,7 +140,7 @@ fn exported<R: Real>(
         prefix,
         heading: &heading,
         vectors: &vectors,
-        flown: Some(Flown { controller, points: request.points }),
+        flown: Some(Flown { controller, period_s, points: request.points }),
     };
     let written = written(request.target, &source).map_err(refused)?;
     notes.extend(written.notes);
@@ -216,7 +218,7 @@ const SINGLE: &str =
     "settings were rounded to 32 bits; verdicts, margins and certificates are of 64 bits";
 
 /// Of the vectors' samples.
-const SEED: u64 = 1;
+pub(crate) const SEED: u64 = 1;
 
 /// How the supervisor infers.
 fn way<R: Real>(controller: &Controller<R>) -> Option<String> {

@@ -8,14 +8,17 @@
 
 mod directed;
 mod drawn;
+mod telling;
 
 use fspid_core::{Controller, Faults, Previous, Sample, State, Step};
 use fspid_numeric::Real;
 
 use crate::Angles;
 use crate::compose::GAINS;
+use crate::program::{Part, Program};
 pub(crate) use drawn::Draw;
 pub use drawn::samples;
+pub use telling::{Stretch, telling};
 
 /// What is done with a controller at a vector.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -96,6 +99,29 @@ pub enum Remembered {
     Model,
     /// Its rate, rad/s.
     ModelRate,
+}
+
+impl Remembered {
+    /// All of them.
+    const ALL: [Self; 8] = [
+        Self::Command,
+        Self::Integral,
+        Self::Gain(0),
+        Self::Gain(1),
+        Self::Gain(2),
+        Self::Derivative,
+        Self::Model,
+        Self::ModelRate,
+    ];
+}
+
+/// The members of a program's memory that [events](Event) write over, each with the number of its event. What asks a
+/// program in another language has to do them all.
+pub(crate) fn written_over(program: &Program) -> impl Iterator<Item = (u8, &'static str)> {
+    let events = Remembered::ALL.into_iter().map(|which| Event::Memory(which, 0.0));
+    let members = events.map(|event| (event.number(), event.name()));
+    members
+        .filter(|(_, name)| program.members(Part::State).iter().any(|member| member.name == *name))
 }
 
 /// What is done, a sample and its answer, in the units of the export.

@@ -94,7 +94,12 @@ fn reference(variables: &[Node<'_, '_>], name: &str) -> Option<u32> {
 }
 
 /// What the importer is told: names of the standard as references, samples and answers as bits.
-fn words<R: Real>(description: &str, programs: [&Program; 2], rows: [&[Vector<R>]; 2]) -> String {
+fn words<R: Real>(
+    description: &str,
+    period_s: f64,
+    programs: [&Program; 2],
+    rows: [&[Vector<R>]; 2],
+) -> String {
     let document = Document::parse(description).expect("XML");
     let variables = variables(&document);
     let root = document.root_element();
@@ -113,7 +118,7 @@ fn words<R: Real>(description: &str, programs: [&Program; 2], rows: [&[Vector<R>
     let is_parameter = |node: &&Node<'_, '_>| node.attribute("causality") == Some("parameter");
     let parameters: Vec<&str> =
         variables.iter().filter(is_parameter).filter_map(|node| node.attribute("name")).collect();
-    word(real(own, "dt_s").expect("a period").to_bits());
+    word(period_s.to_bits());
     for count in [inputs.len(), rows[0].len(), parameters.len()] {
         word(count as u64);
     }
@@ -142,7 +147,8 @@ fn play<R: Real>(fmu: &[u8], target: Target, own: &Controller<R>, other: &Contro
     let of = |controller| program(controller, Angles::Radians).expect("nothing here is refused");
     let rows = [own, other].map(|it| vectors(it, Angles::Radians, 1, SAMPLES));
     let description = text(&files, "modelDescription.xml");
-    let words = words(&description, [&of(own), &of(other)], [&rows[0], &rows[1]]);
+    // As scenarios have it: an importer's clock has 64 bits, whatever the controller's numbers have.
+    let words = words(&description, 0.01, [&of(own), &of(other)], [&rows[0], &rows[1]]);
     let said = folder.path().join("words");
     std::fs::write(&said, words).expect("a temporary file");
     let ran = Command::new(importer(target)).args([&library, &said]).output().expect("a program");
@@ -192,6 +198,18 @@ fn of_paper(target: Target) -> &'static [u8] {
         [Target::Fmu2, Target::Fmu3].map(|target| fmu(&paper(), target, Precision::Double))
     });
     if target == Target::Fmu2 { two } else { three }
+}
+
+/// 0.01 s in 32 bits is less, so that from 447.39 s on a step of 0.01 s took two samples.
+#[test]
+fn an_fmu_of_single_numbers_takes_one_sample_in_each_step_for_as_long_as_it_flies() {
+    let [own, other] = [paper(), moved(&paper())].map(|it| it.rounded::<f32>().expect("small"));
+    for target in [Target::Fmu2, Target::Fmu3] {
+        let fmu = fmu(&paper(), target, Precision::Single);
+        let description = text(&unpacked(&fmu), "modelDescription.xml");
+        assert!(description.contains("stepSize=\"0.01\""), "{description}");
+        assert_eq!(play(&fmu, target, &own, &other), "");
+    }
 }
 
 #[test]

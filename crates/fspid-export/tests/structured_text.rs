@@ -1,9 +1,13 @@
 //! The Structured Text that is written answers what the controller answers, bit for bit.
 
-use fspid_core::Controller;
+use fspid_core::{
+    AntiWindup, Controller, ControllerSetting, Derivative, Fspid, GainLimits, Gains, Guard,
+    InputScale, Law, Limits, PidConfig, SecondInput, SelfTuner, TunerSettings,
+};
+use fspid_export::program::Precision;
 use fspid_export::vectors::{Event, Vector, eventful};
 use fspid_export::write::{Heading, structured_text, structured_text_check};
-use fspid_export::{Angles, program};
+use fspid_export::{Angles, Request, Target, export, program};
 use fspid_numeric::Real;
 use fspid_structured_text::{Instance, Kind, Library, Mistake, Problem, Value};
 use proptest::prelude::*;
@@ -40,7 +44,7 @@ fn text<R: Real>(controller: &Controller<R>, angles: Angles, vectors: &[Vector<R
         vectors.iter().take(40).map(|vector| vector.sample.clone()).collect();
     Text {
         block: structured_text(&program, "pitch", &heading),
-        check: structured_text_check(&program, "pitch", &heading, &samples),
+        check: structured_text_check(&program, "pitch", &heading, &[samples]),
         inputs: program.sample.iter().map(|member| member.name.clone()).collect(),
         command: program.answer[0].name.clone(),
     }
@@ -177,4 +181,78 @@ fn a_text_with_another_rule_number_or_sign_answers_differently() {
     ] {
         assert!(matches!(broken(old, new), Ok(1..)), "{new}: {:?}", broken(old, new));
     }
+}
+
+/// A self-tuner with a guard, limits of command and gains, and what else acts seldom.
+fn limited() -> Controller<f32> {
+    let limits = |lower, upper| Limits::new(ControllerSetting::OutputLimits, lower, upper);
+    let limits = |lower, upper| limits(lower, upper).expect("in order");
+    let Controller::SelfTuning(paper) = crate::common::paper() else { unreachable!("it tunes") };
+    let settings = TunerSettings {
+        second_input: SecondInput::Rate,
+        law: Law::Accumulating { leakage_per_s: 0.5 },
+        output_scale: Gains { kp: 0.03, ki: 0.03, kd: 0.01 },
+        input_scale: InputScale { error_per_rad: 30.0, change_per_rad: 60.0 },
+        gain_limits: Some(GainLimits {
+            kp: limits(0.9, 1.1),
+            ki: limits(0.4, 0.6),
+            kd: limits(0.17, 0.23),
+        }),
+        ..*paper.tuner().settings()
+    };
+    let tuner = SelfTuner::new(paper.tuner().nominal(), *paper.tuner().supervisor(), settings);
+    let config = PidConfig {
+        rate_gain_s: 0.2,
+        derivative: Derivative { filter_s: 0.1 },
+        limits: Some(limits(-0.35, 0.35)),
+        anti_windup: AntiWindup::BackCalculation { tracking_s: 0.5 },
+        guard: Guard::new(1.5).expect("positive"),
+        ..*paper.config()
+    };
+    let fspid = Fspid::new(tuner.expect("a tuner"), config).expect("a controller");
+    Controller::SelfTuning(fspid).rounded::<f32>().expect("small numbers")
+}
+
+/// Of the first 400 samples none had a rate, and none met a limit or the guard.
+#[test]
+fn the_check_for_a_plc_notices_each_number_of_a_design_that_is_turned() {
+    let request = Request {
+        name: "pitch",
+        target: Target::StructuredText,
+        precision: Precision::Single,
+        angles: Angles::Radians,
+        samples: 2000,
+        points: 25,
+        digest: "0",
+        evidence: false,
+    };
+    let controller = limited().rounded::<f64>().expect("the same numbers");
+    let exported = export(&controller, &request).expect("nothing here is refused");
+    let text = |name: &str| {
+        let file = exported.files.iter().find(|file| file.name == name).expect("a file");
+        String::from_utf8(file.bytes.clone()).expect("text")
+    };
+    let (block, check) = (text("pitch.st"), text("pitch_check.st"));
+    let differs = |block: &str| {
+        let library = Library::read(&format!("{block}{check}")).expect("it is read");
+        let mut check = library.instance("PRG_pitch_check").expect("the check");
+        (0..400).try_for_each(|_| check.call()).expect("it runs");
+        assert!(matches!(check.get("check_index"), Ok(Value::Dint(100..=400))));
+        check.get("check_different").expect("counted") != Value::Dint(0)
+    };
+    assert!(!differs(&block));
+    let mut unnoticed = Vec::new();
+    for line in block.lines().filter(|line| line.contains(" : REAL := REAL#")) {
+        let (name, number) = line.trim().split_once(" : REAL := REAL#").expect("a number");
+        let number: f32 = number.trim_end_matches(';').parse().expect("a number");
+        if !name.starts_with("design_") {
+            continue;
+        }
+        let other = if number == 0.0 { 0.5 } else { 1.5 * number };
+        let turned = block.replace(line, &format!("{name} : REAL := REAL#{other:?};"));
+        if !differs(&turned) {
+            unnoticed.push(name.to_owned());
+        }
+    }
+    assert_eq!(unnoticed, Vec::<String>::new());
 }

@@ -16,8 +16,9 @@ pub(super) fn files<R: Real>(source: &Source<'_, R>, version: Version) -> Result
         true => (*program).clone(),
         false => observed((*program).clone()),
     };
+    let period_s = flown.as_ref().map(|flown| flown.period_s);
     let Parts { mut texts, to_compile, sources } =
-        parts(&Fmu { program: &program, prefix, heading, version, is_system });
+        parts(&Fmu { program: &program, prefix, heading, version, period_s });
     let note = match library(&to_compile, &sources, version) {
         Ok((platform, bytes)) => {
             let ending = std::env::consts::DLL_SUFFIX;

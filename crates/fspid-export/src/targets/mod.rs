@@ -130,6 +130,8 @@ pub(crate) struct Source<'a, R> {
 /// A controller, and what is asked for that only a controller has.
 pub(crate) struct Flown<'a, R> {
     pub(crate) controller: &'a Controller<R>,
+    /// Its sample period as the scenario has it, s: what keeps time counts in 64 bits, whatever the controller does.
+    pub(crate) period_s: f64,
     /// Points of a table along an input.
     pub(crate) points: usize,
 }

@@ -10,7 +10,8 @@ pub(super) fn files<R: Real>(source: &Source<'_, R>) -> Result<Vec<File>, Refusa
     let Source { program, prefix, heading, .. } = source;
     super::matlab::short(prefix)?;
     let written = write::c(program, prefix, heading);
-    let function = write::simulink(program, prefix, heading).ok_or(Refusal::NoController)?;
+    let flown = source.flown.as_ref().ok_or(Refusal::NoController)?;
+    let function = write::simulink(program, prefix, flown.period_s, heading);
     Ok(vec![
         File::text(format!("{prefix}.h"), written.header),
         File::text(format!("{prefix}.c"), written.source),

@@ -3,16 +3,24 @@
 use fspid_numeric::Real;
 
 use super::{File, Source, Written};
+use crate::export::SEED;
+use crate::vectors::telling;
 use crate::write;
 
 pub(super) fn files<R: Real>(source: &Source<'_, R>) -> Written {
     let Source { program, prefix, heading, vectors, .. } = source;
-    let samples: Vec<Vec<R>> = vectors.iter().map(|vector| vector.sample.clone()).collect();
+    let stretches = match (&source.flown, heading.angles) {
+        (Some(flown), Some(angles)) => {
+            let most = write::MOST_SAMPLES.min(vectors.len());
+            telling(flown.controller, program, (angles, SEED), most)
+        }
+        _ => vec![vectors.iter().map(|vector| vector.sample.clone()).collect()],
+    };
     let files = vec![
         File::text(format!("{prefix}.st"), write::structured_text(program, prefix, heading)),
         File::text(
             format!("{prefix}_check.st"),
-            write::structured_text_check(program, prefix, heading, &samples),
+            write::structured_text_check(program, prefix, heading, &stretches),
         ),
     ];
     let notes = vec![format!(

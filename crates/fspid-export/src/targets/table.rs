@@ -10,7 +10,7 @@ use crate::write;
 
 pub(super) fn files<R: Real>(source: &Source<'_, R>) -> Result<Written, Refusal> {
     let Source { prefix, heading, vectors, .. } = source;
-    let Flown { controller, points } = source.flown.as_ref().ok_or(Refusal::NoController)?;
+    let Flown { controller, points, .. } = source.flown.as_ref().ok_or(Refusal::NoController)?;
     let tuner = rounded(controller)?;
     let table = SurfaceTable::of(&tuner, *points)?;
     let files = write::table(&table, prefix, heading);

@@ -4,7 +4,7 @@ use fspid_numeric::Real;
 
 use super::{Page, put};
 use crate::program::{Part, Precision, Program};
-use crate::vectors::Vector;
+use crate::vectors::{Vector, written_over};
 
 /// The program; it prints `N samples, M different` and ends with 0 where M is 0.
 #[must_use]
@@ -146,19 +146,14 @@ fn same(program: &Program, prefix: &str, first: usize) -> String {
 fn events(page: &mut Page, program: &Program, prefix: &str) {
     let call =
         |name: &str, more: &str| format!("{prefix}_{name}(&{prefix}_design, &state, {more}&answer");
-    let has = |name: &str| program.members(Part::State).iter().any(|member| member.name == name);
     page.line("switch (marks[k][2]) {");
     page.line(&format!("case 1U: {prefix}_reset(&{prefix}_design, &state); break;"));
     page.line("case 4U:");
     let all = format!("{prefix}_faults(&state) != (k > 0U ? marks[k - 1U][1] : 0U)");
     page.line(&format!("    if ({all}) {{ ++different; }}"));
     page.line("    break;");
-    let remembered = ["command_rad", "integral", "kp", "ki", "kd"];
-    let further = ["derivative_rad_s", "model_rad", "model_rad_s"];
-    for (name, number) in remembered.into_iter().chain(further).zip(5..) {
-        if has(name) {
-            page.line(&format!("case {number}U: state.{name} = given; break;"));
-        }
+    for (number, name) in written_over(program) {
+        page.line(&format!("case {number}U: state.{name} = given; break;"));
     }
     page.line("default: break;");
     page.line("}");

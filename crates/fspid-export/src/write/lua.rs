@@ -5,7 +5,7 @@ use fspid_numeric::Real;
 use super::dialect::{Block, Dialect, Truths, all_arguments, block, part_name};
 use super::{Heading, Page, decimal, wrapped};
 use crate::program::{Function, Kind, Member, Part, Precision, Program, Value};
-use crate::vectors::Vector;
+use crate::vectors::{Vector, written_over};
 
 /// The program as a module that answers `{ design, reset, step, hold, track, saturated, faults }`, of a fuzzy system
 /// `{ design, infer }`. It has the bits of its precision where Lua's
@@ -84,10 +84,8 @@ fn check_of_controller(page: &mut Page, program: &Program) {
     page.inside(|page| {
         page.line(&format!("if event == 1 then {}) end", call("reset")));
         page.line("if event == 4 and controller.faults(state) ~= latched then different = different + 1 end");
-        page.line("if event == 5 then state.command_rad = given end");
-        page.line("if event == 6 then state.integral = given end");
-        for (gain, event) in ["kp", "ki", "kd"].iter().zip(7..) {
-            page.line(&format!("if event == {event} then state.{gain} = given end"));
+        for (event, name) in written_over(program) {
+            page.line(&format!("if event == {event} then state.{name} = given end"));
         }
         page.line("if event == 2 then");
         page.line(&format!("    {}, answer, 1)", call("hold")));

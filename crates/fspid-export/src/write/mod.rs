@@ -37,6 +37,7 @@ pub use rust::rust;
 pub use rust_harness::rust_harness;
 pub use simulink::{simulink, simulink_build};
 pub use structured_text::structured_text;
+pub(crate) use structured_text_check::MOST_SAMPLES;
 pub use structured_text_check::structured_text_check;
 pub use table::{TableFiles, table, table_csv, table_harness};
 

@@ -1,13 +1,11 @@
 //! A level-2 S-function around the C, and what builds it.
 
 use super::Heading;
-use crate::program::{Part, Precision, Program, Value};
+use crate::program::{Part, Precision, Program};
 
-/// The S-function in C; nothing for what has no period.
+/// The S-function in C, which is asked once every `period_s`: in 64 bits, as Simulink keeps time.
 #[must_use]
-pub fn simulink(program: &Program, prefix: &str, heading: &Heading<'_>) -> Option<String> {
-    let period = program.configuration.iter().find(|member| member.name == "dt_s");
-    let Some(Value::Real(dt_s)) = period.map(|member| &member.value) else { return None };
+pub fn simulink(program: &Program, prefix: &str, period_s: f64, heading: &Heading<'_>) -> String {
     let real = match heading.precision {
         Precision::Single => "float",
         Precision::Double => "double",
@@ -33,10 +31,10 @@ pub fn simulink(program: &Program, prefix: &str, heading: &Heading<'_>) -> Optio
         .replace("OUTPUTS", &all.len().to_string())
         .replace("IN_NAMES", &names(inputs.iter().map(|it| it.name.as_str()).collect()))
         .replace("OUT_NAMES", &names(all))
-        .replace("PERIOD", &format!("{dt_s:?}"))
+        .replace("PERIOD", &format!("{period_s:?}"))
         .replace("PREFIX", prefix);
     let head = heading.lines().join("\n * ");
-    Some(format!("/* {head}\n{text}"))
+    format!("/* {head}\n{text}")
 }
 
 const SFUNCTION: &str = " *

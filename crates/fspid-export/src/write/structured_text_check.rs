@@ -6,20 +6,21 @@ use super::structured_text::{array, events, real, real_literal, remark, statemen
 use super::{Heading, Page};
 use crate::interpret::{Cell, Machine};
 use crate::program::{Part, Program};
+use crate::vectors::Stretch;
 
 /// How many samples it has at most: they lie in the memory of the controller that runs it.
-const MOST_SAMPLES: usize = 400;
+pub(crate) const MOST_SAMPLES: usize = 400;
 
-/// The program `PRG_<prefix>_check`: a sample a cycle, so that no watchdog minds. Samples that are not finite are left
-/// out, because the language has no literals for them.
+/// The program `PRG_<prefix>_check`: a sample a cycle, so that no watchdog minds, each stretch from a reset on. Samples
+/// that are not finite are left out, because the language has no literals for them.
 #[must_use]
 pub fn structured_text_check<R: Real>(
     program: &Program,
     prefix: &str,
     heading: &Heading<'_>,
-    samples: &[Vec<R>],
+    stretches: &[Stretch<R>],
 ) -> String {
-    let columns = columns(program, samples);
+    let columns = columns(program, stretches);
     let count = columns.first().map_or(0, |column| column.values.len());
     let mut page = Page::default();
     heading.lines().iter().for_each(|line| remark(&mut page, line));
@@ -53,7 +54,7 @@ impl Column {
     }
 }
 
-fn columns<R: Real>(program: &Program, samples: &[Vec<R>]) -> Vec<Column> {
+fn columns<R: Real>(program: &Program, stretches: &[Stretch<R>]) -> Vec<Column> {
     let mut machine = Machine::new(program);
     let mut columns = Vec::new();
     for part in [Part::Sample, Part::Answer] {
@@ -68,9 +69,16 @@ fn columns<R: Real>(program: &Program, samples: &[Vec<R>]) -> Vec<Column> {
             columns.push(Column { part, name, visible, kind, values: Vec::new() });
         }
     }
-    let good =
-        samples.iter().filter(|sample| sample.iter().all(|value| value.to_f64().is_finite()));
-    for sample in good.take(MOST_SAMPLES) {
+    let is_good = |sample: &&Vec<R>| sample.iter().all(|value| value.to_f64().is_finite());
+    let good = stretches.iter().flat_map(|stretch| {
+        stretch.iter().filter(is_good).enumerate().map(|(place, sample)| (place == 0, sample))
+    });
+    let mut begins = Vec::new();
+    for (is_first, sample) in good.take(MOST_SAMPLES) {
+        if is_first && program.function("reset").is_some() {
+            machine.run("reset");
+        }
+        begins.push(if is_first { "TRUE" } else { "FALSE" }.to_owned());
         for (member, value) in program.members(Part::Sample).iter().zip(sample) {
             machine.set(Part::Sample, &member.name, Cell::Real(*value));
         }
@@ -80,7 +88,16 @@ fn columns<R: Real>(program: &Program, samples: &[Vec<R>]) -> Vec<Column> {
             column.values.extend(cell.map(|cell| literal(program, cell)));
         }
     }
+    if program.function("reset").is_some() {
+        columns.insert(0, resets(begins));
+    }
     columns
+}
+
+/// An input beside the sample: TRUE where a stretch begins.
+fn resets(values: Vec<String>) -> Column {
+    let (name, visible) = ("reset".to_owned(), "reset".to_owned());
+    Column { part: Part::Sample, name, visible, kind: "BOOL", values }
 }
 
 fn literal<R: Real>(program: &Program, cell: &Cell<R>) -> String {
@@ -110,14 +127,13 @@ fn declarations(page: &mut Page, prefix: &str, columns: &[Column]) {
     page.line("END_VAR");
 }
 
-/// The inputs beside the sample: a reset at the first one, and nothing else.
+/// The inputs beside the sample and the reset: nothing is done with them.
 fn idle(program: &Program) -> Vec<String> {
-    let idle = |(name, kind, _): (String, &str, &str)| match (name.as_str(), kind) {
-        ("reset", _) => "reset := (check_index = DINT#0)".to_owned(),
-        (name, "BOOL") => format!("{name} := FALSE"),
-        (name, kind) => format!("{name} := {kind}#0.0"),
+    let idle = |(name, kind, _): (String, &str, &str)| match kind {
+        "BOOL" => format!("{name} := FALSE"),
+        kind => format!("{name} := {kind}#0.0"),
     };
-    events(program).into_iter().map(idle).collect()
+    events(program).into_iter().filter(|(name, ..)| name != "reset").map(idle).collect()
 }
 
 fn body(page: &mut Page, columns: &[Column], count: usize, idle: Vec<String>) {

@@ -386,6 +386,30 @@ static void other_steps(void)
     free_(three);
 }
 
+/* Ten minutes at 10 ms: a clock of 32 bits is a thousandth of a period ahead by then, and takes a sample too many. */
+static void far_on(void)
+{
+    handle it = ready("far on");
+    void *state = NULL;
+    unsigned char *bytes;
+    size_t size = 0U;
+    unsigned k;
+    uint64_t taken = 0U;
+    give(it, row_of(0, 0U));
+    for (k = 0U; k < 60000U; ++k) {
+        if (stepped(it, k * period, period) != ok) { break; }
+    }
+    CHECK(get_state(it, &state) == ok && state_size(it, state, &size) == ok);
+    bytes = malloc(size);
+    CHECK(write_state(it, state, bytes, size) == ok);
+    /* Behind the mark of 16 bytes and three times, the lowest byte first. */
+    for (k = 8U; k > 0U; --k) { taken = taken << 8U | bytes[39U + k]; }
+    CHECK(taken == 60000U);
+    free(bytes);
+    CHECK(free_state(it, &state) == ok);
+    free_(it);
+}
+
 /* The parameters of another design make this one answer as that. */
 static void takes_parameters(void)
 {
@@ -513,6 +537,7 @@ int main(int count, char **arguments)
     two_side_by_side();
     steps_back();
     other_steps();
+    far_on();
     takes_parameters();
     refuses_parameters();
     wrong_calls();

@@ -4,6 +4,8 @@ use fspid_core::{Faults, Sample, State};
 use fspid_sim::external::Answers;
 use fspid_sim::{Controller, ControllerLoss, External, ExternalSource, SimError};
 
+use super::latched::Latched;
+
 /// What no controller believes.
 const NO_SAMPLE: Sample<f64> =
     Sample { setpoint_rad: f64::NAN, measurement_rad: f64::NAN, rate_rad_s: f64::NAN };
@@ -44,8 +46,8 @@ impl Flyer {
                 allowed: "one that answers pitch; `simulate` flies control laws".to_owned(),
             });
         }
-        let answers = Some(external.start()?);
-        Ok(Self::External(Asked { external, answers, command_rad: 0.0, latched: Faults::NONE }))
+        let answers = external.start()?;
+        Ok(Self::External(Asked::new(external, answers)))
     }
 
     /// Its sample period, s.
@@ -81,7 +83,7 @@ impl Flyer {
             Self::External(asked) => {
                 // The process of the flight before ends first.
                 asked.answers = None;
-                (asked.command_rad, asked.latched) = (0.0, Faults::NONE);
+                (asked.command_rad, asked.latched) = (0.0, Latched::NONE);
                 asked.answers = Some(asked.external.start()?);
             }
         }
@@ -113,11 +115,17 @@ pub(super) struct Asked {
     answers: Option<Box<dyn Answers>>,
     /// The last command, rad; 0 before the first.
     command_rad: f64,
-    /// Faults that it has told so far: a program tells them latched.
-    latched: Faults,
+    /// What it has told so far: a program tells faults latched.
+    latched: Latched,
 }
 
 impl Asked {
+    /// A program that was started, before its first sample.
+    pub(super) fn new(external: External, answers: Box<dyn Answers>) -> Self {
+        let answers = Some(answers);
+        Self { external, answers, command_rad: 0.0, latched: Latched::NONE }
+    }
+
     /// Angles that are not finite are kept from it: guards are ours, and one that has none would answer NaN for ever. An
     /// export has guards that hold the same command. A rate is not, for who does not use it goes on.
     fn step(&mut self, sample: Sample<f64>) -> Stepped {
@@ -130,14 +138,8 @@ impl Asked {
         };
         match answers.answer(sample) {
             Ok(step) => {
-                // Only a rate can have latched that, and does so each time.
-                let before = match sample.rate_rad_s.is_finite() {
-                    true => self.latched,
-                    false => self.latched.without(Faults::NOT_FINITE),
-                };
-                let fault = step.faults.without(before);
+                let fault = self.latched.fault(sample, &step);
                 self.command_rad = step.command_rad;
-                self.latched = step.faults;
                 Stepped { command_rad: step.command_rad, fault, loss: None }
             }
             Err(loss) => {

@@ -36,6 +36,7 @@
 
 mod flyer;
 mod hand;
+mod latched;
 mod line;
 mod log;
 mod pilot;

@@ -2,10 +2,11 @@
 
 use std::fmt;
 
-use fspid_core::{Faults, Sample};
+use fspid_core::Sample;
 use fspid_sim::{Flyer as Named, Scenario, SimError};
 
 use super::flyer::Flyer;
+use super::latched::HOLDING;
 use super::line::{Angles, Line, Request};
 use super::log::{Log, Summary};
 use super::rate::RateFilter;
@@ -14,8 +15,6 @@ use fspid_diagnostics::known_words;
 
 /// Of the period: how far `dt_s` may lie beside it and still be kept. As for events in a scenario.
 const SAME_PERIOD: f64 = 1e-6;
-/// Faults at which a controller holds its command.
-const HOLDING: [Faults; 3] = [Faults::NOT_FINITE, Faults::IMPLAUSIBLE, Faults::OVERFLOW];
 
 /// Why no controller was chosen.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -235,5 +234,84 @@ fn chosen<'a>(scenario: &'a Scenario, name: Option<&str>) -> Result<Named<'a>, C
         (Some(name), _) => all
             .find(|named| named.name() == name)
             .ok_or_else(|| ChoiceError::Unknown { name: name.to_owned(), known: known() }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::PathBuf;
+
+    use fspid_core::{Controller, Gains, Guard, Pid, PidConfig, State, Step};
+    use fspid_sim::external::Answers;
+    use fspid_sim::{ControllerLoss, External, ExternalSource};
+
+    use super::super::flyer::Asked;
+    use super::*;
+
+    /// An export: it answers as its original, with faults latched.
+    #[derive(Debug)]
+    struct Export(Controller<f64>, State<f64>);
+
+    impl Answers for Export {
+        fn answer(&mut self, sample: Sample<f64>) -> Result<Step<f64>, ControllerLoss> {
+            Ok(self.0.step(&mut self.1, sample))
+        }
+    }
+
+    fn controller([kp, ki]: [f64; 2], rate_gain_s: f64) -> Controller<f64> {
+        let guard = Guard::new(90_f64.to_radians()).expect("positive");
+        let config = PidConfig { rate_gain_s, guard, ..PidConfig::sampled_every(0.01) };
+        Controller::Fixed(Pid::new(Gains { kp, ki, kd: 0.1 }, config).expect("good settings"))
+    }
+
+    fn pilot(flyer: Flyer) -> Pilot {
+        let rate = RateFilter::new(flyer.period_s());
+        Pilot { flyer, angles: Angles::Degrees, sample: 0, rate, log: Log::default() }
+    }
+
+    fn exported(controller: Controller<f64>) -> Pilot {
+        let external = External {
+            source: ExternalSource::Library(PathBuf::from("a.so")),
+            contents: None,
+            answer_limit_s: 5.0,
+            dt_s: 0.01,
+            renamed: Vec::new(),
+        };
+        let export = Export(controller, State::new());
+        pilot(Flyer::External(Asked::new(external, Box::new(export))))
+    }
+
+    /// Pitches that move, with glitches of every size; most lines have no rate.
+    fn line(k: u32) -> String {
+        let rest = 4.0 * libm::sin(f64::from(k) * 0.05);
+        match k {
+            5 | 9 | 10 | 300 => "0 -180 0.01".to_owned(),
+            // Too fast for the guard, where nothing else is wrong.
+            40..=43 | 301 => "0 75 0.01".to_owned(),
+            60 | 61 => format!("5 {rest:?} 0.01 -100"),
+            80 => format!("5 {rest:?} 0.01 inf"),
+            120 => "95 2 0.01".to_owned(),
+            121 => "1e300 2 0.01".to_owned(),
+            // Slowly to where nothing was believed before, and still there.
+            150..=250 => format!("0 {:?} 0.01", f64::from(k - 150) * 0.6),
+            251..=290 => "0 60 0.01".to_owned(),
+            _ => format!("5 {rest:?} 0.01"),
+        }
+    }
+
+    /// The second glitch of -180 deg went into the estimate of the rate, and commands were others for hundreds of samples.
+    #[test]
+    fn an_export_answers_as_its_original_after_any_number_of_samples_beyond_the_guard() {
+        for (gains, rate_gain_s) in [([1.0, 0.0], 0.3), ([1.0, 0.5], 0.3), ([2.0, 0.5], 0.0)] {
+            let controller = controller(gains, rate_gain_s);
+            let mut pilots = [pilot(Flyer::own(controller)), exported(controller)];
+            for k in 0..600 {
+                let [own, export] = pilots.each_mut().map(|it| it.answer(line(k).as_bytes()));
+                assert_eq!(own, export, "{gains:?} {rate_gain_s:?} sample {k}: {}", line(k));
+            }
+            let [own, export] = pilots.map(|it| it.summary());
+            assert!(own.held > 5);
+            assert_eq!(own, export, "{gains:?} {rate_gain_s:?}");
+        }
     }
 }

@@ -76,7 +76,7 @@ impl Drop for Locked {
 
 /// True if that open file is the one at the path.
 #[cfg(unix)]
-fn is_at(file: &File, path: &Path) -> bool {
+pub(super) fn is_at(file: &File, path: &Path) -> bool {
     use std::os::unix::fs::MetadataExt as _;
     let number = |found: fs::Metadata| (found.dev(), found.ino());
     let (open, there) = (file.metadata().map(number), fs::metadata(path).map(number));
@@ -84,7 +84,7 @@ fn is_at(file: &File, path: &Path) -> bool {
 }
 
 #[cfg(not(unix))]
-fn is_at(_: &File, path: &Path) -> bool {
+pub(super) fn is_at(_: &File, path: &Path) -> bool {
     path.exists()
 }
 

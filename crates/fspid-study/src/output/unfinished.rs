@@ -7,7 +7,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use super::locked::{Locked, NotLocked};
+use super::locked::{Locked, NotLocked, is_at};
 
 /// What the names of files and folders begin with until they are whole.
 const UNFINISHED: &str = ".fspid-";
@@ -41,7 +41,7 @@ pub(super) fn new_file_in(folder: &Path) -> io::Result<tempfile::NamedTempFile> 
         let file = builder.tempfile_in(folder)?;
         match file.as_file().try_lock() {
             // Somebody may have taken it for left before it had its lock.
-            Ok(()) if !file.path().exists() => {}
+            Ok(()) if !is_at(file.as_file(), file.path()) => {}
             Err(TryLockError::WouldBlock) => {}
             // On a file system without locks nothing is taken for left either.
             Ok(()) | Err(TryLockError::Error(_)) => return Ok(file),
@@ -52,7 +52,9 @@ pub(super) fn new_file_in(folder: &Path) -> io::Result<tempfile::NamedTempFile> 
 /// Removes what processes have left in a folder that were killed; each folder is looked at once.
 fn remove_left(folder: &Path) {
     static SEEN: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
-    if SEEN.lock().unwrap_or_else(PoisonError::into_inner).insert(folder.to_owned()) {
+    let mut seen = SEEN.lock().unwrap_or_else(PoisonError::into_inner);
+    // Under its lock: no other thread makes a file there before all has been looked at.
+    if seen.insert(folder.to_owned()) {
         sweep(folder);
     }
 }
@@ -70,9 +72,7 @@ fn sweep(folder: &Path) {
 
 /// Removes files of processes that were killed.
 pub(super) fn remove_left_files(folder: &Path) {
-    for path in unfinished(folder).filter(|path| is_left(path)) {
-        let _ = fs::remove_file(path);
-    }
+    unfinished(folder).for_each(|path| remove_if_left(&path));
 }
 
 /// Removes folders of processes that were killed. Only for who is alone there.
@@ -97,10 +97,18 @@ fn is_folder(path: &Path) -> bool {
     path.symlink_metadata().is_ok_and(|found| found.is_dir())
 }
 
-/// True for a file whose process is gone.
-fn is_left(path: &Path) -> bool {
-    let is_file = path.symlink_metadata().is_ok_and(|found| found.is_file());
-    is_file && File::options().write(true).open(path).is_ok_and(|file| file.try_lock().is_ok())
+/// Removes a file whose process is gone, while its lock is held: who has made it just now would take the lock, find the
+/// file, and go on with one that is gone a moment later.
+fn remove_if_left(path: &Path) {
+    if !path.symlink_metadata().is_ok_and(|found| found.is_file()) {
+        return;
+    }
+    if let Ok(file) = File::options().write(true).open(path)
+        && file.try_lock().is_ok()
+        && is_at(&file, path)
+    {
+        let _ = fs::remove_file(path);
+    }
 }
 
 #[cfg(test)]
@@ -121,6 +129,34 @@ mod tests {
         let new = new_file_in(folder.path()).expect("a file");
         assert!(!at(".fspid-1.unfinished").exists() && at(".fspid-2.unfinished").exists());
         assert!(others.iter().all(|name| at(name).exists()) && new.path().exists());
+    }
+
+    /// `export` said that its folder does not exist, about once in a hundred times on a machine with much to do.
+    #[test]
+    fn a_file_that_was_made_is_not_taken_for_one_that_was_left_whoever_looks_meanwhile() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let is_over = std::sync::atomic::AtomicBool::new(false);
+        let make = || {
+            let made = (0..500).filter(|_| {
+                let file = new_file_in(folder.path()).expect("a file");
+                std::thread::yield_now();
+                !file.path().exists()
+            });
+            made.count()
+        };
+        let lost = std::thread::scope(|scope| {
+            let look = || {
+                while !is_over.load(std::sync::atomic::Ordering::Relaxed) {
+                    remove_left_files(folder.path());
+                }
+            };
+            (0..2).for_each(|_| drop(scope.spawn(look)));
+            let makers: Vec<_> = (0..3).map(|_| scope.spawn(make)).collect();
+            let lost: usize = makers.into_iter().map(|it| it.join().expect("no panic")).sum();
+            is_over.store(true, std::sync::atomic::Ordering::Relaxed);
+            lost
+        });
+        assert_eq!(lost, 0);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::super::decimal;
 use super::variable::{Holds, Role, Unit, Variable};
-use super::{Fmu, Version, period_s};
+use super::{Fmu, Version};
 use crate::write::Heading;
 
 const HEAD: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
@@ -31,14 +31,14 @@ fn attributes(pairs: &[(&str, String)]) -> String {
 }
 
 fn summary(fmu: &Fmu<'_>) -> String {
-    if fmu.is_system {
+    if fmu.is_system() {
         let Heading { name, digest, .. } = fmu.heading;
         return format!("Fuzzy system {name}, asked once in each step; from the file {digest}");
     }
     format!(
         "Controller {}, sampled every {} s; from the scenario {}",
         fmu.heading.name,
-        decimal(period_s(fmu.program), false),
+        fmu.period(),
         fmu.heading.digest
     )
 }
@@ -60,8 +60,8 @@ pub(super) fn model_description(fmu: &Fmu<'_>, variables: &[Variable], token: &s
         ("variableNamingConvention", "flat".to_owned()),
     ]);
     let mut experiment = vec![("startTime", "0".to_owned())];
-    if !fmu.is_system {
-        experiment.push(("stepSize", decimal(period_s(fmu.program), false)));
+    if !fmu.is_system() {
+        experiment.push(("stepSize", fmu.period()));
     }
     let experiment = attributes(&experiment);
     let body = [
@@ -247,7 +247,7 @@ pub(super) fn build_description(fmu: &Fmu<'_>) -> String {
 pub(super) fn page(fmu: &Fmu<'_>) -> String {
     let name = escaped(fmu.heading.name);
     let lines: Vec<String> = fmu.heading.lines().iter().map(|line| escaped(line)).collect();
-    let told = if fmu.is_system { ASKED.to_owned() } else { sampled(fmu) };
+    let told = if fmu.is_system() { ASKED.to_owned() } else { sampled(fmu) };
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>{name}</title></head>\n<body>\n\
          <h1>{name}</h1>\n<p>{}</p>\n\
@@ -264,7 +264,7 @@ older state begins again.</p>\n";
 
 /// What there is to know of a controller.
 fn sampled(fmu: &Fmu<'_>) -> String {
-    let period = decimal(period_s(fmu.program), false);
+    let period = fmu.period();
     format!(
         "<p>A sample is taken at each multiple of {period} s after the start that lies in a communication step, its end \
          excluded; between samples the command is held. An output shows the last sample before the end of the step.</p>\n\

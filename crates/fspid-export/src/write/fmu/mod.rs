@@ -12,8 +12,9 @@ mod variable;
 use sha2::{Digest, Sha256};
 
 use super::{Heading, c};
-use crate::program::{Program, Value};
+use crate::program::Program;
 use crate::targets::File;
+use crate::write::decimal;
 
 /// The version of the standard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,8 +34,9 @@ pub(crate) struct Fmu<'a> {
     pub(crate) prefix: &'a str,
     pub(crate) heading: &'a Heading<'a>,
     pub(crate) version: Version,
-    /// True for a fuzzy system, which has no period and no parameters and is asked once in each step.
-    pub(crate) is_system: bool,
+    /// Sample period of the scenario, s; `None` for a fuzzy system, which has neither that nor parameters and is asked
+    /// once in each step.
+    pub(crate) period_s: Option<f64>,
 }
 
 /// The parts of an FMU but for its library.
@@ -93,19 +95,21 @@ impl Version {
     }
 }
 
-/// Sample period of a program, s.
-fn period_s(program: &Program) -> f64 {
-    let period = program.configuration.iter().find_map(|member| match member.value {
-        Value::Real(value) if member.name == "dt_s" => Some(value),
-        _ => None,
-    });
-    period.unwrap_or_default()
+impl Fmu<'_> {
+    fn is_system(&self) -> bool {
+        self.period_s.is_none()
+    }
+
+    /// The period in decimal digits, s.
+    fn period(&self) -> String {
+        decimal(self.period_s.unwrap_or_default(), false)
+    }
 }
 
 /// Everything but the library.
 pub(crate) fn parts(fmu: &Fmu<'_>) -> Parts {
-    let Fmu { program, prefix, heading, version, is_system } = fmu;
-    let variables = variable::variables(program, *is_system);
+    let Fmu { program, prefix, heading, version, .. } = fmu;
+    let variables = variable::variables(program, fmu.is_system());
     let code = c(program, prefix, heading);
     let (name, text) = version.source();
     let mut texts = vec![

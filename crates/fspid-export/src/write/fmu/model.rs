@@ -25,9 +25,13 @@ pub(super) fn model(fmu: &Fmu<'_>, variables: &[Variable], token: &str, mark: &[
          #define FMI{number}_FUNCTION_PREFIX {prefix}_\n\n\
          typedef {real} real;\n"
     );
-    match fmu.is_system {
+    match fmu.is_system() {
         true => text.push_str(&system(program, prefix)),
-        false => text.push_str(&controller(prefix)),
+        false => {
+            text.push_str(&controller(prefix));
+            let period = fmu.period();
+            text.push_str(&format!("{CLOCK}#define MODEL_PERIOD_S {period}\n"));
+        }
     }
     text.push_str(MEMORY);
     text.push_str(&format!("static const char model_token[] = \"{token}\";\n"));
@@ -81,6 +85,8 @@ fn system(program: &Program, prefix: &str) -> String {
          {{\n    (void)design;{unused}\n    {prefix}_infer({configuration}{asked}sample, answer);\n}}\n"
     )
 }
+
+const CLOCK: &str = "/* Of the clock, s; equations have it as they were rounded. */\n";
 
 const MEMORY: &str = "
 enum role { role_time, role_input, role_output, role_parameter };

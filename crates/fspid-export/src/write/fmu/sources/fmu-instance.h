@@ -259,7 +259,7 @@ static enum status stepped(struct instance *it, double from_s, double step_s)
     double period_s = step_s;
     double due = (double)now->samples + 1.0;
 #else
-    double period_s = (double)now->configuration.dt_s;
+    double period_s = MODEL_PERIOD_S;
     double due = (end_s - now->start_s) / period_s - ON_IT;
 #endif
     uint64_t count;
