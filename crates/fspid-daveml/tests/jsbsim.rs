@@ -206,6 +206,88 @@ fn a_position_that_the_file_scales_is_made_of_the_angle_of_its_surface() {
     }
 }
 
+/// The aircraft whose drag goes with a position that the file scales to, as `fcs/elevator-pos-norm`.
+fn with_scale(parts: &str) -> String {
+    with("</channel>", &format!("{parts}</channel>")).replace(
+        "<property>fcs/mag-elevator-pos-rad</property>",
+        "<property>fcs/elevator-pos-norm</property>",
+    )
+}
+
+fn scale(ends: [f64; 4], more: &str) -> String {
+    let [down, up, min, max] = ends;
+    format!(
+        "<aerosurface_scale name=\"norm\"><input>fcs/elevator-pos-rad</input>\
+         <domain><min>{down}</min><max>{up}</max></domain><range><min>{min}</min><max>{max}</max></range>{more}\
+         <output>fcs/elevator-pos-norm</output></aerosurface_scale>"
+    )
+}
+
+#[test]
+fn a_scale_whose_ends_are_turned_round_turns_the_sign_of_its_surface() {
+    let flow = flow(200.0, [0.0, 0.0], [0.0; 3], air(0.002, 1100.0));
+    let drag = |text: &str, elevator_rad: f64| {
+        let controls = Controls { elevator_rad, ..Controls::default() };
+        forces(&plain(text)).loads(&flow, &controls).force_n.x
+    };
+    let scale_n = 0.06 * 0.5 * 0.002 * 200.0 * 200.0 * 160.0 * POUND_N;
+    let cases = [
+        ([-0.5, 0.4, -1.0, 1.0], [0.5, -0.4]),
+        ([-0.5, 0.4, 1.0, -1.0], [-0.5, 0.4]),
+        ([0.5, -0.4, -1.0, 1.0], [-0.5, 0.4]),
+        ([-0.5, 0.4, -200.0, 200.0], [100.0, -80.0]),
+    ];
+    for (ends, positions) in cases {
+        let text = with_scale(&scale(ends, "<zero_centered>true</zero_centered>"));
+        for (elevator_rad, position) in [0.2, -0.2].into_iter().zip(positions) {
+            let apart = drag(INVENTED, elevator_rad) - drag(&text, elevator_rad);
+            assert!(
+                (apart / scale_n + 0.2 - position).abs() < 1e-6,
+                "{ends:?} {elevator_rad}: {apart}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_scale_that_does_more_than_is_known_is_refused_by_name() {
+    let usual = [-0.5, 0.4, -1.0, 1.0];
+    let clip = "<clipto><min>-0.5</min><max>0.5</max></clipto>";
+    let gain =
+        "<pure_gain name=\"Elevator Pos Norm\"><input>fcs/elevator-cmd-norm</input></pure_gain>";
+    let twice = scale(usual, "") + &scale([-0.5, 0.4, -2.0, 2.0], "");
+    let centred = |word: &str| scale(usual, &format!("<zero_centered>{word}</zero_centered>"));
+    let wrong: [(String, &str); 7] = [
+        (scale(usual, clip), "has <clipto>"),
+        (scale(usual, "<gain>2</gain>"), "has <gain>"),
+        (twice, "2 components of the flight control system make it"),
+        (scale(usual, "") + gain, "2 components of the flight control system make it"),
+        (centred("0"), "<zero_centered> of its <aerosurface_scale> is 0"),
+        (centred("false"), "<zero_centered> of its <aerosurface_scale> is false"),
+        (scale([0.0, 0.4, -1.0, 1.0], ""), "no numbers that can be used"),
+    ];
+    for (parts, words) in wrong {
+        let told = refused(&with_scale(&parts));
+        assert!(
+            told.contains("`fcs/elevator-pos-norm`") && told.contains(words),
+            "{words}: {told}"
+        );
+    }
+    let held = Assumptions {
+        held: vec![("fcs/elevator-pos-norm".to_owned(), 0.1)],
+        ..Assumptions::default()
+    };
+    assert!(read(&with_scale(&scale(usual, clip)), &held).is_ok());
+}
+
+#[test]
+fn a_difference_of_one_operand_is_that_operand() {
+    let flow = flow(200.0, [0.05, 0.0], [0.0; 3], air(0.002, 1100.0));
+    let drag = |text: &str| forces(&plain(text)).loads(&flow, &Controls::default()).force_n.x;
+    let text = with("<v>0.03</v>", "<difference><v>0.03</v></difference>");
+    assert!((drag(&text) - drag(INVENTED)).abs() < 1e-9);
+}
+
 #[test]
 fn everything_outside_of_the_subset_is_told_at_once_with_its_line() {
     let text = with("fcs/mag-elevator-pos-rad", "propulsion/engine/thrust-lbs")

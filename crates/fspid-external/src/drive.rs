@@ -1,7 +1,7 @@
 //! A live autopilot as what is flown: its attitudes come by MAVLink over UDP, and commands or attitude targets go back.
 //!
 //! Nothing is sent but to the address that is named, or, where none is, to one of this machine from which attitudes came.
-//! Where attitudes stay out the last command is held, and then given back: a flight is not left to a command that nobody
+//! Who tells the first attitude is flown to the end, and nobody else is heard. Where attitudes stay out the last command is held, and then given back: a flight is not left to a command that nobody
 //! computes. What ends a flight of ours, an error or a wish to stop, ends in the same way.
 
 use std::fmt::Write as _;
@@ -24,6 +24,8 @@ const HEARTBEAT: Duration = Duration::from_secs(1);
 const GIVEN_BACK: usize = 3;
 /// How long it is waited for a packet at most before it is looked whether to stop.
 const LOOK: Duration = Duration::from_millis(50);
+/// So many packets at most are taken that wait already: whoever floods a socket holds up no sample.
+const MOST_WAITING: usize = 10_000;
 /// The middle of a channel and half its way, µs.
 const MIDDLE_US: f64 = 1500.0;
 const HALF_US: f64 = 500.0;
@@ -67,7 +69,8 @@ pub struct Drive<'a> {
     pub trim_rad: f64,
     /// The longest time until the first attitude comes, s.
     pub connect_limit_s: f64,
-    /// Age of an attitude from which on the last command is held, s, and from which on the flight ends.
+    /// Age of an attitude from which on the last command is held, s, and from which on the flight ends; so late a sample
+    /// holds and ends as well.
     pub stale_s: [f64; 2],
 }
 
@@ -89,6 +92,15 @@ pub enum Ending {
         /// Time of the flight, s.
         at_s: f64,
         /// The longest time, s.
+        limit_s: f64,
+    },
+    /// Our own samples were late.
+    Late {
+        /// Time of the flight, s.
+        at_s: f64,
+        /// By how much, s.
+        late_s: f64,
+        /// The most, s.
         limit_s: f64,
     },
     /// The controller was lost, in words.
@@ -121,6 +133,10 @@ impl std::fmt::Display for Ending {
             Self::Stale { at_s, limit_s } => write!(
                 f,
                 "at t = {at_s:.3} s no ATTITUDE had come for {limit_s:?} s; the command was held and given back"
+            ),
+            Self::Late { at_s, late_s, limit_s } => write!(
+                f,
+                "the sample of t = {at_s:.3} s was late by {late_s:.3} s, and allowed are {limit_s:?} s; the command was given back"
             ),
             Self::Lost { at_s, words } => {
                 write!(f, "at t = {at_s:.3} s the controller {words}; the command was given back")
@@ -193,7 +209,17 @@ struct Attitude {
     pitch_rad: f64,
     rate_rad_s: f64,
     yaw_rad: f64,
+    /// Time of the sender's clock, ms.
+    time_ms: u32,
     at: Instant,
+}
+
+impl Attitude {
+    /// True for a time of the sender that is after this one. Its clock begins anew after 49 days; one that goes back is that
+    /// of a packet that was overtaken, or of a computer that begins anew, which nobody goes on to fly.
+    fn is_before(&self, time_ms: u32) -> bool {
+        (1..=u32::MAX / 2).contains(&time_ms.wrapping_sub(self.time_ms))
+    }
 }
 
 /// Both ends.
@@ -202,7 +228,9 @@ struct Link {
     listener: Listener,
     encoder: Encoder,
     to: Option<SocketAddr>,
+    /// From where the first attitude came, and of whom it is.
     from: Option<SocketAddr>,
+    peer: Option<Sender>,
     attitude: Option<Attitude>,
     beaten: Option<Instant>,
     interval_us: f64,
@@ -212,7 +240,17 @@ struct Link {
 }
 
 fn value(line: &Line, name: &str) -> Option<f64> {
-    line.iter().find(|(it, _)| *it == name).map(|(_, value)| value.to_radians())
+    line.iter().find(|(it, _)| *it == name).map(|&(_, value)| value)
+}
+
+/// The sender's clock in a line, ms.
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "made of a u32 by the listener"
+)]
+fn time_ms(line: &Line) -> Option<u32> {
+    value(line, "time_s").map(|time_s| (time_s * 1000.0).round() as u32)
 }
 
 impl Link {
@@ -223,6 +261,7 @@ impl Link {
             encoder: Encoder::new(OWN),
             to: drive.to,
             from: None,
+            peer: None,
             attitude: None,
             beaten: None,
             interval_us: drive.period_s * 1e6,
@@ -234,8 +273,7 @@ impl Link {
 
     /// Whom commands are for.
     fn peer(&self) -> Sender {
-        let followed = self.listener.counts().followed;
-        followed.unwrap_or(Sender { system: 1, component: 1 })
+        self.peer.unwrap_or(Sender { system: 1, component: 1 })
     }
 
     /// To whom it may be sent, once that is known.
@@ -264,47 +302,81 @@ impl Link {
         }
     }
 
-    /// Hears what comes until a time.
+    /// Hears what comes until a time, and what waits there already.
     fn hear(&mut self, until: Instant) -> io::Result<()> {
-        let mut bytes = [0; 2048];
         loop {
             self.beat();
             // A limit of zero would be none.
             let left = until.checked_duration_since(Instant::now()).filter(|it| !it.is_zero());
-            let Some(left) = left else { return Ok(()) };
+            let Some(left) = left else { break };
             self.socket.set_read_timeout(Some(left))?;
-            match self.socket.recv_from(&mut bytes) {
-                Ok((length, from)) => self.take(bytes.get(..length).unwrap_or_default(), from),
-                Err(error) => match error.kind() {
-                    ErrorKind::WouldBlock
-                    | ErrorKind::TimedOut
-                    | ErrorKind::Interrupted
-                    | ErrorKind::ConnectionRefused
-                    | ErrorKind::ConnectionReset => {}
-                    _ => return Err(error),
-                },
+            self.receive()?;
+        }
+        // A sample that is late takes the newest of what has come, not the oldest.
+        self.socket.set_nonblocking(true)?;
+        let drained = self.drain();
+        self.socket.set_nonblocking(false)?;
+        drained
+    }
+
+    fn drain(&mut self) -> io::Result<()> {
+        for _ in 0..MOST_WAITING {
+            if !self.receive()? {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes one packet; false where none came.
+    fn receive(&mut self) -> io::Result<bool> {
+        let mut bytes = [0; 2048];
+        match self.socket.recv_from(&mut bytes) {
+            Ok((length, from)) => self.take(bytes.get(..length).unwrap_or_default(), from),
+            Err(error) => match error.kind() {
+                ErrorKind::WouldBlock | ErrorKind::TimedOut => return Ok(false),
+                ErrorKind::Interrupted
+                | ErrorKind::ConnectionRefused
+                | ErrorKind::ConnectionReset => {}
+                _ => return Err(error),
+            },
+        }
+        Ok(true)
+    }
+
+    fn take(&mut self, packet: &[u8], from: SocketAddr) {
+        // Where commands go to one machine, another one's attitudes are not believed; nor are those of anybody else once
+        // one is flown.
+        if self.to.is_some_and(|to| to.ip() != from.ip()) || self.from.is_some_and(|it| it != from)
+        {
+            return;
+        }
+        for heard in self.listener.hear(packet) {
+            match heard {
+                Ok(line) => self.note(&line, from),
+                Err(_) => self.damaged += 1,
             }
         }
     }
 
-    fn take(&mut self, packet: &[u8], from: SocketAddr) {
-        // Where commands go to one machine, another one's attitudes are not believed.
-        if self.to.is_some_and(|to| to.ip() != from.ip()) {
+    /// Remembers an attitude of whom is flown, if it is newer than the last.
+    fn note(&mut self, line: &Line, from: SocketAddr) {
+        let both = value(line, "measurement_deg").zip(value(line, "rate_deg_s"));
+        let sender = self.listener.counts().followed;
+        let (Some((pitch_deg, rate_deg_s)), Some(time_ms)) = (both, time_ms(line)) else { return };
+        if self.peer.is_some() && self.peer != sender {
             return;
         }
-        for heard in self.listener.hear(packet) {
-            let Ok(line) = heard else {
-                self.damaged += 1;
-                continue;
-            };
-            let both = value(&line, "measurement_deg").zip(value(&line, "rate_deg_s"));
-            if let Some((pitch_rad, rate_rad_s)) = both {
-                let yaw_rad = self.listener.yaw_rad().unwrap_or(0.0);
-                self.attitude =
-                    Some(Attitude { pitch_rad, rate_rad_s, yaw_rad, at: Instant::now() });
-                self.from = Some(from);
-                self.heard += 1;
-            }
+        (self.from, self.peer) = (Some(from), sender);
+        self.heard += 1;
+        if self.attitude.is_none_or(|last| last.is_before(time_ms)) {
+            self.attitude = Some(Attitude {
+                pitch_rad: pitch_deg.to_radians(),
+                rate_rad_s: rate_deg_s.to_radians(),
+                yaw_rad: self.listener.yaw_rad().unwrap_or(0.0),
+                time_ms,
+                at: Instant::now(),
+            });
         }
     }
 
@@ -415,11 +487,14 @@ fn fly(
             return Ok(Some(Ending::Stopped { at_s: time_s }));
         }
         let at = begun + Duration::from_secs_f64(time_s);
-        // Late samples hear what is there already, too.
-        link.hear(at.max(Instant::now() + Duration::from_micros(1)))?;
+        link.hear(at)?;
         let late = Instant::now().saturating_duration_since(at);
         driven.late += usize::from(late > LATE);
-        driven.latest_s = driven.latest_s.max(late.as_secs_f64());
+        let late_s = late.as_secs_f64();
+        driven.latest_s = driven.latest_s.max(late_s);
+        if late_s > limit_s {
+            return Ok(Some(Ending::Late { at_s: time_s, late_s, limit_s }));
+        }
         let Some(attitude) = link.attitude else { continue };
         let age_s = attitude.at.elapsed().as_secs_f64();
         if age_s > limit_s {
@@ -427,7 +502,8 @@ fn fly(
         }
         let measurement_rad = attitude.pitch_rad - drive.trim_rad;
         let sample = Sample { setpoint_rad, measurement_rad, rate_rad_s: attitude.rate_rad_s };
-        let is_held = age_s > held_s;
+        // While we were late nobody looked: what has come may be as old as that.
+        let is_held = age_s.max(late_s) > held_s;
         if !is_held {
             match answer(sample) {
                 Ok(answered_rad) => command_rad = answered_rad,

@@ -140,7 +140,9 @@ impl Builder<'_> {
             let sum = self.applied(element, Function::Fold(Two::Add), others, Class::sum)?;
             terms.push(sum);
         }
-        self.applied(element, Function::Minus, terms, Class::sum)
+        // One operand alone is itself: the minus of one operand is the standard's, not JSBSim's.
+        let function = if terms.len() == 1 { Function::Fold(Two::Add) } else { Function::Minus };
+        self.applied(element, function, terms, Class::sum)
     }
 
     fn scaled(&mut self, element: Element<'_, '_>, owner: &str, factor: f64) -> Option<Term> {

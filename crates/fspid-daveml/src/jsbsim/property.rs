@@ -8,6 +8,7 @@ use crate::expression::Expression;
 use crate::finding::{Findings, Origin};
 use crate::jsbsim::class::{Class, Share};
 use crate::jsbsim::metrics::Metrics;
+use crate::jsbsim::surface::Scaled;
 
 /// Where a property comes from.
 #[derive(Clone, Copy)]
@@ -129,8 +130,8 @@ pub(super) struct Builder<'a> {
     pub(super) document: Document,
     pub(super) findings: &'a mut Findings,
     held: &'a [(String, f64)],
-    /// Properties by name that are made by other parts of the file, as formulas.
-    scaled: BTreeMap<String, Expression>,
+    /// Properties by name that are made by other parts of the file, as formulas, or why they are not known.
+    scaled: BTreeMap<String, Scaled>,
     classes: BTreeMap<String, Class>,
     /// Names that were refused, so that each is told once.
     refused: BTreeSet<String>,
@@ -142,7 +143,7 @@ impl<'a> Builder<'a> {
     pub(super) fn new(
         metrics: &Metrics,
         held: &'a [(String, f64)],
-        scaled: BTreeMap<String, Expression>,
+        scaled: BTreeMap<String, Scaled>,
         findings: &'a mut Findings,
     ) -> Self {
         let mut builder = Self {
@@ -242,7 +243,11 @@ impl<'a> Builder<'a> {
                 self.add(variable, Class { rate: Share::Proportional, ..Class::default() });
             }
             (None, None) => match scaled {
-                Some(formula) => self.made((name, "nd"), formula, origin),
+                Some(Ok(formula)) => self.made((name, "nd"), formula, origin),
+                Some(Err(why)) => {
+                    self.findings.problem(origin, name, why, EXPECTED);
+                    self.refuse(name);
+                }
                 None => self.unknown(name, origin),
             },
         }

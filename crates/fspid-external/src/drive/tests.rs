@@ -194,6 +194,96 @@ fn a_wish_to_stop_and_a_lost_controller_give_the_command_back() {
     assert_eq!(pulses(&messages).len(), 3);
 }
 
+/// A socket whose attitudes go to a flight, and that hears what comes back.
+fn speaker(to: SocketAddr) -> UdpSocket {
+    let socket = UdpSocket::bind("127.0.0.1:0").expect("a socket");
+    socket.connect(to).expect("an address");
+    socket.set_read_timeout(Some(Duration::from_millis(200))).expect("allowed");
+    socket
+}
+
+/// What came to a socket so far, as pulses of the channel.
+fn pulses_at(socket: &UdpSocket) -> Vec<u16> {
+    let (mut bytes, mut pulses) = ([0; 512], Vec::new());
+    while let Ok(length) = socket.recv(&mut bytes) {
+        let mut payload = bytes[10..length - 2].to_vec();
+        payload.resize(64, 0);
+        pulses.extend((bytes[7] == 70).then(|| u16::from_le_bytes([payload[2], payload[3]])));
+    }
+    pulses
+}
+
+#[test]
+fn who_speaks_after_the_first_neither_steers_nor_is_steered() {
+    let setpoint_rad = vec![0.2; 100_000];
+    let flight = Drive { stale_s: [0.2, 0.4], ..flight(OVERRIDE, &setpoint_rad) };
+    let socket = UdpSocket::bind("127.0.0.1:0").expect("a socket");
+    let to = socket.local_addr().expect("an address");
+    let (first, other) = (speaker(to), speaker(to));
+    first.send(&attitude(1, 0.125, 0.5)).expect("sent");
+    let mut time_ms = 1;
+    let asked = |sample: Sample<f64>| {
+        time_ms += 5;
+        let _ = other.send(&attitude(time_ms, -0.5, 0.0));
+        law(sample)
+    };
+    let driven = drive(socket, &flight, asked, || false).expect("can be read");
+    assert!(matches!(driven.ending, Some(Ending::Stale { .. })), "{:?}", driven.ending);
+    assert!(driven.rows.iter().all(|row| (row.command_rad - 0.1).abs() < 1e-6));
+    assert_eq!(pulses_at(&other), Vec::<u16>::new());
+    let back = pulses_at(&first);
+    assert!(back.contains(&1600) && back.ends_with(&[0, 0, 0]), "{back:?}");
+}
+
+#[test]
+fn an_autopilot_whose_clock_stands_or_goes_back_is_stale() {
+    let setpoint_rad = vec![0.2; 100_000];
+    let flight = Drive { stale_s: [0.2, 0.4], ..flight(OVERRIDE, &setpoint_rad) };
+    for step_ms in [0, 1] {
+        let socket = UdpSocket::bind("127.0.0.1:0").expect("a socket");
+        let speaker = speaker(socket.local_addr().expect("an address"));
+        speaker.send(&attitude(900_000, 0.125, 0.5)).expect("sent");
+        let looked = Cell::new(0);
+        let is_over = || {
+            looked.set(looked.get() + 1);
+            let _ = speaker.send(&attitude(900_000 - step_ms * looked.get(), -0.5, 0.5));
+            false
+        };
+        let driven = drive(socket, &flight, law, is_over).expect("can be read");
+        assert!(matches!(driven.ending, Some(Ending::Stale { .. })), "{:?}", driven.ending);
+        assert!(driven.held() > 0 && driven.heard > 10, "{}", driven.heard);
+        assert!(driven.rows.iter().all(|row| (row.command_rad - 0.1).abs() < 1e-6));
+    }
+}
+
+#[test]
+fn a_late_sample_takes_the_newest_attitude_and_one_that_is_too_late_ends_the_flight() {
+    let setpoint_rad = vec![0.2; 1000];
+    for (stale_s, ends) in [([60.0, 120.0], false), ([0.1, 0.2], true)] {
+        let flight =
+            Drive { stale_s, setpoint_rad: &setpoint_rad[..3], ..flight(OVERRIDE, &setpoint_rad) };
+        let socket = UdpSocket::bind("127.0.0.1:0").expect("a socket");
+        let speaker = speaker(socket.local_addr().expect("an address"));
+        speaker.send(&attitude(1, 0.125, 0.5)).expect("sent");
+        let mut is_first = true;
+        let stands = |sample: Sample<f64>| {
+            if std::mem::take(&mut is_first) {
+                for time_ms in 2..=50 {
+                    let _ = speaker.send(&attitude(time_ms, 0.01 * time_ms as f32, 0.5));
+                }
+                std::thread::sleep(Duration::from_millis(400));
+            }
+            law(sample)
+        };
+        let driven = drive(socket, &flight, stands, || false).expect("can be read");
+        let is_late = matches!(driven.ending, Some(Ending::Late { .. }));
+        assert_eq!((is_late, driven.rows.len()), (ends, if ends { 1 } else { 3 }), "{driven:?}");
+        let newest = driven.rows.get(1).map(|row| (row.sample.measurement_rad - 0.475).abs());
+        assert!(newest.is_none_or(|apart| apart < 1e-6), "{driven:?}");
+        assert!(pulses_at(&speaker).ends_with(&[0, 0, 0]));
+    }
+}
+
 #[test]
 fn where_nobody_speaks_nothing_is_sent() {
     let setpoint_rad = [0.0];
