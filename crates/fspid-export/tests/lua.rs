@@ -61,7 +61,7 @@ fn the_check_of_a_self_tuner_writes_over_each_number_that_is_remembered() {
     let second_input =
         SecondInput::ModelError(ReferenceModel { bandwidth_rad_s: 2.0, damping: 1.0 });
     let settings = TunerSettings { second_input, ..*paper.tuner().settings() };
-    let (nominal, supervisor) = (paper.tuner().nominal(), paper.tuner().supervisor().clone());
+    let (nominal, supervisor) = (paper.tuner().nominal(), *paper.tuner().supervisor());
     let tuner = SelfTuner::new(nominal, supervisor, settings).expect("a tuner");
     let derivative = Derivative { filter_s: 0.17 };
     let config = PidConfig { derivative, rate_gain_s: 0.2, ..*paper.config() };
