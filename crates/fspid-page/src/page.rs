@@ -238,7 +238,7 @@ impl PageSection {
 pub const SCRIPT: &str = include_str!("template/figures.js");
 
 /// SHA-256 of [`SCRIPT`], the only script that a browser may run in a report.
-pub const SCRIPT_DIGEST: &str = "sha256-VfOkcHAOOed2y/0Hn94kK3dwUBAFmQriIc4BL7IFJbc=";
+pub const SCRIPT_DIGEST: &str = "sha256-Mb7r0ssNZHR3POxqtk+HEgJU+ZbQ9BxxKc/0mQ1ULr4=";
 
 /// What a browser may load and run in a report: its own style and script, and nothing from outside.
 pub(crate) fn policy() -> String {

@@ -73,12 +73,15 @@ pub fn page_of(
     Ok(Source { summary, files: &found.files, folder, scenario }.page()?.render())
 }
 
-/// The scenario as it was given when the campaign was planned: rows keep its text, and the plan beside them its path.
+/// The scenario as it was given when the campaign was planned: rows keep its text, and the plan beside them its path. Of a
+/// path from the root the name alone is told: pages are handed on, and such folders are of one machine.
 fn scenario_beside(path: &Path, summary: &Summary) -> Option<String> {
     let folder = if path.is_dir() { path } else { path.parent()? };
     let plan = Folder::new(folder).plan().ok()?;
-    let is_planned = plan.scenario_digest == summary.head.scenario_digest;
-    (is_planned && !plan.scenario_path.is_empty()).then_some(plan.scenario_path)
+    let given = Path::new(&plan.scenario_path);
+    let shown = if given.is_relative() { given.as_os_str() } else { given.file_name()? };
+    let is_planned = plan.scenario_digest == summary.head.scenario_digest && !shown.is_empty();
+    is_planned.then(|| shown.to_string_lossy().into_owned())
 }
 
 /// What pitch does over time in the first runs, `most` at most, of the merged file at a path or of the parts in a

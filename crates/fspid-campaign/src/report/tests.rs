@@ -109,12 +109,11 @@ fn a_page_answers_first_and_has_the_same_bytes_twice() {
     let named = super::page(&path, &settings).expect("a page");
     assert_says(&named, &["--out &#x27;my runs&#x27;", "<span>'my</span> <span>runs'</span>"]);
     assert_says(&page, &["fspid campaign run SCENARIO.toml "]);
-    // The plan beside the rows knows what the scenario was called.
+    // The plan beside the rows knows what the scenario was called, and its folder is of one machine.
     let scenario = flown.folder.plan().expect("a plan").scenario_path;
-    assert_says(
-        &named,
-        &[&format!("fspid campaign run {scenario} "), &format!("{scenario} of the command")],
-    );
+    assert!(std::path::Path::new(&scenario).is_absolute() && scenario.ends_with("scenario.toml"));
+    assert_says(&named, &["fspid campaign run scenario.toml ", "scenario.toml of the command"]);
+    assert!(!named.contains(scenario.trim_end_matches("/scenario.toml")));
     assert!(!named.contains("SCENARIO.toml"));
 }
 
