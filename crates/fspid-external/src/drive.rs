@@ -1,8 +1,9 @@
 //! A live autopilot as what is flown: its attitudes come by MAVLink over UDP, and commands or attitude targets go back.
 //!
 //! Nothing is sent but to the address that is named, or, where none is, to one of this machine from which attitudes came.
-//! Who tells the first attitude is flown to the end, and nobody else is heard. Where attitudes stay out the last command is held, and then given back: a flight is not left to a command that nobody
-//! computes. What ends a flight of ours, an error or a wish to stop, ends in the same way.
+//! Who tells the first attitude is flown to the end, and nobody else is heard. Where attitudes stay out the last command is
+//! held, and then given back: a flight is not left to a command that nobody computes. What ends a flight of ours, an error
+//! or a wish to stop, ends in the same way.
 
 use std::fmt::Write as _;
 use std::io::{self, ErrorKind};

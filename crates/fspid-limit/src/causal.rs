@@ -11,7 +11,7 @@
 use fspid_sim::Scenario;
 
 use crate::error::LimitError;
-use crate::history::{fly_commands, target};
+use crate::history::{Flown, fly_commands, target};
 use crate::measure::Measure;
 use crate::programme::{Begin, Coming, Programme, Solution, Spending};
 use crate::question::Question;
@@ -32,6 +32,12 @@ pub struct Reached {
     pub measure: f64,
     /// The travel, rad.
     pub travel_rad: f64,
+}
+
+impl From<&Flown> for Reached {
+    fn from(flown: &Flown) -> Self {
+        Self { measure: flown.measure, travel_rad: flown.travel_rad }
+    }
 }
 
 impl Reached {
@@ -126,7 +132,7 @@ impl<'a> Planner<'a> {
             .planned(price)
             .and_then(|planned| fly_commands(self.scenario, &planned, self.asked));
         match planned {
-            Ok(flown) => Ok(Some(Reached { measure: flown.measure, travel_rad: flown.travel_rad })),
+            Ok(flown) => Ok(Some(Reached::from(&flown))),
             // Nothing is reached at this price; others may do.
             Err(LimitError::Solver { .. } | LimitError::TravelTooSmall) => Ok(None),
             Err(other) => Err(other),

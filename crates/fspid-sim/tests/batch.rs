@@ -53,6 +53,11 @@ impl Random {
         low + (high - low) * (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
+    pub(super) fn one_of<T: Copy>(&mut self, values: &[T]) -> T {
+        let place = self.bits() % values.len() as u64;
+        values[usize::try_from(place).expect("a place of the list")]
+    }
+
     pub(super) fn one_in(&mut self, count: u64) -> bool {
         self.bits().is_multiple_of(count)
     }

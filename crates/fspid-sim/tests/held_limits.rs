@@ -13,6 +13,8 @@ use fspid_sim::{
     Surroundings, Timing, Trace, simulate,
 };
 
+use crate::batch::Random;
+
 const STEP: Shape = Shape::Step { at_s: 0.0 };
 
 /// $1 / (s^2 + 0.6 s - 0.4)$: 0.4 of elevator the other way hold 1 of pitch.
@@ -59,60 +61,45 @@ fn is_beyond(scenario: &Scenario) -> bool {
     found.undecided.is_some_and(|it| it.doubt == Doubt::BeyondLimits)
 }
 
-/// A linear congruence, for numbers that are the same each time.
-struct Dice(u64);
-
-impl Dice {
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        self.0 =
-            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        low + (high - low) * ((self.0 >> 11) as f64 / (1_u64 << 53) as f64)
-    }
-
-    fn one_of<T: Copy>(&mut self, values: &[T]) -> T {
-        values[(self.between(0.0, values.len() as f64) as usize).min(values.len() - 1)]
-    }
-}
-
 /// A self-tuner or a PID, with or without an integral, without limits, and what it holds.
-fn drawn(dice: &mut Dice) -> Scenario {
+fn drawn(random: &mut Random) -> Scenario {
     let mut config = PidConfig::sampled_every(0.02);
-    config.setpoint_weights.proportional = dice.one_of(&[1.0, 0.6]);
-    config.feedforward = dice.one_of(&[0.0, 0.3, -0.4]);
-    config.rate_gain_s = dice.one_of(&[0.0, 1.0]);
-    let gains = Gains { kp: dice.between(1.5, 5.0), ki: dice.one_of(&[0.0, 0.6]), kd: 1.5 };
-    let controller = match dice.one_of(&[true, false]) {
+    config.setpoint_weights.proportional = random.one_of(&[1.0, 0.6]);
+    config.feedforward = random.one_of(&[0.0, 0.3, -0.4]);
+    config.rate_gain_s = random.one_of(&[0.0, 1.0]);
+    let gains = Gains { kp: random.between(1.5, 5.0), ki: random.one_of(&[0.0, 0.6]), kd: 1.5 };
+    let controller = match random.one_of(&[true, false]) {
         true => Controller::Fixed(Pid::new(gains, config).expect("allowed")),
-        false => Controller::SelfTuning(self_tuner(dice, gains, config)),
+        false => Controller::SelfTuning(self_tuner(random, gains, config)),
     };
     let mut scenario = scenario(controller);
     scenario.timing = Timing::new(0.02, 120.0).expect("allowed");
-    let denominator = dice.one_of(&[[1.0, 0.6, -0.4], [1.0, 0.6, 0.0], [1.0, 0.0, -0.2]]);
-    let sign = dice.one_of(&[ElevatorSign::NoseUpPositive, ElevatorSign::NoseDownPositive]);
+    let denominator = random.one_of(&[[1.0, 0.6, -0.4], [1.0, 0.6, 0.0], [1.0, 0.0, -0.2]]);
+    let sign = random.one_of(&[ElevatorSign::NoseUpPositive, ElevatorSign::NoseDownPositive]);
     let numerator = match sign {
         ElevatorSign::NoseUpPositive => 1.0,
         ElevatorSign::NoseDownPositive => -1.0,
     };
     scenario.plant = LinearPlant::new(&[numerator], &denominator, sign).expect("proper").into();
-    scenario.setpoint = Profile::new(dice.between(-0.1, 0.1), STEP).expect("allowed");
+    scenario.setpoint = Profile::new(random.between(-0.1, 0.1), STEP).expect("allowed");
     scenario.disturbances = [Entry::Servo, Entry::Elevator, Entry::Measurement]
-        .map(|entry| load(entry, dice.one_of(&[0.0, 0.04, -0.03]), STEP))
+        .map(|entry| load(entry, random.one_of(&[0.0, 0.04, -0.03]), STEP))
         .to_vec();
-    let model = SensorModel { scale_error: dice.one_of(&[0.0, 0.1]), ..SensorModel::default() };
+    let model = SensorModel { scale_error: random.one_of(&[0.0, 0.1]), ..SensorModel::default() };
     scenario.surroundings.pitch_sensor = Some(Sensor::new(model, 1, 0).expect("allowed"));
     scenario
 }
 
-fn self_tuner(dice: &mut Dice, gains: Gains<f64>, config: PidConfig<f64>) -> Fspid<f64> {
+fn self_tuner(random: &mut Random, gains: Gains<f64>, config: PidConfig<f64>) -> Fspid<f64> {
     let settings = TunerSettings {
-        law: dice.one_of(&[Law::Memoryless, Law::Accumulating { leakage_per_s: 2.0 }]),
-        second_input: dice.one_of(&[SecondInput::Change, SecondInput::Rate]),
+        law: random.one_of(&[Law::Memoryless, Law::Accumulating { leakage_per_s: 2.0 }]),
+        second_input: random.one_of(&[SecondInput::Change, SecondInput::Rate]),
         change: Change::Rate,
-        input_scale: InputScale { error_per_rad: dice.between(10.0, 60.0), change_per_rad: 3.0 },
+        input_scale: InputScale { error_per_rad: random.between(10.0, 60.0), change_per_rad: 3.0 },
         output_scale: Gains {
-            kp: dice.between(-0.3, 0.3),
+            kp: random.between(-0.3, 0.3),
             ki: if gains.ki == 0.0 { 0.0 } else { 0.05 },
-            kd: dice.between(-0.1, 0.1),
+            kd: random.between(-0.1, 0.1),
         },
         ..TunerSettings::literal()
     };
@@ -293,10 +280,10 @@ fn limit(scenario: &mut Scenario, most_rad: f64) {
 /// limit a thousandth beyond its command leaves enough, and one a thousandth before it does not.
 #[test]
 fn limits_leave_enough_just_where_the_command_of_a_flight_without_them_comes_to_rest_within() {
-    let mut dice = Dice(20_261_129);
+    let mut random = Random(20_261_129);
     let (mut rested, mut without_integral) = (0, 0);
     for number in 0..400 {
-        let mut scenario = drawn(&mut dice);
+        let mut scenario = drawn(&mut random);
         let trace = simulate(&scenario).expect("flies").traces.remove(0);
         let commands = &trace.command_rad;
         let last_rad = *commands.last().expect("a sample");

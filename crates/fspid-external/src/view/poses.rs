@@ -61,6 +61,15 @@ pub enum TraceError {
         /// What stands there.
         found: String,
     },
+    /// A line that ends before its last column.
+    TooShort {
+        /// Line of the file, from 1.
+        line: usize,
+        /// Its fields.
+        found: usize,
+        /// Columns of the file.
+        needed: usize,
+    },
     /// A time that is not behind the one before.
     NotInOrder {
         /// Line of the file, from 1.
@@ -85,6 +94,10 @@ impl fmt::Display for TraceError {
             Self::NoNumber { line, column, found } => {
                 write!(f, "line {line}, {column}: `{found}` is no number; allowed are finite ones")
             }
+            Self::TooShort { line, found, needed } => write!(
+                f,
+                "line {line}: {found} of {needed} fields; the file is damaged, or is still being written"
+            ),
             Self::NotInOrder { line } => {
                 write!(
                     f,
@@ -247,6 +260,10 @@ pub fn poses(text: &str, controller: Option<&str>, start: &Start) -> Result<Vec<
     let mut way = Way::new(*start);
     for (index, line) in lines.filter(|(_, line)| !line.trim().is_empty()) {
         let fields: Vec<&str> = line.split(',').collect();
+        let (found, needed) = (fields.len(), names.len());
+        if found < needed {
+            return Err(TraceError::TooShort { line: index + 1, found, needed });
+        }
         if fields.get(columns.theta).is_none_or(|field| field.is_empty()) {
             break;
         }

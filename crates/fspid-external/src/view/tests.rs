@@ -154,3 +154,15 @@ fn every_pose_that_fits_into_the_rate_arrives_and_so_does_the_last() {
     }
     assert_eq!(pitches, [0.0, 4.0, 8.0, 10.0]);
 }
+
+#[test]
+fn a_line_that_ends_before_its_last_column_is_no_end_of_the_flight() {
+    let lines: Vec<&str> = TRACE.trim_end().lines().collect();
+    for damaged in ["garbage", "0.1", ",,"] {
+        let mut text = lines.clone();
+        text.insert(2, damaged);
+        let wrong = poses(&text.join("\n"), Some("PID"), &START).expect_err("damaged");
+        assert!(matches!(wrong, TraceError::TooShort { line: 3, .. }), "{damaged}: {wrong}");
+        assert!(wrong.to_string().contains("is damaged, or is still being written"), "{wrong}");
+    }
+}

@@ -31,8 +31,8 @@ impl Verification {
     /// ```
     /// `not_met` counts what could not be evaluated too; such a line has `reason` in place of `value`. A margin without
     /// an end is the text `"infinite"`. `own_flight` stands
-    /// where a ready set was judged on a flight of its own, of the pitch loop without an autopilot. Keys without a value are left out. `failed_flights` are
-    /// flights that fail whatever is required of them, `[{"controller": "…", "failures": ["…"]}]`, with `own_flight` for
+    /// where a ready set was judged on a flight of its own, of the pitch loop without an autopilot. Keys without a value are
+    /// left out. `failed_flights` are flights that fail whatever is required of them, `[{"controller": "…", "failures": ["…"]}]`, with `own_flight` for
     /// those of ready sets; with one `all_met` is false. `at_rest` says of each self-tuning controller its gains at rest, and of each controller a constant load
     /// that it does not remove.
     #[must_use]

@@ -55,7 +55,7 @@ impl<'a> Asker<'a> {
         let own = own.map(|(measure, way)| Reached { measure: *measure, travel_rad: *way });
         // Where doing nothing loses the aircraft, it reaches nothing.
         let nothing = fly_commands(scenario, &[], asked).ok();
-        let nothing = nothing.map(|it| Reached { measure: it.measure, travel_rad: it.travel_rad });
+        let nothing = nothing.as_ref().map(Reached::from);
         Self {
             study,
             question,
@@ -75,10 +75,7 @@ impl<'a> Asker<'a> {
             Err(LimitError::Stopped) => return Err(LimitError::Stopped),
             Err(_) => {}
             Ok(limit) => {
-                let reached = limit.reached.as_ref();
-                self.foreseeing.extend(
-                    reached.map(|it| Reached { measure: it.measure, travel_rad: it.travel_rad }),
-                );
+                self.foreseeing.extend(limit.reached.as_ref().map(Reached::from));
                 if let Some(planner) = &mut self.planner {
                     planner.search(travel_rad)?;
                 }
