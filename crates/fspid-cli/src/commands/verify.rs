@@ -53,7 +53,8 @@ pub(crate) struct Arguments {
 const HELP: &str = "Examples:
   fspid verify pitch.toml --set ctms
   fspid verify pitch.toml --set mil-f-9490d --set mil-f-8785c:level=1,category=C --junit out.xml
-  fspid verify pitch.toml --set ctms --replay again; fspid simulate again/02-ctms-overshoot-FSPID.toml
+  fspid verify pitch.toml --set ctms --replay again
+  fspid simulate again/02-ctms-overshoot-FSPID.toml
   fspid verify pitch.toml --set ctms --interval controller.FSPID.nominal.kp
 Exit codes: 0 all met; 1 one is not met, or a flight failed by itself; 2 the input is wrong; 4 the output could not be written.
 More, with every measure and set: fspid verify --help";
@@ -107,7 +108,8 @@ Examples:
   fspid verify pitch.toml --set ctms
   fspid verify pitch.toml --set mil-f-9490d --set mil-f-8785c:level=1,category=C --junit out.xml
   fspid verify pitch.toml --requirements ours.toml --format json
-  fspid verify pitch.toml --set ctms --replay again; fspid simulate again/02-ctms-overshoot-FSPID.toml
+  fspid verify pitch.toml --set ctms --replay again
+  fspid simulate again/02-ctms-overshoot-FSPID.toml
 Exit codes: 0 all met; 1 one is not met, or a flight failed by itself; 2 the input is wrong; 4 the output could not be written.";
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
