@@ -64,9 +64,9 @@ const HELP: &str = "Methods:
 Examples, after `fspid init --template campaign drawn.toml`:
   fspid campaign rare drawn.toml --fails overshoot_pct
   fspid campaign rare drawn.toml --fails overshoot_pct --method both --most 1e-6
-  fspid campaign rare drawn.toml --fails overshoot_pct --flights 1000000 --out rare  # again: resumes
-Exit codes: 0 answered, and below --most if that is given; 1 not shown to be below --most; 2 the input is
-wrong; 4 the output could not be written.";
+  fspid campaign rare drawn.toml --fails overshoot_pct --flights 1000000 --out rare  # goes on
+Exit codes: 0 answered, and below --most if that is given; 1 not shown to be below --most;
+2 the input is wrong; 4 the output could not be written.";
 
 /// How failures are looked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
