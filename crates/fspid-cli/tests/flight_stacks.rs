@@ -285,6 +285,69 @@ fn a_live_autopilot_is_flown_and_gets_its_channel_back() {
     assert_eq!(flown.lines().count(), 52);
 }
 
+/// SIGTERM ended the program where it stood, and the autopilot's channel stayed overridden.
+#[cfg(unix)]
+#[test]
+fn a_live_autopilot_gets_its_channel_back_from_a_program_that_is_terminated() {
+    for signal in ["-TERM", "-HUP"] {
+        let folder = folder();
+        let words = "drive pitch.toml --controller FSPID --send override --listen 127.0.0.1:0 --stale 10 \
+                     --set loop.duration_s=300";
+        let arguments: Vec<&str> = words.split_whitespace().collect();
+        let mut child = started(&arguments, folder.path());
+        let id = child.id().to_string();
+        let mut errors = BufReader::new(child.stderr.take().expect("a pipe"));
+        let to = address(&mut errors);
+        let socket = UdpSocket::bind("127.0.0.1:0").expect("a socket");
+        socket.set_read_timeout(Some(Duration::from_millis(2))).expect("allowed");
+        let peer = std::thread::spawn(move || {
+            let (mut pulses, mut bytes, mut asked) = (Vec::new(), [0; 512], false);
+            while pulses.iter().filter(|&&pulse| pulse == 0_u16).count() < 3 {
+                let _ = socket.send_to(&ATTITUDE, to);
+                if socket.recv_from(&mut bytes).is_ok() && bytes[7] == 70 {
+                    pulses.push(u16::from_le_bytes([bytes[12], bytes[13]]));
+                }
+                if pulses.len() >= 5 && !asked {
+                    let killed = std::process::Command::new("kill").args([signal, &id]).status();
+                    asked = killed.is_ok_and(|status| status.success());
+                }
+            }
+            pulses
+        });
+        let (code, _, told) = ended(child, errors);
+        assert_eq!(code, 130, "{told}");
+        let pulses = peer.join().expect("content");
+        let flown = &pulses[..pulses.len() - 3];
+        assert!(flown.iter().all(|pulse_us| (1000..=2000).contains(pulse_us)), "{pulses:?}");
+    }
+}
+
+/// Who says `nohup` wants it to go on when the terminal closes.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_command_that_nohup_started_outlives_its_terminal() {
+    let folder = folder();
+    let program = env!("CARGO_BIN_EXE_fspid");
+    let script = format!(
+        "trap '' HUP; exec {program} drive pitch.toml --controller FSPID --send target \
+                          --listen 127.0.0.1:0 --connect-limit 1"
+    );
+    let mut child = std::process::Command::new("sh")
+        .args(["-c", &script])
+        .current_dir(folder.path())
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .expect("a shell");
+    let mut errors = BufReader::new(child.stderr.take().expect("a pipe"));
+    address(&mut errors);
+    let killed =
+        std::process::Command::new("kill").args(["-HUP", &child.id().to_string()]).status();
+    assert!(killed.is_ok_and(|status| status.success()));
+    let (code, _, told) = ended(child, errors);
+    assert_eq!(code, 1, "{told}");
+}
+
 #[test]
 fn where_no_autopilot_is_the_code_is_1_and_says_so() {
     let folder = folder();

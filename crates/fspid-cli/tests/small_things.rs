@@ -90,11 +90,11 @@ fn an_interrupted_command_says_so_as_json_too() {
     let folder = folder.path();
     assert_eq!(code(&fspid(&["init", "--template", "campaign", "a.toml"], folder)), 0);
     let more = "# A line that says nothing.\n".repeat(10_000);
-    for words in [
-        "campaign run a.toml --runs 100000000 --quiet --out c",
-        "campaign search - --measure overshoot_pct",
-        "learn - --teacher mirrored --range 1 --points 3,3 --out l.toml",
-        "simulate -",
+    for (signal, words) in [
+        ("-INT", "campaign run a.toml --runs 100000000 --quiet --out c"),
+        ("-TERM", "campaign search - --measure overshoot_pct"),
+        ("-HUP", "learn - --teacher mirrored --range 1 --points 3,3 --out l.toml"),
+        ("-TERM", "simulate -"),
     ] {
         let arguments: Vec<&str> = words.split(' ').chain(["--format", "json"]).collect();
         let mut child = started(&arguments, folder);
@@ -108,7 +108,7 @@ fn an_interrupted_command_says_so_as_json_too() {
                 }
             }
         }
-        let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+        let killed = Command::new("kill").args([signal, &child.id().to_string()]).status();
         assert!(killed.is_ok_and(|status| status.success()));
         let output = child.wait_with_output().expect("it ends");
         assert_eq!(code(&output), 130, "{words}: {}", text(&output.stderr));

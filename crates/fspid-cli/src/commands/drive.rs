@@ -20,7 +20,7 @@ use fspid_study::output;
 /// ATTITUDE is heard by UDP at --listen; at each sample of the scenario, by the clock, its controller is asked and what
 /// --send says is sent back: to --to, or else to where attitudes come from if that is this machine, and nowhere else.
 /// Set-point and sample period are the scenario's; its aircraft, servo and disturbances are not used. Pitch counts from
-/// --trim. Where attitudes stay out the command is held and then given back; Ctrl-C gives it back, too.
+/// --trim. Where attitudes stay out the command is held and then given back; Ctrl-C and SIGTERM give it back, too.
 ///
 /// The autopilot has to be in a mode that takes what is sent. Nobody here arms it or changes its mode.
 #[derive(Debug, Args)]

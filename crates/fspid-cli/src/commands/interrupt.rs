@@ -1,4 +1,4 @@
-//! Ctrl-C, and memory that has grown too large: long work stops where it can go on, and says how.
+//! Ctrl-C, SIGTERM, and memory that has grown too large: long work stops where it can go on, and says how.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -15,31 +15,59 @@ static ASKED: AtomicBool = AtomicBool::new(false);
 /// What is told where work ends at once; None where it stops by itself once it is asked to.
 static AT_ONCE: Mutex<Option<String>> = Mutex::new(None);
 
-/// Ctrl-C ends the program as every failure does, in words and as JSON, unless a command says otherwise.
+/// Ctrl-C ends the program as every failure does, in words and as JSON, unless a command says otherwise; so do SIGTERM
+/// and a terminal that closes.
 pub(crate) fn listen() {
     ends_with(ENDED.to_owned());
-    hold_back_full_files();
     // Where it cannot be heard, the program ends as any other does.
+    #[cfg(unix)]
+    let _ = signals::listen();
+    #[cfg(windows)]
     let _ = ctrlc::set_handler(heard);
 }
 
-/// A file that grows beyond the limit of the shell is an error where it is written, as a full disk is; the signal that
-/// comes with it would end the program there, with nothing told and its new file left.
-fn hold_back_full_files() {
-    #[cfg(unix)]
-    {
-        use nix::sys::signal::{SigSet, Signal};
-        let mut held = SigSet::empty();
-        held.add(Signal::SIGXFSZ);
-        // Threads that begin later have it from this one.
-        let _ = held.thread_block();
+#[cfg(unix)]
+mod signals {
+    use std::io;
+    use std::sync::Arc;
+
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
+    use signal_hook::flag;
+    use signal_hook::iterator::Signals;
+
+    /// Hears every signal that asks the program to end.
+    ///
+    /// What it starts does not inherit this, as it would signals that are held back.
+    pub(super) fn listen() -> io::Result<()> {
+        // A file that grows beyond the limit of the shell is an error where it is written, as a full disk is; the signal
+        // that comes with it would end the program there, with nothing told and its new file left.
+        flag::register(SIGXFSZ, Arc::default())?;
+        let mut signals = Signals::new([SIGINT, SIGTERM])?;
+        // Who starts it with `nohup` wants it to outlive its terminal.
+        if !ignored(SIGHUP) {
+            signals.handle().add_signal(SIGHUP)?;
+        }
+        std::thread::Builder::new().name("signals".into()).spawn(move || {
+            for _ in signals.forever() {
+                super::heard();
+            }
+        })?;
+        Ok(())
+    }
+
+    /// Whether a signal was ignored by whoever started the program, as Linux tells it; true where nobody tells.
+    fn ignored(signal: i32) -> bool {
+        let told = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+        let mask = told.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+        mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok())
+            .is_none_or(|mask| mask >> (signal - 1) & 1 == 1)
     }
 }
 
 fn heard() {
     // Off the line of the progress.
     note("");
-    stop("; Ctrl-C again ends at once");
+    stop("; once more ends at once");
 }
 
 /// Stops as Ctrl-C does, for a reason that is told.
