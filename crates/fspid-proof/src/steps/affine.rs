@@ -8,6 +8,8 @@
 //! # Source
 //! L. H. de Figueiredo and J. Stolfi, *Affine arithmetic: concepts and applications*, Numerical Algorithms 37 (2004) 147.
 
+use std::cell::RefCell;
+
 use fspid_numeric::scalar::Interval;
 use fspid_numeric::sums::{combine, magnitudes};
 
@@ -26,7 +28,7 @@ pub(super) struct Affine {
 }
 
 /// What moves with each unknown, and the sum of its magnitudes, which is asked for wherever the number stands.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Debug, Default, PartialEq)]
 pub(super) struct Parts {
     /// By each unknown; those that are not there are 0.
     by: Vec<f64>,
@@ -41,6 +43,45 @@ const SMALLEST: f64 = 1e-150;
 
 /// Unknowns that a sample adds, about.
 const NEWER: usize = 16;
+/// So many vectors are kept for the next numbers: those of a sample.
+const SPARE: usize = 64;
+
+thread_local! {
+    /// Vectors of numbers that are gone. Each sample makes new numbers of the size of the old ones: to ask for their memory
+    /// anew, and to clear it, was a quarter of a re-check.
+    static VECTORS: RefCell<Vec<Vec<f64>>> = const { RefCell::new(Vec::new()) };
+}
+
+/// A vector whose numbers are whatever they were.
+fn vector(size: usize) -> Vec<f64> {
+    let spare = VECTORS.try_with(|vectors| vectors.borrow_mut().pop());
+    // Unknowns that are new in this sample are told apart next.
+    let mut vector = spare.ok().flatten().unwrap_or_else(|| Vec::with_capacity(size + NEWER));
+    vector.resize(size, 0.0);
+    vector
+}
+
+impl Drop for Parts {
+    fn drop(&mut self) {
+        let by = std::mem::take(&mut self.by);
+        if by.capacity() > 0 {
+            let _ = VECTORS.try_with(|vectors| {
+                let mut vectors = vectors.borrow_mut();
+                if vectors.len() < SPARE {
+                    vectors.push(by);
+                }
+            });
+        }
+    }
+}
+
+impl Clone for Parts {
+    fn clone(&self) -> Self {
+        let mut by = vector(self.by.len());
+        by.copy_from_slice(&self.by);
+        Self { by, spread: self.spread }
+    }
+}
 
 impl From<Vec<f64>> for Parts {
     fn from(by: Vec<f64>) -> Self {
@@ -70,9 +111,7 @@ impl Parts {
 /// $\sum_i a_i p_i$ of the parts of terms.
 fn combined(terms: &[(f64, &[f64])]) -> Parts {
     let size = terms.iter().map(|(_, parts)| parts.len()).max().unwrap_or(0);
-    // Unknowns that are new in this sample are told apart next.
-    let mut by = Vec::with_capacity(size + NEWER);
-    by.resize(size, 0.0);
+    let mut by = vector(size);
     let spread = raised(combine(terms, &mut by), size);
     Parts { by, spread }
 }
