@@ -1,5 +1,6 @@
 //! Controllers that harm: what one does is charged to it alone, ends with it, and is never called good.
 
+use std::io::Read as _;
 use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
 
@@ -223,6 +224,27 @@ fn a_controller_that_hangs_ends_with_the_program_however_that_ends() {
             std::thread::yield_now();
         }
         end(&mut child, signal);
+        wait_for_the_end_of(&std::fs::read_to_string(folder.path().join("pid")).expect("one"));
+    }
+}
+
+/// It stayed: the process of the controller left in order before it saw that nobody asked any more.
+#[test]
+fn what_a_controller_began_ends_with_the_program_however_that_ends() {
+    let folder = folder("pitch-hold");
+    let begins = "pid_t child = fork(); if (child == 0) for (;;) pause(); note_pid(child)";
+    build(folder.path(), begins, "", "");
+    let long = SHORT.replace("0.3", "3000.0");
+    for signal in ["-INT", "-TERM", "-HUP", "-KILL"] {
+        let _ = std::fs::remove_file(folder.path().join("pid"));
+        let mut child = started(&["simulate", "s.toml", "--set", &long], folder.path());
+        while !folder.path().join("pid").exists() {
+            std::thread::yield_now();
+        }
+        end(&mut child, signal);
+        let mut told = String::new();
+        child.stderr.take().expect("a pipe").read_to_string(&mut told).expect("a text");
+        assert!(!told.contains("this command is for"), "{signal}: {told}");
         wait_for_the_end_of(&std::fs::read_to_string(folder.path().join("pid")).expect("one"));
     }
 }

@@ -289,7 +289,8 @@ fn a_live_autopilot_is_flown_and_gets_its_channel_back() {
 #[cfg(unix)]
 #[test]
 fn a_live_autopilot_gets_its_channel_back_from_a_program_that_is_terminated() {
-    for signal in ["-TERM", "-HUP"] {
+    // A terminal that closes is told twice, by the system and by a shell.
+    for signals in [["-TERM", "-TERM"], ["-HUP", "-HUP"], ["-HUP", "-TERM"], ["-INT", "-INT"]] {
         let folder = folder();
         let words = "drive pitch.toml --controller FSPID --send override --listen 127.0.0.1:0 --stale 10 \
                      --set loop.duration_s=300";
@@ -308,8 +309,10 @@ fn a_live_autopilot_gets_its_channel_back_from_a_program_that_is_terminated() {
                     pulses.push(u16::from_le_bytes([bytes[12], bytes[13]]));
                 }
                 if pulses.len() >= 5 && !asked {
-                    let killed = std::process::Command::new("kill").args([signal, &id]).status();
-                    asked = killed.is_ok_and(|status| status.success());
+                    asked = signals.into_iter().all(|signal| {
+                        let mut kill = std::process::Command::new("kill");
+                        kill.args([signal, &id]).status().is_ok_and(|status| status.success())
+                    });
                 }
             }
             pulses
@@ -320,6 +323,34 @@ fn a_live_autopilot_gets_its_channel_back_from_a_program_that_is_terminated() {
         let flown = &pulses[..pulses.len() - 3];
         assert!(flown.iter().all(|pulse_us| (1000..=2000).contains(pulse_us)), "{pulses:?}");
     }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_program_that_is_terminated_says_so_though_nobody_takes_its_answer() {
+    let folder = folder();
+    let words = "drive pitch.toml --controller FSPID --send override --listen 127.0.0.1:0";
+    let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_fspid"))
+        .args(words.split(' '))
+        .current_dir(folder.path())
+        .stdout(std::fs::File::options().write(true).open("/dev/full").expect("a device"))
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .expect("it starts");
+    let mut errors = BufReader::new(child.stderr.take().expect("a pipe"));
+    let to = address(&mut errors);
+    let socket = UdpSocket::bind("127.0.0.1:0").expect("a socket");
+    let mut bytes = [0; 512];
+    socket.set_read_timeout(Some(Duration::from_millis(2))).expect("allowed");
+    while socket.recv_from(&mut bytes).is_err() {
+        let _ = socket.send_to(&ATTITUDE, to);
+    }
+    let mut kill = std::process::Command::new("kill");
+    assert!(kill.args(["-TERM", &child.id().to_string()]).status().expect("kill").success());
+    let mut told = String::new();
+    errors.read_to_string(&mut told).expect("a text");
+    assert_eq!(child.wait().expect("it ends").code(), Some(130), "{told}");
+    assert!(told.contains("given back"), "{told}");
 }
 
 /// Who says `nohup` wants it to go on when the terminal closes.

@@ -1,6 +1,6 @@
 //! What a process for a controller does: loads it, and answers samples until nobody asks any more.
 
-use std::io;
+use std::io::{self, Write as _};
 use std::os::fd::AsFd as _;
 use std::os::unix::net::UnixStream;
 use std::os::unix::process::parent_id;
@@ -26,9 +26,14 @@ const LOOK_AGAIN: Duration = Duration::from_millis(100);
 /// standard error.
 #[must_use]
 pub fn serve(kind: &str, path: &Path, dt_s: f64, renamed: &[String]) -> ExitCode {
-    let conversed = converse(kind, path, dt_s, renamed);
+    let Ok(mut stream) = asked(kind, path) else { return ExitCode::FAILURE };
+    let conversed = converse(&mut stream, kind, path, dt_s, renamed);
     if kind != LIBRARY {
         remove(path);
+    }
+    // Who ends in order still listens; who was ended looks after nobody.
+    if stream.write_all(&[0]).is_err() {
+        let _ = kill_current_process_group(Signal::KILL);
     }
     // Nobody is left to be told what is wrong with the conversation.
     match conversed {
@@ -37,25 +42,36 @@ pub fn serve(kind: &str, path: &Path, dt_s: f64, renamed: &[String]) -> ExitCode
     }
 }
 
-fn converse(kind: &str, path: &Path, dt_s: f64, renamed: &[String]) -> io::Result<()> {
+/// The way to the one that asks, whose end is this process's from here on.
+fn asked(kind: &str, path: &Path) -> io::Result<UnixStream> {
     let mut stream = UnixStream::from(io::stdin().as_fd().try_clone_to_owned()?);
     let asked_by = u32::from_ne_bytes(read(&mut stream)?);
     let folder = (kind != LIBRARY).then(|| path.to_owned());
     std::thread::Builder::new().spawn(move || end_with(asked_by, folder))?;
+    Ok(stream)
+}
+
+fn converse(
+    stream: &mut UnixStream,
+    kind: &str,
+    path: &Path,
+    dt_s: f64,
+    renamed: &[String],
+) -> io::Result<()> {
     // From here on there is something to load, if there ever is.
-    if read::<1>(&mut stream).is_err() {
+    if read::<1>(stream).is_err() {
         return Ok(());
     }
     let mut controller = match Controller::load(kind, path, dt_s, renamed) {
         Ok(controller) => controller,
-        Err((reason, allowed)) => return Start::Refused { reason, allowed }.write(&mut stream),
+        Err((reason, allowed)) => return Start::Refused { reason, allowed }.write(stream),
     };
-    Start::Ready { period_s: controller.period_s() }.write(&mut stream)?;
+    Start::Ready { period_s: controller.period_s() }.write(stream)?;
     for number in 0.. {
-        let Ok(sample) = read_sample(&mut stream) else { break };
+        let Ok(sample) = read_sample(stream) else { break };
         match controller.step(&sample) {
-            Ok(step) => write_answer(&mut stream, number, &step)?,
-            Err(status) => write_refusal(&mut stream, status)?,
+            Ok(step) => write_answer(stream, number, &step)?,
+            Err(status) => write_refusal(stream, status)?,
         }
     }
     Ok(())

@@ -131,14 +131,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(path) = &arguments.trace {
         output::write(path, driven.csv())?;
     }
-    match arguments.format {
-        Format::Text => print(&text(&driven))?,
-        Format::Json => print(&json_text(&answer_json(&driven)))?,
-    }
+    let printed = match arguments.format {
+        Format::Text => print(&text(&driven)),
+        Format::Json => print(&json_text(&answer_json(&driven))),
+    };
     match &driven.ending {
-        None => Ok(()),
+        None => printed,
+        // A terminal that has closed takes no answer, and whether the command was given back is told all the same.
         Some(ending @ Ending::Stopped { .. }) => Err(Failure::interrupted(ending)),
-        Some(ending) => Err(Failure::not_met(ending)),
+        Some(ending) => printed.and(Err(Failure::not_met(ending))),
     }
 }
 

@@ -1,7 +1,8 @@
 //! Ctrl-C, SIGTERM, and memory that has grown too large: long work stops where it can go on, and says how.
 
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 use fspid_study::shell;
 
@@ -12,6 +13,11 @@ const ENDED: &str = "interrupted";
 
 /// Whether the user wants to stop.
 static ASKED: AtomicBool = AtomicBool::new(false);
+/// Since when, to be told from what is only heard twice.
+static SINCE: Mutex<Option<Instant>> = Mutex::new(None);
+/// A key that is held down, and a terminal that closes, which is told by the system and by a shell, ask once. Who presses again
+/// after this does not want to wait for what is given back or kept.
+const PATIENCE: Duration = Duration::from_millis(500);
 /// What is told where work ends at once; None where it stops by itself once it is asked to.
 static AT_ONCE: Mutex<Option<String>> = Mutex::new(None);
 
@@ -23,7 +29,7 @@ pub(crate) fn listen() {
     #[cfg(unix)]
     let _ = signals::listen();
     #[cfg(windows)]
-    let _ = ctrlc::set_handler(heard);
+    let _ = ctrlc::set_handler(|| heard(true));
 }
 
 #[cfg(unix)]
@@ -35,52 +41,61 @@ mod signals {
     use signal_hook::flag;
     use signal_hook::iterator::Signals;
 
-    /// Hears every signal that asks the program to end.
+    /// Hears every signal that asks the program to end, and that whoever started it does not want to be ignored: `nohup`
+    /// lets it outlive its terminal, and a script what is pressed at the script.
     ///
     /// What it starts does not inherit this, as it would signals that are held back.
     pub(super) fn listen() -> io::Result<()> {
         // A file that grows beyond the limit of the shell is an error where it is written, as a full disk is; the signal
         // that comes with it would end the program there, with nothing told and its new file left.
         flag::register(SIGXFSZ, Arc::default())?;
-        let mut signals = Signals::new([SIGINT, SIGTERM])?;
-        // Who starts it with `nohup` wants it to outlive its terminal.
-        if !ignored(SIGHUP) {
-            signals.handle().add_signal(SIGHUP)?;
-        }
+        let ignored = ignored();
+        let heard = [SIGINT, SIGTERM, SIGHUP].into_iter();
+        let mut signals = Signals::new(heard.filter(|signal| ignored >> (signal - 1) & 1 == 0))?;
         std::thread::Builder::new().name("signals".into()).spawn(move || {
-            for _ in signals.forever() {
-                super::heard();
+            for signal in signals.forever() {
+                super::heard(signal == SIGINT);
             }
         })?;
         Ok(())
     }
 
-    /// Whether a signal was ignored by whoever started the program, as Linux tells it; true where nobody tells.
-    fn ignored(signal: i32) -> bool {
+    /// The signals that whoever started the program ignores, a bit each from 1 on, as Linux tells it. Where nobody tells it
+    /// may have been `nohup`.
+    fn ignored() -> u64 {
         let told = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
         let mask = told.lines().find_map(|line| line.strip_prefix("SigIgn:"));
-        mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok())
-            .is_none_or(|mask| mask >> (signal - 1) & 1 == 1)
+        mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(1 << (SIGHUP - 1))
     }
 }
 
-fn heard() {
+/// Somebody wants the program to end: at the keys, or from elsewhere.
+fn heard(at_the_keys: bool) {
     // Off the line of the progress.
     note("");
-    stop("; once more ends at once");
+    let insists = at_the_keys && asked_for() >= PATIENCE;
+    stop("; once more ends at once", insists);
 }
 
 /// Stops as Ctrl-C does, for a reason that is told.
 pub(crate) fn ask(reason: String) {
     note("");
     exit::stops_for(reason);
-    stop("");
+    stop("", false);
 }
 
-fn stop(hint: &str) {
+/// Since when somebody wants to stop.
+fn asked_for() -> Duration {
+    let mut since = SINCE.lock().unwrap_or_else(PoisonError::into_inner);
+    since.get_or_insert_with(Instant::now).elapsed()
+}
+
+fn stop(hint: &str, insists: bool) {
     let at_once = AT_ONCE.lock().ok().and_then(|told| told.clone());
-    let again = || ASKED.swap(true, Ordering::Relaxed).then(|| ENDED.to_owned());
-    let Some(told) = at_once.or_else(again) else {
+    let Some(told) = at_once.or_else(|| insists.then(|| ENDED.to_owned())) else {
+        if ASKED.swap(true, Ordering::Relaxed) {
+            return;
+        }
         note(format_args!(
             "stopping{}{hint}",
             exit::reason().map_or(String::new(), |it| format!(": {it}"))
@@ -92,7 +107,7 @@ fn stop(hint: &str) {
     std::process::exit(i32::from(failure.code()));
 }
 
-/// Ctrl-C is told to [`asked`] from here on; a second one ends the program at once.
+/// Ctrl-C is told to [`asked`] from here on; another one, half a second later, ends the program at once.
 pub(crate) fn watch() {
     set(None);
 }
