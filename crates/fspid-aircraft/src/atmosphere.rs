@@ -4,11 +4,9 @@
 //! converts what a radar would measure. Not for days hotter than standard, humidity, or above 84.852 km.
 
 use fspid_numeric::straight;
+pub use fspid_numeric::units::STANDARD_GRAVITY_M_S2;
 
 use crate::error::AircraftError;
-
-/// Standard gravity in m/s².
-pub const STANDARD_GRAVITY_M_S2: f64 = 9.80665;
 
 /// Gas constant of dry air in J/(kg K), as ISO 2533 has it: it makes the density at sea level 1.225 kg/m³.
 ///

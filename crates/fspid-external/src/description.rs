@@ -138,9 +138,9 @@ fn period_s(root: &Node<'_, '_>, experiment: Option<Node<'_, '_>>) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use fspid_numeric::units::DEGREE_RAD;
 
-    const DEGREE: f64 = std::f64::consts::PI / 180.0;
+    use super::*;
 
     /// Of FMI 3.0, as another tool might write it.
     const FOREIGN: &str = "<fmiModelDescription fmiVersion='3.0' instantiationToken='t'><CoSimulation modelIdentifier='m'/>\
@@ -173,7 +173,7 @@ mod tests {
             foreign(&["setpoint_deg=theta_ref", "measurement_rad=theta", "command_rad=-delta_e"]);
         let found = found.expect("an FMU");
         let [setpoint, measurement, rate] = found.inputs;
-        assert_eq!(setpoint, Some(Variable { reference: 1, unit: DEGREE }));
+        assert_eq!(setpoint, Some(Variable { reference: 1, unit: DEGREE_RAD }));
         assert_eq!(measurement, Some(Variable { reference: 2, unit: 1.0 }));
         assert_eq!((rate, found.command), (None, Variable { reference: 7, unit: -1.0 }));
     }
@@ -234,7 +234,7 @@ mod tests {
         };
         let found = Description::read(&two("command_deg"), &[]).expect("an FMU");
         assert_eq!((found.version, found.period_s), (Version::Two, 0.5));
-        assert_eq!(found.command, Variable { reference: 3, unit: DEGREE });
+        assert_eq!(found.command, Variable { reference: 3, unit: DEGREE_RAD });
         assert_eq!(found.inputs[2], None);
         let (reason, allowed) = Description::read(&two("something"), &[]).expect_err("no command");
         assert_eq!(reason, "has no variable command_rad");

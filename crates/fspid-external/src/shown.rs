@@ -1,5 +1,6 @@
 //! What JSBSim shows at a sample, in its units, and what is made of it.
 
+use fspid_numeric::units::FOOT_M;
 use fspid_sim::external_plant::PlantSample;
 
 use crate::frame::numbers;
@@ -8,8 +9,6 @@ use crate::frame::numbers;
 const SHOWN: usize = 34;
 /// Bytes of a sample: its number, and the numbers.
 pub(crate) const SAMPLE: usize = 8 + 8 * SHOWN;
-/// Metres in a foot, exactly.
-pub(crate) const FOOT_M: f64 = 0.3048;
 
 /// The number of a sample.
 pub(crate) fn number_of(frame: &[u8; SAMPLE]) -> u64 {

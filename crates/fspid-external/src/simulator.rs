@@ -11,6 +11,7 @@ use std::sync::mpsc::{Receiver, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
+use fspid_numeric::units::FOOT_M;
 use fspid_sim::external_plant::{
     Beginning, Jsbsim, JsbsimLinear, JsbsimSpeed, LongitudinalRates, PlantHost, PlantSample,
     SampleInput, Simulates, StepInput,
@@ -23,7 +24,7 @@ use crate::fmu_flight::FmuFlight;
 use crate::frame::{numbers, read, text};
 use crate::pace::Pace;
 use crate::process::{ProcessHost, ended, ending};
-use crate::shown::{FOOT_M, SAMPLE, number_of, sample_of};
+use crate::shown::{SAMPLE, number_of, sample_of};
 use crate::timed::Timed;
 
 /// The program that flies JSBSim.

@@ -1,12 +1,12 @@
 //! The variables of an FMU: found by their names, and looked at before anything is set.
 
 use fspid_diagnostics::nearest;
+use fspid_numeric::units::DEGREE_RAD;
 use fspid_sim::external::{Place, Renamed};
 use roxmltree::Node;
 
 use crate::library::Refusal;
 
-const DEGREE: f64 = std::f64::consts::PI / 180.0;
 /// Of a unit's factor: how far one that is written with some ten digits lies beside its own.
 const SAME_UNIT: f64 = 1e-6;
 /// Most names that a sentence lists.
@@ -174,12 +174,12 @@ impl<'a, 'b> Variables<'a, 'b> {
         let Some(reference) = found.reference() else {
             return refused("has no value reference".to_owned());
         };
-        let unit = if in_degrees { DEGREE } else { 1.0 };
+        let unit = if in_degrees { DEGREE_RAD } else { 1.0 };
         match self.unit(found, place) {
             Unit::Unsaid => {}
             Unit::Angle(factor) if is_near(factor, unit) => {}
             Unit::Angle(factor) => {
-                let other = [(1.0, false), (DEGREE, true)].into_iter();
+                let other = [(1.0, false), (DEGREE_RAD, true)].into_iter();
                 let other = other.filter(|(unit, _)| is_near(factor, *unit));
                 let keys: Vec<String> = other
                     .map(|(_, in_degrees)| format!("{}={name}", place.key(in_degrees)))
@@ -242,7 +242,7 @@ fn by_name(name: &str, place: Place) -> Unit {
     };
     match bare {
         Some("rad") => Unit::Angle(1.0),
-        Some("deg" | "°" | "degree" | "degrees") => Unit::Angle(DEGREE),
+        Some("deg" | "°" | "degree" | "degrees") => Unit::Angle(DEGREE_RAD),
         _ => Unit::Other,
     }
 }

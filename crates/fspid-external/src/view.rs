@@ -6,6 +6,8 @@ use std::io;
 use std::net::{SocketAddr, UdpSocket};
 use std::time::{Duration, Instant};
 
+use fspid_numeric::units::{FOOT_M, KNOT_M_S};
+
 mod live;
 mod poses;
 
@@ -37,8 +39,6 @@ const FLIGHTGEAR: [(&str, OfPose); 10] = [
     ("/surface-positions/right-aileron-pos-norm", |pose| -pose.aileron_deg / FULL_DEG),
 ];
 
-const FOOT_M: f64 = 0.3048;
-const KNOT_M_S: f64 = 1852.0 / 3600.0;
 /// What is drawn as a full deflection, since a trace does not say how far a surface goes, deg.
 const FULL_DEG: f64 = 20.0;
 

@@ -5,13 +5,12 @@
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
+use fspid_numeric::units::RADIAN_DEG;
 
 use crate::bound::Multipliers;
 use crate::error::LimitError;
 use crate::measure::Measure;
 use crate::question::Question;
-
-const DEG: f64 = 180.0 / std::f64::consts::PI;
 
 /// A question with what is known of its beginning, ready to be solved.
 #[derive(Clone, Debug)]
@@ -83,7 +82,7 @@ impl<'a> Programme<'a> {
             .map(|k| {
                 let enters = question.entering(k);
                 let all = enters.iter().zip(&units);
-                let mut all: Vec<f64> = all.map(|(it, u)| it.midpoint() * DEG / u).collect();
+                let mut all: Vec<f64> = all.map(|(it, u)| it.midpoint() * RADIAN_DEG / u).collect();
                 all.resize(states, 0.0);
                 all
             })
@@ -128,7 +127,7 @@ impl<'a> Programme<'a> {
             .map(|i| {
                 let row = &self.a[i * states..(i + 1) * states];
                 let free: f64 = row.iter().zip(&scaled).map(|(a, x)| a * x).sum();
-                let enters = entering.get(i).copied().unwrap_or(0.0) / DEG;
+                let enters = entering.get(i).copied().unwrap_or(0.0) / RADIAN_DEG;
                 (free + self.by_target[i] * target_rad + enters) * self.units[i]
             })
             .collect()
@@ -188,14 +187,14 @@ impl<'a> Programme<'a> {
                 let mut row = vec![(layout.state(k + 1, i), 1.0)];
                 for (j, &a) in self.a[i * states..(i + 1) * states].iter().enumerate() {
                     if k == layout.first {
-                        bound += a * begin.state[j] * DEG / self.units[j];
+                        bound += a * begin.state[j] * RADIAN_DEG / self.units[j];
                     } else {
                         row.push((layout.state(k, j), -a));
                     }
                 }
                 match layout.target(k) {
                     Some(place) => row.push((place, -self.by_target[i])),
-                    None => bound += self.by_target[i] * begin.before(k) * DEG,
+                    None => bound += self.by_target[i] * begin.before(k) * RADIAN_DEG,
                 }
                 rows.push(&row, bound);
             }
@@ -205,11 +204,11 @@ impl<'a> Programme<'a> {
     /// The deflection or target at a sample as a term, or as a number where it is known, deg.
     fn counted(&self, layout: &Layout, begin: &Begin, k: usize) -> (Option<(usize, f64)>, f64) {
         match self.question.counted.state {
-            Some(place) if k == layout.first => (None, begin.state[place] * DEG),
+            Some(place) if k == layout.first => (None, begin.state[place] * RADIAN_DEG),
             Some(place) => (Some((layout.state(k, place), self.units[place])), 0.0),
             None => match layout.target(k) {
                 Some(place) => (Some((place, 1.0)), 0.0),
-                None => (None, begin.before(k) * DEG),
+                None => (None, begin.before(k) * RADIAN_DEG),
             },
         }
     }
@@ -217,7 +216,7 @@ impl<'a> Programme<'a> {
     fn deflection(&self, layout: &Layout, begin: &Begin, k: usize) -> (Option<(usize, f64)>, f64) {
         let place = self.question.plant.deflection;
         if k == layout.first {
-            return (None, begin.state[place] * DEG);
+            return (None, begin.state[place] * RADIAN_DEG);
         }
         (Some((layout.state(k, place), self.units[place])), 0.0)
     }
@@ -235,7 +234,7 @@ impl<'a> Programme<'a> {
         // Errors: r - θ within ± s; of a quadratic cost they are variables of their own.
         for k in layout.first + 1..=layout.last {
             let theta = (layout.state(k, 0), self.units[0]);
-            let setpoint = coming.setpoint_rad.get(k).copied().unwrap_or(0.0) * DEG;
+            let setpoint = coming.setpoint_rad.get(k).copied().unwrap_or(0.0) * RADIAN_DEG;
             if let Some(size) = layout.error(k) {
                 places.error.push((k, rows.len()));
                 rows.push(&[(theta.0, -theta.1), (size, -1.0)], -setpoint);
@@ -247,16 +246,16 @@ impl<'a> Programme<'a> {
         let mut whole = Vec::new();
         for k in begins..counted.end.min(layout.last + 1) {
             let before = match (k == begins, begin.counted_rad) {
-                (true, Some(counted_rad)) => (None, counted_rad * DEG),
+                (true, Some(counted_rad)) => (None, counted_rad * RADIAN_DEG),
                 (true, None) if counted.from_rest => (None, 0.0),
                 (true, None) => continue,
                 (false, _) => {
                     let (term, value) = self.counted(layout, begin, k - 1);
-                    (term, value + counted.offset(k - 1) * DEG)
+                    (term, value + counted.offset(k - 1) * RADIAN_DEG)
                 }
             };
             let (term, value) = self.counted(layout, begin, k);
-            let known = value + counted.offset(k) * DEG - before.1;
+            let known = value + counted.offset(k) * RADIAN_DEG - before.1;
             let size = layout.travel(k);
             whole.push((size, 1.0));
             let signed = |sign: f64| {
@@ -269,13 +268,13 @@ impl<'a> Programme<'a> {
             rows.push(&signed(-1.0), known);
         }
         if let Spending::Within(travel_rad) = spending {
-            rows.push(&whole, (travel_rad + counted.more_rad) * DEG);
+            rows.push(&whole, (travel_rad + counted.more_rad) * RADIAN_DEG);
         }
         for k in layout.first..=layout.last {
             let Some(place) = layout.target(k) else { continue };
             let (low, high) = question.within(coming.quiet_rad.get(k));
-            rows.push(&[(place, 1.0)], high * DEG);
-            rows.push(&[(place, -1.0)], -low * DEG);
+            rows.push(&[(place, 1.0)], high * RADIAN_DEG);
+            rows.push(&[(place, -1.0)], -low * RADIAN_DEG);
         }
         self.held(rows, layout, begin, &mut places);
         places
@@ -293,13 +292,13 @@ impl<'a> Programme<'a> {
                     let own = next.map(|(place, by)| (place, sign * by));
                     let other = here.map(|(place, by)| (place, -sign * by));
                     let row: Vec<(usize, f64)> = own.into_iter().chain(other).collect();
-                    rows.push(&row, most * DEG + sign * value);
+                    rows.push(&row, most * RADIAN_DEG + sign * value);
                 }
             }
             if let (Some((least, most)), Some((place, by))) = (self.question.stops(), next) {
                 places.stop.push((k + 1, rows.len()));
-                rows.push(&[(place, by)], most * DEG);
-                rows.push(&[(place, -by)], -least * DEG);
+                rows.push(&[(place, by)], most * RADIAN_DEG);
+                rows.push(&[(place, -by)], -least * RADIAN_DEG);
             }
         }
     }
@@ -313,7 +312,7 @@ impl<'a> Programme<'a> {
         let mut cost = vec![0.0; layout.variables];
         if let Spending::At(price) = spending {
             // Squares are of degrees.
-            let price = if self.measure == Measure::Ise { price * DEG } else { price };
+            let price = if self.measure == Measure::Ise { price * RADIAN_DEG } else { price };
             places.travel.iter().for_each(|(k, _)| cost[layout.travel(*k)] = price);
         }
         let dt_s = self.question.dt_s;
@@ -340,12 +339,13 @@ impl<'a> Programme<'a> {
         for k in layout.first..=layout.last {
             let last = target_rad.get(k.wrapping_sub(1)).copied().unwrap_or(0.0);
             target_rad[k] = match layout.target(k) {
-                Some(place) => solved.of(place) / DEG,
+                Some(place) => solved.of(place) / RADIAN_DEG,
                 None if k < layout.last => begin.before(k),
                 None => last,
             };
             let (term, value) = self.deflection(layout, begin, k);
-            deflection_rad[k] = term.map_or(value, |(place, by)| solved.of(place) * by) / DEG;
+            deflection_rad[k] =
+                term.map_or(value, |(place, by)| solved.of(place) * by) / RADIAN_DEG;
         }
         let value = self.measure.of(&errors, self.question.dt_s);
         let multipliers = self.multipliers(solved, &errors);
@@ -356,7 +356,8 @@ impl<'a> Programme<'a> {
     fn errors(&self, solved: &Solved<'_>) -> Vec<f64> {
         let Solved { layout, begin, .. } = solved;
         let setpoint = |k: usize| solved.setpoint_rad.get(k).copied().unwrap_or(0.0);
-        let error_at = |k: usize| setpoint(k) - solved.of(layout.state(k, 0)) * self.units[0] / DEG;
+        let error_at =
+            |k: usize| setpoint(k) - solved.of(layout.state(k, 0)) * self.units[0] / RADIAN_DEG;
         let later = (layout.first + 1..=layout.last).map(error_at);
         std::iter::once(setpoint(layout.first) - begin.state[0]).chain(later).collect()
     }
@@ -377,7 +378,7 @@ impl<'a> Programme<'a> {
         let per_rad = |pairs: &[(usize, usize)]| {
             let values = solved.spread(pairs, rows);
             match self.measure {
-                Measure::Ise => values.into_iter().map(|it| it / DEG).collect(),
+                Measure::Ise => values.into_iter().map(|it| it / RADIAN_DEG).collect(),
                 Measure::Iae | Measure::Peak => values,
             }
         };

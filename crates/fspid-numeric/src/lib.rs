@@ -9,6 +9,7 @@
 //! - [`quadrature`]: integrals with bounds that are proved.
 //! - [`straight`]: elementary functions that a loop over lanes makes vectors of.
 //! - [`sums`]: weighted sums of long vectors.
+//! - [`units`]: what a foot, a pound, a knot and a degree are.
 //!
 //! | feature | adds | needs |
 //! | --- | --- | --- |
@@ -34,6 +35,7 @@ mod real;
 pub mod scalar;
 pub mod straight;
 pub mod sums;
+pub mod units;
 #[cfg(feature = "simd")]
 mod vector;
 

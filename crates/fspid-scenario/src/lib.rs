@@ -28,4 +28,5 @@ mod setting_path;
 pub mod supervisor;
 mod system_text;
 pub mod tuning;
-pub mod units;
+
+pub use fspid_numeric::units;

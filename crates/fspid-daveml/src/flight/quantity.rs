@@ -1,17 +1,10 @@
 //! What a flight knows, by the names of the standard, and units.
 
-use core::f64::consts::PI;
-
 use fspid_aircraft::{Controls, Flow, Quantity as Limit};
+use fspid_numeric::units::{DEGREE_RAD, FOOT_M, KNOT_M_S, POUND_FORCE_N, SLUG_KG};
 
 use crate::flight::error::FlightError;
 use crate::model::Port;
-
-/// One foot in m, exactly.
-const FOOT_M: f64 = 0.3048;
-
-/// One pound-force in N: 0.45359237 kg under 9.80665 m/s², exactly.
-const POUND_N: f64 = 4.448_221_615_260_5;
 
 /// A unit in the spelling of the standard, and what it is in SI.
 pub(super) type Unit = (&'static str, f64);
@@ -19,16 +12,16 @@ pub(super) type Unit = (&'static str, f64);
 /// Units of one kind, the SI unit first.
 pub(super) type Units = &'static [Unit];
 
-pub(super) const ANGLE: Units = &[("rad", 1.0), ("deg", PI / 180.0)];
-pub(super) const RATE: Units = &[("rad_s", 1.0), ("deg_s", PI / 180.0)];
-pub(super) const SPEED: Units = &[("m_s", 1.0), ("ft_s", FOOT_M), ("nmi_h", 1852.0 / 3600.0)];
+pub(super) const ANGLE: Units = &[("rad", 1.0), ("deg", DEGREE_RAD)];
+pub(super) const RATE: Units = &[("rad_s", 1.0), ("deg_s", DEGREE_RAD)];
+pub(super) const SPEED: Units = &[("m_s", 1.0), ("ft_s", FOOT_M), ("nmi_h", KNOT_M_S)];
 pub(super) const LENGTH: Units = &[("m", 1.0), ("ft", FOOT_M)];
 const AREA: Units = &[("m2", 1.0), ("ft2", FOOT_M * FOOT_M)];
 pub(super) const PART: Units = &[("nd", 1.0), ("frac", 1.0), ("pct", 0.01)];
-const FORCE: Units = &[("N", 1.0), ("lbf", POUND_N)];
-const MOMENT: Units = &[("Nm", 1.0), ("ftlbf", FOOT_M * POUND_N)];
-const MASS: Units = &[("kg", 1.0), ("slug", POUND_N / FOOT_M)];
-const INERTIA: Units = &[("kgm2", 1.0), ("slugft2", FOOT_M * POUND_N)];
+const FORCE: Units = &[("N", 1.0), ("lbf", POUND_FORCE_N)];
+const MOMENT: Units = &[("Nm", 1.0), ("ftlbf", FOOT_M * POUND_FORCE_N)];
+const MASS: Units = &[("kg", 1.0), ("slug", SLUG_KG)];
+const INERTIA: Units = &[("kgm2", 1.0), ("slugft2", FOOT_M * POUND_FORCE_N)];
 
 /// Units of an output by the beginning of its name.
 const OUTPUTS: &[(&str, Units)] = &[

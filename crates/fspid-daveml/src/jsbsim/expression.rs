@@ -2,6 +2,8 @@
 
 use core::f64::consts::PI;
 
+use fspid_numeric::units::{DEGREE_RAD, RADIAN_DEG};
+
 use crate::expression::{Expression, Function, One, Two};
 use crate::jsbsim::class::{Class, Refusal, Share};
 use crate::jsbsim::property::{Builder, Term};
@@ -66,8 +68,8 @@ impl Builder<'_> {
                 };
                 self.applied(element, Function::Two(Two::Divide), terms, class)
             }
-            "toradians" => self.scaled(element, owner, PI / 180.0),
-            "todegrees" => self.scaled(element, owner, 180.0 / PI),
+            "toradians" => self.scaled(element, owner, DEGREE_RAD),
+            "todegrees" => self.scaled(element, owner, RADIAN_DEG),
             name => match FUNCTIONS.iter().find(|(known, _)| *known == name) {
                 Some(&(_, function)) => {
                     let terms = self.operands(element, owner)?;

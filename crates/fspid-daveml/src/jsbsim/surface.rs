@@ -2,6 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use fspid_numeric::units::RADIAN_DEG;
+
 use crate::data::parse;
 use crate::expression::Expression;
 use crate::finding::{Findings, Origin};
@@ -31,7 +33,7 @@ pub(super) fn stops(root: Element<'_, '_>, findings: &mut Findings) -> Stops {
     let mut stop = |surface: &str| {
         let rad = format!("fcs/{surface}-pos-rad");
         let deg = format!("fcs/{surface}-pos-deg");
-        let scale = [(rad.as_str(), 180.0 / core::f64::consts::PI), (deg.as_str(), 1.0)];
+        let scale = [(rad.as_str(), RADIAN_DEG), (deg.as_str(), 1.0)];
         let found = scale.iter().find_map(|&(name, unit)| {
             parts(root).find_map(|part| makes(part, name).then(|| range(part, "range", unit))?)
         });

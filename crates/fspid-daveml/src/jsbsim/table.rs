@@ -196,7 +196,7 @@ impl Builder<'_> {
 
 /// The angle of a flight for one in degrees, so that the ends of its tables bound the flight, and what one degree is.
 fn in_radians(variable: String) -> (String, f64) {
-    const RADIANS: f64 = core::f64::consts::PI / 180.0;
+    use fspid_numeric::units::DEGREE_RAD as RADIANS;
     match variable.as_str() {
         "aero/alpha-deg" => (ALPHA.to_owned(), RADIANS),
         "aero/beta-deg" => (BETA.to_owned(), RADIANS),

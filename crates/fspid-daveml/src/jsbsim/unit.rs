@@ -1,16 +1,18 @@
 //! Units of JSBSim's files, turned into feet, pounds and slugs.
 
+use fspid_numeric::units::{DEGREE_RAD, FOOT_M, POUND_KG, STANDARD_GRAVITY_M_S2};
+
 use crate::finding::Findings;
 use crate::xml::element::Element;
 
 /// Feet in one metre.
-const METRE_FT: f64 = 1.0 / 0.3048;
+const METRE_FT: f64 = 1.0 / FOOT_M;
 
 /// Pounds in one kilogram, as of mass and, under standard gravity, of weight.
-const KILOGRAM_LB: f64 = 1.0 / 0.453_592_37;
+const KILOGRAM_LB: f64 = 1.0 / POUND_KG;
 
-/// Standard gravity, 9.80665 m/s², in ft/s²: pounds of weight in one slug.
-pub(super) const SLUG_LB: f64 = 9.806_65 / 0.3048;
+/// Standard gravity in ft/s²: pounds of weight in one slug.
+pub(super) const SLUG_LB: f64 = STANDARD_GRAVITY_M_S2 / FOOT_M;
 
 /// Units of one kind; the first is meant where none is said.
 pub(super) type Units = &'static [(&'static str, f64)];
@@ -19,7 +21,7 @@ pub(super) const AREA: Units = &[("FT2", 1.0), ("M2", METRE_FT * METRE_FT)];
 pub(super) const LENGTH: Units = &[("FT", 1.0), ("M", METRE_FT), ("IN", 1.0 / 12.0)];
 /// Places, which are in inches where nothing is said.
 pub(super) const PLACE: Units = &[("IN", 1.0 / 12.0), ("FT", 1.0), ("M", METRE_FT)];
-pub(super) const ANGLE: Units = &[("RAD", 1.0), ("DEG", core::f64::consts::PI / 180.0)];
+pub(super) const ANGLE: Units = &[("RAD", 1.0), ("DEG", DEGREE_RAD)];
 pub(super) const WEIGHT: Units = &[("LBS", 1.0), ("KG", KILOGRAM_LB), ("SLUG", SLUG_LB)];
 /// One kg m² is that many pounds of mass times feet squared, 1/32.174 of them slug ft².
 pub(super) const INERTIA: Units =

@@ -4,6 +4,7 @@ use fspid_core::equations::{Free, Memory, PidEquations, SecondInputKind, TunerEq
 use fspid_core::{Faults, Gains, InputSets, ModelState, Sample, SetCentres, largest_remembered};
 use fspid_numeric::Real;
 use fspid_numeric::scalar::Scalar as _;
+use fspid_numeric::units::{DEGREE_RAD, RADIAN_DEG};
 
 mod around;
 mod track;
@@ -36,7 +37,7 @@ impl Angles {
     pub(crate) const fn radians(self) -> Option<f64> {
         match self {
             Self::Radians => None,
-            Self::Degrees => Some(core::f64::consts::PI / 180.0),
+            Self::Degrees => Some(DEGREE_RAD),
         }
     }
 
@@ -44,7 +45,7 @@ impl Angles {
     pub(crate) const fn per_radian(self) -> Option<f64> {
         match self {
             Self::Radians => None,
-            Self::Degrees => Some(180.0 / core::f64::consts::PI),
+            Self::Degrees => Some(RADIAN_DEG),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Units in which aircraft are asked about and answered for.
 
-use crate::units::{FOOT_M, POUND_FORCE_N, SLUG_KG};
+use crate::units::{DEGREE_RAD, FOOT_M, POUND_FORCE_N, SLUG_KG};
 
 /// Metres in a nautical mile, by definition.
 const NAUTICAL_MILE_M: f64 = 1852.0;
@@ -79,16 +79,14 @@ const fn unit(symbol: &'static str, key: &'static str, size: f64) -> Unit {
     Unit { symbol, key, size }
 }
 
-const DEGREE: f64 = std::f64::consts::PI / 180.0;
-
 impl Units {
     /// The unit of a kind of quantity.
     #[must_use]
     pub const fn of(self, kind: Kind) -> Unit {
         match (kind, self) {
             (Kind::Plain, _) => unit("", "", 1.0),
-            (Kind::Angle, _) => unit("deg", "deg", DEGREE),
-            (Kind::AngularAcceleration, _) => unit("deg/s²", "deg_s2", DEGREE),
+            (Kind::Angle, _) => unit("deg", "deg", DEGREE_RAD),
+            (Kind::AngularAcceleration, _) => unit("deg/s²", "deg_s2", DEGREE_RAD),
             (Kind::Frequency, _) => unit("rad/s", "rad_s", 1.0),
             (Kind::Rate, _) => unit("1/s", "per_s", 1.0),
             (Kind::SquaredRate, _) => unit("1/s²", "per_s2", 1.0),
@@ -179,7 +177,7 @@ pub const INERTIAS: [Unit; 2] =
     [unit("kg m2", "kg_m2", 1.0), unit("slug ft2", "slug_ft2", SLUG_KG * FOOT_M * FOOT_M)];
 
 /// Units that an angle may be given in.
-pub const ANGLES: [Unit; 2] = [unit("deg", "deg", DEGREE), unit("rad", "rad", 1.0)];
+pub const ANGLES: [Unit; 2] = [unit("deg", "deg", DEGREE_RAD), unit("rad", "rad", 1.0)];
 
 /// Units that a time may be given in.
 pub const TIMES: [Unit; 2] = [unit("ms", "ms", 1e-3), unit("s", "s", 1.0)];

@@ -1,9 +1,9 @@
 //! Actuators of aircraft and books, by name.
 
+use fspid_numeric::units::DEGREE_RAD;
+
 use super::{Actuator, Lag};
 use crate::error::SimError;
-
-const DEG: f64 = std::f64::consts::PI / 180.0;
 
 /// A named actuator. Travel is given nose up positive: trailing edge up before trailing edge down.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -99,10 +99,10 @@ impl Preset {
         let actuator = Actuator::new(self.lag()?).with_play(self.play_rad)?;
         let mut actuator = actuator.with_bias(self.bias_rad)?;
         if let Some((least, most)) = self.travel_deg {
-            actuator = actuator.with_travel(least * DEG, most * DEG)?;
+            actuator = actuator.with_travel(least * DEGREE_RAD, most * DEGREE_RAD)?;
         }
         if let Some(limit) = self.rate_deg_s {
-            actuator = actuator.with_rate_limit(limit * DEG)?;
+            actuator = actuator.with_rate_limit(limit * DEGREE_RAD)?;
         }
         Ok(actuator)
     }

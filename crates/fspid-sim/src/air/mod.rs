@@ -31,8 +31,3 @@ pub use wind::{
     AirMotion, AirPlace, Along, Corners, FullCycle, LogShear, Microburst, RampHold, Steady,
     TableRow, Wind, WindField, WindKind, WindTable, design_gust_m_s, reference_gust_m_s, sum_at,
 };
-
-/// Metres in a foot, exactly.
-pub const FOOT_M: f64 = 0.3048;
-/// Metres a second in a knot, exactly a nautical mile an hour.
-pub const KNOT_M_S: f64 = 1852.0 / 3600.0;

@@ -1,8 +1,8 @@
 //! Attitude sensors of aircraft, by name.
 
-use super::SensorModel;
+use fspid_numeric::units::DEGREE_RAD;
 
-const DEG: f64 = std::f64::consts::PI / 180.0;
+use super::SensorModel;
 
 /// A named attitude sensor: what it does to pitch, rad, and to pitch rate, rad/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,30 +37,35 @@ impl SensorPreset {
             name: "irs",
             source: "resolution and update rate: ARINC 429, label 324 and rate words; the rest: A27",
             pitch: SensorModel {
-                bias: 0.05 * DEG,
-                resolution: 0.01 * DEG,
+                bias: 0.05 * DEGREE_RAD,
+                resolution: 0.01 * DEGREE_RAD,
                 period_s: 0.025,
                 delay_s: 0.02,
                 ..NOTHING
             },
-            rate: SensorModel { resolution: 0.015 * DEG, period_s: 0.01, delay_s: 0.01, ..NOTHING },
+            rate: SensorModel {
+                resolution: 0.015 * DEGREE_RAD,
+                period_s: 0.01,
+                delay_s: 0.01,
+                ..NOTHING
+            },
         },
         Self {
             name: "ahrs",
             source: "A28",
             pitch: SensorModel {
-                bias: 0.35 * DEG,
-                drift: 0.5 * DEG,
+                bias: 0.35 * DEGREE_RAD,
+                drift: 0.5 * DEGREE_RAD,
                 drift_time_s: 60.0,
-                resolution: 0.01 * DEG,
+                resolution: 0.01 * DEGREE_RAD,
                 period_s: 0.02,
                 delay_s: 0.02,
                 ..NOTHING
             },
             rate: SensorModel {
-                noise_density: 0.004 * DEG,
-                bias: 0.02 * DEG,
-                resolution: 0.015 * DEG,
+                noise_density: 0.004 * DEGREE_RAD,
+                bias: 0.02 * DEGREE_RAD,
+                resolution: 0.015 * DEGREE_RAD,
                 period_s: 0.02,
                 delay_s: 0.01,
                 ..NOTHING
@@ -70,16 +75,16 @@ impl SensorPreset {
             name: "mems",
             source: "A29",
             pitch: SensorModel {
-                bias: 0.5 * DEG,
-                drift: 1.0 * DEG,
+                bias: 0.5 * DEGREE_RAD,
+                drift: 1.0 * DEGREE_RAD,
                 drift_time_s: 30.0,
                 period_s: 0.01,
                 delay_s: 0.01,
                 ..NOTHING
             },
             rate: SensorModel {
-                noise_density: 0.007 * DEG,
-                bias: 0.5 * DEG,
+                noise_density: 0.007 * DEGREE_RAD,
+                bias: 0.5 * DEGREE_RAD,
                 scale_error: 0.01,
                 period_s: 0.005,
                 delay_s: 0.005,
@@ -89,7 +94,11 @@ impl SensorPreset {
         Self {
             name: "vertical-gyro",
             source: "A30",
-            pitch: SensorModel { bias: 0.5 * DEG, erection_rad_s: 0.05 * DEG, ..NOTHING },
+            pitch: SensorModel {
+                bias: 0.5 * DEGREE_RAD,
+                erection_rad_s: 0.05 * DEGREE_RAD,
+                ..NOTHING
+            },
             rate: NOTHING,
         },
     ];

@@ -1,6 +1,7 @@
 //! What may be asked of a rule.
 
 use fspid_core::PidConfig;
+use fspid_numeric::units::DEGREE_RAD;
 
 use super::{Form, Rule, RuleError};
 
@@ -101,7 +102,6 @@ pub struct Options {
 }
 
 /// One degree.
-const DEGREE_RAD: f64 = core::f64::consts::PI / 180.0;
 
 impl Default for Options {
     /// A derivative filter of Td/10 (2 to 20 are usual, Åström and Hägglund), poles damped like a Butterworth pair, a

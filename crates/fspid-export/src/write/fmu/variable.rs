@@ -1,9 +1,11 @@
 //! What an importer sees of a controller: its variables with units, ranges and places in memory.
 
+use fspid_core::fuzzy::Label;
+use fspid_numeric::units::{DEGREE_RAD, RADIAN_DEG};
+
 use super::parameter;
 use crate::compose::STRENGTHS;
 use crate::program::{Member, Part, Program, Value};
-use fspid_core::fuzzy::Label;
 
 /// What a variable is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,18 +53,21 @@ pub(super) struct Unit {
     pub(super) shown: Option<(&'static str, f64)>,
 }
 
-const DEGREE: f64 = core::f64::consts::PI / 180.0;
-const PER_RADIAN: f64 = 180.0 / core::f64::consts::PI;
-
 impl Unit {
     pub(super) const ALL: [Self; 8] = [
-        Self { name: "rad", rad: 1, s: 0, factor: 1.0, shown: Some(("deg", PER_RADIAN)) },
-        Self { name: "rad/s", rad: 1, s: -1, factor: 1.0, shown: Some(("deg/s", PER_RADIAN)) },
-        Self { name: "deg", rad: 1, s: 0, factor: DEGREE, shown: Some(("rad", DEGREE)) },
-        Self { name: "deg/s", rad: 1, s: -1, factor: DEGREE, shown: Some(("rad/s", DEGREE)) },
+        Self { name: "rad", rad: 1, s: 0, factor: 1.0, shown: Some(("deg", RADIAN_DEG)) },
+        Self { name: "rad/s", rad: 1, s: -1, factor: 1.0, shown: Some(("deg/s", RADIAN_DEG)) },
+        Self { name: "deg", rad: 1, s: 0, factor: DEGREE_RAD, shown: Some(("rad", DEGREE_RAD)) },
+        Self {
+            name: "deg/s",
+            rad: 1,
+            s: -1,
+            factor: DEGREE_RAD,
+            shown: Some(("rad/s", DEGREE_RAD)),
+        },
         Self { name: "s", rad: 0, s: 1, factor: 1.0, shown: None },
         Self { name: "1/s", rad: 0, s: -1, factor: 1.0, shown: None },
-        Self { name: "1/rad", rad: -1, s: 0, factor: 1.0, shown: Some(("1/deg", DEGREE)) },
+        Self { name: "1/rad", rad: -1, s: 0, factor: 1.0, shown: Some(("1/deg", DEGREE_RAD)) },
         Self { name: "1", rad: 0, s: 0, factor: 1.0, shown: None },
     ];
 

@@ -1,7 +1,7 @@
 //! How strong turbulence is.
 
-use super::super::{FOOT_M, KNOT_M_S};
 use crate::error::{SimError, not_negative};
+use fspid_numeric::units::{FOOT_M, KNOT_M_S};
 
 /// How rough the air is aloft, by the severity index of the exceedance chart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

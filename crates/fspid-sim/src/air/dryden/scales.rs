@@ -1,7 +1,7 @@
 //! How long and how strong turbulence is, by height.
 
-use super::super::FOOT_M;
 use super::intensity::Intensity;
+use fspid_numeric::units::FOOT_M;
 
 /// Which document scale lengths are stated by.
 ///

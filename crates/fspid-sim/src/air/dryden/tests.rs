@@ -1,5 +1,5 @@
 use super::*;
-use crate::air::FOOT_M;
+use fspid_numeric::units::FOOT_M;
 
 const FEET: f64 = FOOT_M;
 

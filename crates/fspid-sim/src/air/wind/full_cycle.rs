@@ -2,10 +2,10 @@
 
 use fspid_fuzzy::membership::Param;
 
-use super::super::FOOT_M;
 use super::one_minus_cosine::{frozen, one_minus_cosine};
 use super::{AirMotion, AirPlace, Corners, WindField, first, number, size};
 use crate::error::{SimError, finite, positive};
+use fspid_numeric::units::FOOT_M;
 
 /// A gust that rises over its gradient distance and falls back over another.
 ///

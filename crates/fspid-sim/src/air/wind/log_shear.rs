@@ -2,8 +2,8 @@
 
 use fspid_fuzzy::membership::Param;
 
-use super::super::FOOT_M;
 use super::{AirMotion, AirPlace, Corners, WindField, first, number, size};
+use fspid_numeric::units::FOOT_M;
 
 /// The logarithmic wind profile of the boundary layer.
 ///

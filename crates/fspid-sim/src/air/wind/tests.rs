@@ -1,6 +1,6 @@
 use super::microburst::PEAK_HEIGHT;
 use super::*;
-use crate::air::{FOOT_M, KNOT_M_S};
+use fspid_numeric::units::{FOOT_M, KNOT_M_S};
 
 fn close(found: f64, expected: f64, tolerance: f64) {
     assert!((found - expected).abs() <= tolerance, "{found} is not {expected}");
