@@ -18,6 +18,7 @@
 mod adapt;
 mod check;
 mod cursor;
+mod difference;
 pub mod fcl;
 pub mod fis;
 mod fit;

@@ -436,7 +436,11 @@ fn a_gaussian_is_refused_in_the_standard_s_dialect_unless_a_loss_is_allowed() {
     let written = fcl::write(&paper(Sampling::Exact), Dialect::Iec, LOSSY).unwrap();
     let told: Vec<_> = written.notes.iter().map(ToString::to_string).collect();
     assert!(told[0].contains("points with grades within 9.0e-4 of the curve"), "{}", told[0]);
-    assert!(told.last().unwrap().starts_with("largest change of an answer found at 200 points"));
+    assert!(
+        told.last()
+            .unwrap()
+            .starts_with("largest change of an answer found at 500 points and above the worst")
+    );
 }
 
 #[test]
@@ -471,7 +475,10 @@ fn names_that_are_none_are_replaced_if_a_loss_is_allowed() {
     assert_eq!(again.inputs[0].name, "quality_of_service");
     assert_eq!(again.inputs[0].terms[0].name, "n_then");
     let told = written.notes.last().unwrap().to_string();
-    assert_eq!(told, "largest change of an answer found at 200 points: `tip` 0.0e0");
+    assert_eq!(
+        told,
+        "largest change of an answer found at 500 points and above the worst: `tip` 0.0e0"
+    );
 }
 
 #[test]

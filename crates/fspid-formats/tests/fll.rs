@@ -307,7 +307,9 @@ fn exact_integrals_are_refused_unless_a_loss_is_allowed_and_then_measured() {
     let written = fll::write(&parts, LOSSY).unwrap();
     let told = written.notes.last().unwrap().to_string();
     assert!(
-        told.starts_with("largest change of an answer found at 200 points: `delta_kp` "),
+        told.starts_with(
+            "largest change of an answer found at 500 points and above the worst: `delta_kp` "
+        ),
         "{told}"
     );
     let largest: f64 = told.rsplit(' ').next().unwrap().parse().unwrap();

@@ -212,7 +212,9 @@ fn another_tool_s_integrals_are_a_loss_that_is_measured() {
     let writing = fml::write(&parts, LOSSY).expect("allowed");
     let told = writing.notes.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n");
     assert!(
-        told.contains("largest change of an answer found at 200 points: `dkp` 4.1e-2"),
+        told.contains(
+            "largest change of an answer found at 500 points and above the worst: `dkp` 4.1e-2"
+        ),
         "{told}"
     );
     assert!(fml::read(&writing.text).is_ok());

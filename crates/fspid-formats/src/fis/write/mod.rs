@@ -3,7 +3,6 @@
 mod antecedent;
 mod fit;
 mod losses;
-mod measure;
 mod method;
 mod rules;
 mod shape;
@@ -11,6 +10,7 @@ mod variable;
 
 use fspid_fuzzy::system::{Conclusion, Parts, System};
 
+use crate::difference::{Difference, differences, questions};
 use crate::note::{WriteOptions, Writing};
 use crate::number::written;
 use fspid_diagnostics::{Problem, Problems};
@@ -125,22 +125,23 @@ fn left_out(parts: &Parts, losses: &mut Losses) {
 /// Compares the answers of the system with those of the file, and notes where they differ.
 fn measured(parts: &Parts, text: &str, losses: &mut Losses) {
     let reading = super::read(text).ok();
-    let points = measure::questions(parts);
-    let found = reading.and_then(|reading| measure::differences(parts, &reading.parts, points));
-    for (output, (largest, without)) in parts.outputs.iter().zip(found.unwrap_or_default()) {
+    let points = questions(parts);
+    let found = reading.and_then(|reading| differences(parts, &reading.parts));
+    for (output, found) in parts.outputs.iter().zip(found.unwrap_or_default()) {
+        let Difference { largest, unanswered } = found;
         // Answers that are the same are no loss.
-        if largest == 0.0 && without == 0 {
+        if largest == 0.0 && unanswered == 0 {
             continue;
         }
         let name = &output.name;
-        let unanswered = if without > 0 {
-            format!("; {without} are answered by only one of the two")
+        let unanswered = if unanswered > 0 {
+            format!("; {unanswered} are answered by only one of the two")
         } else {
             String::new()
         };
         let largest = written(largest);
         losses.note(format!(
-            "output `{name}`: answers differ by up to {largest} at {points} points of the ranges{unanswered}"
+            "output `{name}`: answers differ by up to {largest} at {points} points of the ranges and above the worst{unanswered}"
         ));
     }
 }
