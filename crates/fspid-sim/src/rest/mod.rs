@@ -28,6 +28,7 @@
 //! good approximation.
 
 mod clocked;
+mod doubt;
 mod slopes;
 mod stand;
 #[cfg(test)]
@@ -44,7 +45,8 @@ use crate::sensor::Sensor;
 use crate::steady::Steady;
 use slopes::{DIRECTIONS, Slopes};
 
-pub use stand::{Doubt, Stand};
+pub use doubt::Doubt;
+pub use stand::Stand;
 
 /// Halvings in which the pitch at rest is looked for, and doublings of how far from the set-point.
 const HALVINGS: usize = 60;
