@@ -13,40 +13,15 @@ pub(crate) use step::is_seen_to_stay;
 pub use step::{StepMetrics, StepWindow};
 
 use fspid_diagnostics::digits::without_zeros;
-use fspid_sim::{ControllerLoss, Doubt, PlantLoss};
+use fspid_sim::{Doubt, EarlyEnd};
 
 /// Why a measure has no value.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Absent {
-    /// The flight left every reasonable range.
-    #[error("diverged at t = {} s", short(*at_s))]
-    Diverged {
-        /// When, s.
-        at_s: f64,
-    },
-    /// The aircraft came down to the ground.
-    #[error("hit the ground at t = {} s", short(*at_s))]
-    HitGround {
-        /// When, s.
-        at_s: f64,
-    },
-    /// An external controller gave no answer.
-    #[error("the controller {loss} at t = {} s", short(*at_s))]
-    ControllerLost {
-        /// When, s.
-        at_s: f64,
-        /// How it was lost.
-        loss: ControllerLoss,
-    },
-    /// Another simulator gave no answer.
-    #[error("the simulator {loss} at t = {} s", short(*at_s))]
-    PlantLost {
-        /// When, s.
-        at_s: f64,
-        /// How it was lost.
-        loss: PlantLoss,
-    },
+    /// The flight ended before its last sample.
+    #[error("{} at t = {} s", .0.cause, short(.0.at_s))]
+    EndedEarly(EarlyEnd),
     /// The loop is unstable, whatever the window shows.
     #[error("the loop is unstable: spectral radius {spectral_radius:.6} of the sampled loop")]
     Unstable {

@@ -1,7 +1,9 @@
 //! The linear loops of a controller: one for each plant that lasts.
 
 use fspid_lti::Mode;
-use fspid_sim::{Doubt, NamedController, RestPoint, Scenario, SimError};
+use fspid_sim::{
+    Doubt, EarlyEnd, EndCause, NamedController, Outcome, RestPoint, Scenario, SimError,
+};
 
 use crate::analysis::{Analysis, Margins, PlantLoop, Question, RestLoop, decibels, held_at_rest};
 use crate::judgement::{Case, CasePlace, NotEvaluated, PlantAt};
@@ -120,15 +122,11 @@ pub(super) fn rest_cases(
 /// A flight that diverged is no flight of a stable loop.
 fn diverged(result: &ControllerResult) -> Option<Case> {
     match result.trace.outcome {
-        fspid_sim::Outcome::Diverged { at_s } => {
+        Outcome::EndedEarly(EarlyEnd { at_s, cause: EndCause::Diverged }) => {
             Some(Case { value: 0.0, place: CasePlace { at_s: Some(at_s), ..CasePlace::default() } })
         }
         // What hits the ground may be stable: the flight fails by itself.
-        fspid_sim::Outcome::Completed
-        | fspid_sim::Outcome::ModeNeverBegan { .. }
-        | fspid_sim::Outcome::HitGround { .. }
-        | fspid_sim::Outcome::ControllerLost { .. }
-        | fspid_sim::Outcome::PlantLost { .. } => None,
+        Outcome::EndedEarly(_) | Outcome::Completed | Outcome::ModeNeverBegan { .. } => None,
     }
 }
 
