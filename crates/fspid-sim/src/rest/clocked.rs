@@ -1,4 +1,5 @@
-//! Whether a rest holds where a sensor has a clock of its own: what a whole period of its ages makes of the loop.
+//! Stability of an equilibrium where a sensor has a clock of its own, so that the linear loop is periodic: the poles of what a
+//! whole period of its ages makes of the loop (its monodromy matrix).
 
 use fspid_lti::{Matrix, spectral_radius};
 

@@ -1,4 +1,5 @@
-//! Whether a rest holds: the one verdict on the stability of a loop, for flights, analyses and requirements.
+//! Stability of an equilibrium: whether a rest holds, the one verdict for flights, analyses and requirements. Poles of the linear
+//! loop tell; where the rules have a kink there, motions of the piecewise linear loop do.
 
 use fspid_core::{Gains, SecondInput};
 
