@@ -9,8 +9,9 @@
 //! | `clocked` | stability where a sensor has a sample period of its own: the loop of a whole period of both |
 //! | `doubt` | every reason why stability is undecided, with its sentence ([`Doubt`]) |
 //!
-//! Saturation is not here: about an equilibrium no limit acts. Whether limits leave the command that an equilibrium takes is
-//! asked in `held_limits`, and what they make of large motions in [`describing`](crate::describing) and in flight.
+//! Saturation is not here: about an equilibrium no limit of controller or servo acts. Whether limits leave the command that an
+//! equilibrium takes is asked in `held_limits`, and what they make of large motions in [`describing`](crate::describing) and in
+//! flight.
 //!
 //! # The linear loop where gains move
 //!
