@@ -29,7 +29,7 @@ pub(crate) fn growth(
     let mut found = GrowthAtRest::default();
     for standing in aircraft.standings() {
         let Some(own) = standing.flown_in(scenario) else {
-            found.doubt(Undecided::beyond(Doubt::ChangedAircraft));
+            found.doubt(Undecided::at_trim(Doubt::ChangedAircraft));
             continue;
         };
         let of_it = match (standing.by, of_standing(&own, &standing, (controller, gains))) {
@@ -37,16 +37,15 @@ pub(crate) fn growth(
             (Change::Configuration, Ok(of_it)) => of_it,
             // How much is burnt only the flight tells.
             (Change::Fuel, Ok(of_it)) if of_it.holds() => of_it,
-            (Change::Configuration | Change::Fuel, _) => doubted(Doubt::ChangedAircraft, f64::NAN),
+            (Change::Configuration | Change::Fuel, _) => doubted(Doubt::ChangedAircraft),
         };
         found = found.and(of_it);
     }
     Ok(found)
 }
 
-fn doubted(doubt: Doubt, spectral_radius: f64) -> GrowthAtRest {
-    let undecided = Undecided { spectral_radius, at: RestPoint::TRIM, doubt };
-    GrowthAtRest { certain: None, undecided: Some(undecided) }
+fn doubted(doubt: Doubt) -> GrowthAtRest {
+    GrowthAtRest { certain: None, undecided: Some(Undecided::at_trim(doubt)) }
 }
 
 /// The same of one aircraft, which the scenario has.
@@ -63,7 +62,7 @@ fn of_standing(
         return Ok(found);
     }
     if !is_followed(scenario, plant)? {
-        found.doubt(Undecided::beyond(Doubt::FastMotion));
+        found.doubt(Undecided::at_trim(Doubt::FastMotion));
     }
     Ok(found.and(match &scenario.autopilot {
         None => alone(scenario, (controller, gains)).and(held_on(scenario, (controller, gains))?),
@@ -95,7 +94,7 @@ fn alone(scenario: &Scenario, held: Held<'_>) -> GrowthAtRest {
     };
     let Some(latest) = radii(Seeing::first(scenario)) else { return GrowthAtRest::default() };
     if let Some(spectral_radius) = latest.all.filter(|radius| grows(*radius)) {
-        return doubted(Doubt::Wings, spectral_radius);
+        return doubted(Doubt::Wings { spectral_radius });
     }
     let worst = |it: Alone| it.all.unwrap_or(it.pitching);
     if grows(worst(latest)) {
@@ -104,7 +103,7 @@ fn alone(scenario: &Scenario, held: Held<'_>) -> GrowthAtRest {
     let others = Seeing::others(scenario).into_iter();
     let mut grown = others.filter_map(|seeing| Some((seeing, worst(radii(seeing)?))));
     let first = grown.find(|(_, radius)| grows(*radius));
-    first.map_or(GrowthAtRest::default(), |(seeing, radius)| doubted(of_seeing(seeing), radius))
+    first.map_or(GrowthAtRest::default(), |(seeing, radius)| doubted(of_seeing(seeing, radius)))
 }
 
 /// Where the aircraft comes to with nobody at its throttle, if the set-point of the end is held on. Where it comes to nothing
@@ -119,15 +118,15 @@ fn held_on(scenario: &Scenario, (controller, gains): Held<'_>) -> Result<GrowthA
     let Some(there) = plant.at_held_pitch(by_rad) else { return none };
     let linear = there.linear()?;
     let found = growth_of_plant(scenario, (0.0, &linear), controller, gains)?;
-    Ok(found
-        .certain
-        .map_or(GrowthAtRest::default(), |it| doubted(Doubt::HeldOn, it.spectral_radius)))
+    Ok(found.certain.map_or(GrowthAtRest::default(), |Unstable { spectral_radius, .. }| {
+        doubted(Doubt::HeldOn { spectral_radius })
+    }))
 }
 
 /// Why it is not decided where sensors that show motions otherwise change the answer.
-fn of_seeing(seeing: Seeing) -> Doubt {
+fn of_seeing(seeing: Seeing, spectral_radius: f64) -> Doubt {
     match seeing {
-        Seeing::Erecting => Doubt::Erection,
+        Seeing::Erecting => Doubt::Erection { spectral_radius },
         Seeing::Earliest | Seeing::Midway | Seeing::Latest | Seeing::AsTheyCome => {
             Doubt::ChangingAge
         }
@@ -145,7 +144,7 @@ fn of_modes(
     let mut found = GrowthAtRest::default();
     for (number, begins_s) in modes {
         let of_mode = match of_mode(scenario, number, held) {
-            Err(SimError::LongWay { .. }) => doubted(Doubt::LongMode, f64::NAN),
+            Err(SimError::LongWay { .. }) => doubted(Doubt::LongMode),
             other => other?,
         };
         let from_s = begins_s.max(standing.from_s);
@@ -156,7 +155,7 @@ fn of_modes(
             Some(it) if meets => {
                 GrowthAtRest { certain: Some(Unstable { from_s, ..it }), ..of_mode }
             }
-            Some(_) => doubted(Doubt::ChangedAircraft, f64::NAN),
+            Some(_) => doubted(Doubt::ChangedAircraft),
             None => of_mode,
         });
     }
@@ -169,14 +168,14 @@ fn of_mode(scenario: &Scenario, mode: usize, held: Held<'_>) -> Result<GrowthAtR
         |seeing| poles_of_mode(scenario, held, mode, seeing).map(|poles| poles.spectral_radius);
     let spectral_radius = radius(Seeing::first(scenario))?;
     for seeing in Seeing::others(scenario) {
-        let doubt = of_seeing(seeing);
+        let doubt = of_seeing(seeing, spectral_radius);
         // A loop that grows with every age may hold while it changes: such a one was flown.
         if doubt == Doubt::ChangingAge && grows(spectral_radius) {
-            return Ok(doubted(doubt, spectral_radius));
+            return Ok(doubted(doubt));
         }
         let other = radius(seeing)?;
         if grows(other) && !grows(spectral_radius) {
-            return Ok(doubted(doubt, other));
+            return Ok(doubted(of_seeing(seeing, other)));
         }
     }
     let doubling_s = doubling_s(spectral_radius, scenario.timing.dt_s());

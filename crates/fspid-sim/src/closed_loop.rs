@@ -14,7 +14,7 @@ use crate::flown::Perturbation;
 use crate::in_flight::{Course, Seen};
 use crate::propagation::{Motion, Propagation};
 use crate::scenario::{Flyer, Prepared, Respondent, Scenario};
-use crate::trace::{Outcome, Trace};
+use crate::trace::{EndCause, Outcome, Trace};
 
 /// A scenario's flights: the trace of each controller, in the scenario's order.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,8 +29,8 @@ pub struct Flight {
 ///
 /// # Errors
 /// [`SimError`] where the scenario's plants cannot be discretised or an external controller cannot be started; an
-/// unstable loop is no error but a trace that ends with [`Outcome::Diverged`], and the ground one that ends with
-/// [`Outcome::HitGround`].
+/// unstable loop is no error but a trace that ends with [`EndCause::Diverged`], and the ground one that ends with
+/// [`EndCause::HitGround`].
 pub fn simulate(scenario: &Scenario) -> Result<Flight, SimError> {
     let prepared = scenario.prepare()?;
     let traces = scenario.flyers().map(|flyer| record(&prepared, flyer));
@@ -169,7 +169,8 @@ pub(crate) fn watch_answers(
                 step
             }
             Err(loss) => {
-                return Ok(Outcome::ControllerLost { at_s: prepared.timing.time_s(seen.k), loss });
+                let at_s = prepared.timing.time_s(seen.k);
+                return Ok(Outcome::ended_early(at_s, EndCause::ControllerLost(loss)));
             }
         };
         let (instant, command_rad) = course.take(seen, step);

@@ -75,7 +75,7 @@ pub use scenario::{Flyer, NamedController, Prepared, Respondent, Scenario};
 pub use steady::Steady;
 pub use surroundings::{Course, Surroundings, Weather};
 pub use timing::{MAX_ROWS, Timing};
-pub use trace::{Column, Exit, Outcome, Trace};
+pub use trace::{Column, EarlyEnd, EndCause, Exit, Outcome, Trace};
 
 pub use fspid_core as core;
 pub use fspid_lti as lti;

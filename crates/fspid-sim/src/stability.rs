@@ -148,8 +148,6 @@ pub struct GrowthAtRest {
 /// A rest of which nobody can tell whether it holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Undecided {
-    /// Largest spectral radius of the loops that were asked, as computed.
-    pub spectral_radius: f64,
     /// What is held meanwhile.
     pub at: RestPoint,
     /// Why.
@@ -157,10 +155,10 @@ pub struct Undecided {
 }
 
 impl Undecided {
-    /// Of something that is no loop of a plant at rest.
+    /// With nothing held.
     #[must_use]
-    pub fn beyond(doubt: Doubt) -> Self {
-        Self { spectral_radius: f64::NAN, at: RestPoint::TRIM, doubt }
+    pub fn at_trim(doubt: Doubt) -> Self {
+        Self { at: RestPoint::TRIM, doubt }
     }
 }
 
@@ -215,7 +213,7 @@ pub fn growth_at_rest(
         }
     }
     if held_limits::are_exceeded(scenario, controller, gains) {
-        found.doubt(Undecided::beyond(Doubt::BeyondLimits));
+        found.doubt(Undecided::at_trim(Doubt::BeyondLimits));
     }
     Ok(found.settled())
 }
@@ -234,7 +232,7 @@ pub fn doubt_beyond(
         return Ok(growth_at_rest(scenario, controller, gains)?.undecided);
     }
     let exceeds = held_limits::are_exceeded(scenario, controller, gains);
-    Ok(exceeds.then(|| Undecided::beyond(Doubt::BeyondLimits)))
+    Ok(exceeds.then(|| Undecided::at_trim(Doubt::BeyondLimits)))
 }
 
 /// Asks one plant, which a flight has from a time on, at every rest.
@@ -246,7 +244,7 @@ pub(crate) fn growth_of_plant(
 ) -> Result<GrowthAtRest, SimError> {
     let mut found = GrowthAtRest::default();
     if plant.is_between_slopes() {
-        found.doubt(Undecided::beyond(Doubt::Kink));
+        found.doubt(Undecided::at_trim(Doubt::Kink));
         return Ok(found);
     }
     let sampled = SampledPlant::of(scenario, plant)?;
@@ -254,9 +252,7 @@ pub(crate) fn growth_of_plant(
         let at = rest.at;
         match rest.stand(scenario, &sampled, controller)? {
             Stand::Holds => {}
-            Stand::Undecided { spectral_radius, doubt } => {
-                found.doubt(Undecided { spectral_radius, at, doubt });
-            }
+            Stand::Undecided(doubt) => found.doubt(Undecided { at, doubt }),
             Stand::Grows { spectral_radius } => {
                 let doubling_s = doubling_s(spectral_radius, scenario.timing.dt_s());
                 let mode = None;

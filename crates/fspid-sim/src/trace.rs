@@ -16,36 +16,70 @@ use crate::timing::Timing;
 pub enum Outcome {
     /// All samples were flown.
     Completed,
-    /// The pitch angle left ± 10⁶ degrees or was not finite, or a nonlinear aircraft lay on its back;
-    /// the trace ends before.
-    Diverged {
-        /// Time of the first such sample, s.
-        at_s: f64,
-    },
-    /// A nonlinear aircraft came down to the ground; the trace ends before.
-    HitGround {
-        /// Time of the first sample at or below the ground, s.
-        at_s: f64,
-    },
+    /// The flight, and its trace, ended before its last sample.
+    EndedEarly(EarlyEnd),
     /// All samples were flown, and the autopilot still waits for a mode to begin.
     ModeNeverBegan {
         /// Its number, from 0.
         mode: usize,
     },
-    /// An external controller gave no answer; the trace ends before.
-    ControllerLost {
-        /// Time of the first sample without an answer, s.
-        at_s: f64,
-        /// How it was lost.
-        loss: ControllerLoss,
-    },
-    /// Another simulator, which flies the aircraft, gave no answer; the trace ends before.
-    PlantLost {
-        /// Time of the first sample without an answer, s.
-        at_s: f64,
-        /// How it was lost.
-        loss: PlantLoss,
-    },
+}
+
+impl Outcome {
+    /// Of a flight that ended before the sample at this time.
+    #[must_use]
+    pub const fn ended_early(at_s: f64, cause: EndCause) -> Self {
+        Self::EndedEarly(EarlyEnd { at_s, cause })
+    }
+}
+
+/// When and why a flight ended before its last sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EarlyEnd {
+    /// Time of the first sample that was not flown, s.
+    pub at_s: f64,
+    /// Why it was not.
+    pub cause: EndCause,
+}
+
+/// Why a flight ended before its last sample, in the words of every answer.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum EndCause {
+    /// The pitch angle left ± 10⁶ degrees or was not finite, or a nonlinear aircraft lay on its back.
+    #[error("diverged")]
+    Diverged,
+    /// A nonlinear aircraft came down to the ground.
+    #[error("hit the ground")]
+    HitGround,
+    /// An external controller gave no answer.
+    #[error("the controller {0}")]
+    ControllerLost(ControllerLoss),
+    /// Another simulator, which flies the aircraft, gave no answer.
+    #[error("the simulator {0}")]
+    PlantLost(PlantLoss),
+}
+
+impl EndCause {
+    /// Its kind in a word or two, for programs.
+    #[must_use]
+    pub const fn kind(self) -> &'static str {
+        match self {
+            Self::Diverged => "diverged",
+            Self::HitGround => "hit the ground",
+            Self::ControllerLost(_) => "controller lost",
+            Self::PlantLost(_) => "plant lost",
+        }
+    }
+
+    /// How a controller or simulator was lost, in a word for programs; none where neither was.
+    #[must_use]
+    pub fn loss_kind(self) -> Option<&'static str> {
+        match self {
+            Self::Diverged | Self::HitGround => None,
+            Self::ControllerLost(loss) => Some(loss.kind()),
+            Self::PlantLost(loss) => Some(loss.kind()),
+        }
+    }
 }
 
 /// A flight that left the range in which its model is known to be worth something.

@@ -13,8 +13,8 @@ use fspid_core::{
 use fspid_sim::batch::{Entrant, InstructionSet, Refusal, fly_group_by, fly_many};
 use fspid_sim::signal::{Disturbance, Entry, Profile, Shape};
 use fspid_sim::{
-    Actuator, Controller, ElevatorSign, Instant, LinearPlant, Outcome, PlantChange, Prepared,
-    Scenario, SimError, Surroundings, Timing, fly,
+    Actuator, Controller, EarlyEnd, ElevatorSign, EndCause, Instant, LinearPlant, Outcome,
+    PlantChange, Prepared, Scenario, SimError, Surroundings, Timing, fly,
 };
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -424,7 +424,10 @@ fn the_wild_flights_meet_what_they_are_for() {
     for (seed, policy) in (0_u64..).zip(OutOfRange::ALL) {
         let flights = flights(Structure { wild: true, policy, ..PLAIN }, seed, 200);
         for (rows, outcome) in singly(&flights) {
-            diverged += usize::from(matches!(outcome, Ok(Outcome::Diverged { .. })));
+            diverged += usize::from(matches!(
+                outcome,
+                Ok(Outcome::EndedEarly(EarlyEnd { cause: EndCause::Diverged, .. }))
+            ));
             faulty += usize::from(rows.iter().any(|(_, _, faults)| *faults != 0));
             cut += usize::from(rows.iter().any(|(_, saturated, _)| *saturated));
         }
@@ -448,7 +451,13 @@ fn a_flight_that_diverges_leaves_its_neighbours_their_bits() {
     for (place, (found, expected)) in side_by_side::<16>(&flights).iter().zip(&expected).enumerate()
     {
         if [0, 5, 15].contains(&place) {
-            assert!(matches!(found.1, Ok(Outcome::Diverged { .. })), "{place}");
+            assert!(
+                matches!(
+                    found.1,
+                    Ok(Outcome::EndedEarly(EarlyEnd { cause: EndCause::Diverged, .. }))
+                ),
+                "{place}"
+            );
         } else {
             assert_same(std::slice::from_ref(found), std::slice::from_ref(expected), 16);
         }

@@ -19,8 +19,8 @@ use fspid_sim::flown::{Failure, Margin};
 use fspid_sim::signal::{Disturbance, Entry, Profile, Shape};
 use fspid_sim::stability::loop_spectral_radius;
 use fspid_sim::{
-    Actuator, AircraftPlant, Controller, ElevatorSign, LinearPlant, NamedController, Outcome,
-    Perturbation, Scenario, Surroundings, Timing, fly, fly_perturbed,
+    Actuator, AircraftPlant, Controller, EarlyEnd, ElevatorSign, EndCause, LinearPlant,
+    NamedController, Outcome, Perturbation, Scenario, Surroundings, Timing, fly, fly_perturbed,
 };
 
 use crate::support;
@@ -237,7 +237,13 @@ fn a_flight_that_does_not_hold_has_no_margins() {
     assert!(matches!(diverges, EmpiricalAnswer::Margins(_)), "{diverges:?}");
     let diverges = answer(&scenario(unstable(), pid(0.05, 0.0, 0.0), 60.0));
     assert!(
-        matches!(diverges, EmpiricalAnswer::NominalFails { failure: Failure::Diverged { .. }, .. }),
+        matches!(
+            diverges,
+            EmpiricalAnswer::NominalFails {
+                failure: Failure::EndedEarly(EarlyEnd { cause: EndCause::Diverged, .. }),
+                ..
+            }
+        ),
         "{diverges:?}"
     );
 }

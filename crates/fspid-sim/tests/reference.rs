@@ -14,8 +14,8 @@ use fspid_core::{
 use fspid_sim::signal::{Profile, Shape};
 use fspid_sim::stability::{instability, loop_spectral_radius};
 use fspid_sim::{
-    Actuator, Controller, ElevatorSign, LinearPlant, NamedController, Outcome, Scenario,
-    Surroundings, Timing, Trace, simulate,
+    Actuator, Controller, EarlyEnd, ElevatorSign, EndCause, LinearPlant, NamedController, Outcome,
+    Scenario, Surroundings, Timing, Trace, simulate,
 };
 
 const DEG: f64 = std::f64::consts::PI / 180.0;
@@ -251,7 +251,9 @@ fn the_sampled_loop_turns_unstable_at_its_neutral_gain() {
 #[test]
 fn an_unstable_loop_ends_its_trace_when_it_diverges() {
     let trace = flown(&scenario(b747(), pid(100.0, 0.0, 0.0, plain())));
-    let Outcome::Diverged { at_s } = trace.outcome else { panic!("did not diverge") };
+    let Outcome::EndedEarly(EarlyEnd { at_s, cause: EndCause::Diverged }) = trace.outcome else {
+        panic!("did not diverge")
+    };
     assert!(at_s > 0.0 && trace.rows() < 2001);
     assert!(trace.theta_rad.iter().all(|theta| theta.abs() <= 1e6 * DEG));
 }

@@ -50,10 +50,7 @@ impl FlightScore {
     ) -> Self {
         if flight.metrics.verdict.is_failure() {
             let late = match flight.metrics.verdict {
-                Verdict::Diverged { at_s }
-                | Verdict::HitGround { at_s }
-                | Verdict::ControllerLost { at_s, .. }
-                | Verdict::PlantLost { at_s, .. } => (at_s / duration_s).clamp(0.0, 1.0),
+                Verdict::EndedEarly(end) => (end.at_s / duration_s).clamp(0.0, 1.0),
                 _ => 1.0,
             };
             let mut reasons = flight.ending().failures();

@@ -12,7 +12,7 @@ use fspid_core::Faults;
 use fspid_scenario::file::{RangeRule, Study};
 use fspid_sim::aircraft::{AIRCRAFT_COLUMNS, Forces};
 use fspid_sim::autopilot::AUTOPILOT_COLUMNS;
-use fspid_sim::{Exit, Plant, Prepared, SimError, Trace};
+use fspid_sim::{EarlyEnd, EndCause, Exit, Plant, Prepared, SimError, Trace};
 use fspid_study::analysis::AtRest;
 use fspid_study::judgement::{Judgement, judge};
 use fspid_study::metrics::{CommandEffort, FlightMetrics, Verdict, largest_error_rad};
@@ -204,7 +204,7 @@ impl FlightResult {
     #[must_use]
     pub fn diverged_at_s(&self) -> Option<f64> {
         match self.metrics.verdict {
-            Verdict::Diverged { at_s } => Some(at_s),
+            Verdict::EndedEarly(EarlyEnd { at_s, cause: EndCause::Diverged }) => Some(at_s),
             _ => None,
         }
     }
@@ -213,7 +213,7 @@ impl FlightResult {
     #[must_use]
     pub fn hit_ground_at_s(&self) -> Option<f64> {
         match self.metrics.verdict {
-            Verdict::HitGround { at_s } => Some(at_s),
+            Verdict::EndedEarly(EarlyEnd { at_s, cause: EndCause::HitGround }) => Some(at_s),
             _ => None,
         }
     }

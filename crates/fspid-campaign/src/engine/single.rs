@@ -4,8 +4,8 @@
 use std::ops::ControlFlow;
 
 use fspid_sim::{
-    ControllerLoss, Exit, Flyer, Instant, Outcome, Perturbation, PlantLoss, Prepared, SimError,
-    Trace,
+    ControllerLoss, EndCause, Exit, Flyer, Instant, Outcome, Perturbation, PlantLoss, Prepared,
+    SimError, Trace,
 };
 
 /// One flight, recorded in an empty trace as far as measures need it. An external controller that cannot be started is
@@ -22,11 +22,11 @@ pub(super) fn record(
     });
     trace.outcome = match outcome {
         Err(SimError::NotStarted { .. }) => {
-            Outcome::ControllerLost { at_s: 0.0, loss: ControllerLoss::NotStarted }
+            Outcome::ended_early(0.0, EndCause::ControllerLost(ControllerLoss::NotStarted))
         }
         // Which conditions can be trimmed is a result.
         Err(SimError::PlantNotStarted { .. }) => {
-            Outcome::PlantLost { at_s: 0.0, loss: PlantLoss::NotStarted }
+            Outcome::ended_early(0.0, EndCause::PlantLost(PlantLoss::NotStarted))
         }
         outcome => outcome?,
     };

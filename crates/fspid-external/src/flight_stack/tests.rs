@@ -12,8 +12,8 @@ use fspid_sim::external::{Host, set_host};
 use fspid_sim::flight_stack::{ElevatorChannel, Place, SetpointChannel};
 use fspid_sim::signal::{Profile, Shape};
 use fspid_sim::{
-    Controller, ElevatorSign, ExternalSource, LinearPlant, NamedExternal, Outcome, Scenario,
-    Timing, Trace, fly_commanded, simulate,
+    Controller, EarlyEnd, ElevatorSign, EndCause, ExternalSource, LinearPlant, NamedExternal,
+    Outcome, Scenario, Timing, Trace, fly_commanded, simulate,
 };
 
 use super::*;
@@ -114,7 +114,9 @@ fn flown(scenario: &Scenario, peer: impl FnOnce(SocketAddr) + Send + 'static) ->
 
 fn loss(trace: &Trace) -> (usize, String) {
     match trace.outcome {
-        Outcome::ControllerLost { loss, .. } => (trace.rows(), loss.to_string()),
+        Outcome::EndedEarly(EarlyEnd { cause: EndCause::ControllerLost(loss), .. }) => {
+            (trace.rows(), loss.to_string())
+        }
         outcome => panic!("{outcome:?}"),
     }
 }

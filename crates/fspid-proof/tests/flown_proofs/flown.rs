@@ -8,7 +8,9 @@ use fspid_proof::{
 };
 use fspid_sim::actuator::Actuator;
 use fspid_sim::signal::{Disturbance, Entry, Profile, Shape};
-use fspid_sim::{Controller, NamedController, Outcome, Scenario, Timing, fly_commanded};
+use fspid_sim::{
+    Controller, EarlyEnd, EndCause, NamedController, Outcome, Scenario, Timing, fly_commanded,
+};
 
 /// Time constants of the proved rate that are flown, and the most samples of a flight.
 const TIME_CONSTANTS: f64 = 20.0;
@@ -268,7 +270,9 @@ pub(crate) fn settles_seeing(
         theta.push(instant.theta_rad);
         ControlFlow::Continue(())
     });
-    if let Outcome::Diverged { at_s } = outcome.map_err(|error| error.to_string())? {
+    if let Outcome::EndedEarly(EarlyEnd { at_s, cause: EndCause::Diverged }) =
+        outcome.map_err(|error| error.to_string())?
+    {
         return Err(format!("diverged at {at_s} s, rate {rate}"));
     }
     let held_from = (begin_s / dt_s) as usize;

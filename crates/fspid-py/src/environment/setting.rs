@@ -259,11 +259,8 @@ impl Setting {
 pub(super) fn in_words(outcome: Outcome) -> String {
     let verdict = match outcome {
         Outcome::Completed => Verdict::Flown,
-        Outcome::Diverged { at_s } => Verdict::Diverged { at_s },
-        Outcome::HitGround { at_s } => Verdict::HitGround { at_s },
+        Outcome::EndedEarly(end) => Verdict::EndedEarly(end),
         Outcome::ModeNeverBegan { mode } => Verdict::ModeNeverBegan { mode },
-        Outcome::ControllerLost { at_s, loss } => Verdict::ControllerLost { at_s, loss },
-        Outcome::PlantLost { at_s, loss } => Verdict::PlantLost { at_s, loss },
     };
     verdict.to_string()
 }

@@ -15,7 +15,7 @@ use crate::in_flight::{InFlight, Seen};
 use crate::propagation::{DIVERGED_RAD, Propagation};
 use crate::propagator::Propagator;
 use crate::scenario::Prepared;
-use crate::trace::Outcome;
+use crate::trace::{EndCause, Outcome};
 
 /// Places for `W` flights whose commands come from outside, each with the bits of [`InFlight`]. Plants with first-order
 /// servos fly in lanes, all of one order; what has no lanes, and what is of another order, flies one by one.
@@ -254,7 +254,7 @@ impl<const W: usize> Formation<W> {
         // Written so that NaN is lost.
         if !(theta_rad.abs() <= DIVERGED_RAD) {
             let at_s = flight.prepared.timing.time_s(flight.k);
-            return self.end(lane, Outcome::Diverged { at_s });
+            return self.end(lane, Outcome::ended_early(at_s, EndCause::Diverged));
         }
         let q_rad_s = sighted.q_rad_s[lane];
         flight.seen = Ok(Seen {

@@ -16,7 +16,7 @@ use crate::propagation::{DIVERGED_RAD, Propagation};
 use crate::propagator::Propagator;
 use crate::scenario::Prepared;
 use crate::timing::Timing;
-use crate::trace::Outcome;
+use crate::trace::{EndCause, Outcome};
 
 /// The signals of one flight; all empty, and so zero, once it has ended.
 #[derive(Clone, Copy, Debug, Default)]
@@ -226,7 +226,7 @@ impl<'a, const W: usize> Group<'a, W> {
             here[lane] = mask(theta_rad[lane].abs() <= DIVERGED_RAD);
         }
         if !all(&here) {
-            let outcome = Outcome::Diverged { at_s: self.timing.time_s(k) };
+            let outcome = Outcome::ended_early(self.timing.time_s(k), EndCause::Diverged);
             for lane in 0..self.outcomes.len() {
                 if here[lane] == NO {
                     self.end(lane, Ok(outcome));

@@ -25,6 +25,7 @@ use crate::error::{SimError, positive};
 use crate::plant::{LinearPlant, Plant};
 use crate::scenario::{Prepared, Respondent, Scenario};
 use crate::timing::Timing;
+use crate::trace::EndCause;
 
 /// An oscillation that is down to this share of what it was a third of the flight before is dying out.
 const DYING: f64 = 0.5;
@@ -266,11 +267,7 @@ impl Trials<'_> {
             failure = envelope.failure(self.criterion, length.floor_rad);
             let [middle_rad, last_rad] = envelope.oscillations_rad;
             match failure {
-                Some(
-                    Failure::Diverged { .. }
-                    | Failure::ControllerLost { .. }
-                    | Failure::PlantLost { .. },
-                ) => break,
+                Some(Failure::EndedEarly(end)) if end.cause != EndCause::HitGround => break,
                 None if last_rad <= length.floor_rad => break,
                 None if last_rad > DYING * middle_rad => {
                     failure = Some(Failure::Oscillates { middle_rad, last_rad });

@@ -5,11 +5,9 @@ use std::ops::ControlFlow;
 
 use super::Perturbation;
 use crate::error::SimError;
-use crate::external::ControllerLoss;
-use crate::external_plant::PlantLoss;
 use crate::scenario::{Prepared, Respondent, Scenario};
 use crate::sensor::Sensor;
-use crate::trace::Outcome;
+use crate::trace::{EarlyEnd, Outcome};
 
 /// When a flight counts as not held. Looked at is the error (set-point less true pitch angle) in the last
 /// third of the flight and in the third before. A flight is not held if
@@ -64,30 +62,8 @@ pub struct Envelope {
 /// Why a flight does not count as held.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Failure {
-    /// It left every range.
-    Diverged {
-        /// When, s.
-        at_s: f64,
-    },
-    /// The aircraft came down to the ground.
-    HitGround {
-        /// When, s.
-        at_s: f64,
-    },
-    /// An external controller gave no answer.
-    ControllerLost {
-        /// When, s.
-        at_s: f64,
-        /// How it was lost.
-        loss: ControllerLoss,
-    },
-    /// Another simulator gave no answer.
-    PlantLost {
-        /// When, s.
-        at_s: f64,
-        /// How it was lost.
-        loss: PlantLoss,
-    },
+    /// It ended before its last sample.
+    EndedEarly(EarlyEnd),
     /// The error swings as far as before, or further.
     Swings {
         /// Swing of the middle third, rad.
@@ -107,14 +83,7 @@ pub enum Failure {
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Diverged { at_s } => write!(f, "diverged at t = {at_s:.2} s"),
-            Self::HitGround { at_s } => write!(f, "hit the ground at t = {at_s:.2} s"),
-            Self::ControllerLost { at_s, loss } => {
-                write!(f, "the controller {loss} at t = {at_s:.2} s")
-            }
-            Self::PlantLost { at_s, loss } => {
-                write!(f, "the simulator {loss} at t = {at_s:.2} s")
-            }
+            Self::EndedEarly(EarlyEnd { at_s, cause }) => write!(f, "{cause} at t = {at_s:.2} s"),
             Self::Swings { .. } => {
                 f.write_str("in its last third the error swings as far as in its middle one")
             }
@@ -156,12 +125,7 @@ impl Envelope {
     #[must_use]
     pub fn failure(&self, criterion: &Criterion, floor_rad: f64) -> Option<Failure> {
         match self.outcome {
-            Outcome::Diverged { at_s } => return Some(Failure::Diverged { at_s }),
-            Outcome::HitGround { at_s } => return Some(Failure::HitGround { at_s }),
-            Outcome::ControllerLost { at_s, loss } => {
-                return Some(Failure::ControllerLost { at_s, loss });
-            }
-            Outcome::PlantLost { at_s, loss } => return Some(Failure::PlantLost { at_s, loss }),
+            Outcome::EndedEarly(end) => return Some(Failure::EndedEarly(end)),
             // What a mode waits for says nothing of the pitch loop.
             Outcome::Completed | Outcome::ModeNeverBegan { .. } => {}
         }

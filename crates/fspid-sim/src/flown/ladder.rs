@@ -108,8 +108,9 @@ pub(super) fn geometric(first: f64, factor: f64, bound: f64) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::trace::{EarlyEnd, EndCause};
 
-    const LATE: Failure = Failure::Diverged { at_s: 1.0 };
+    const LATE: Failure = Failure::EndedEarly(EarlyEnd { at_s: 1.0, cause: EndCause::Diverged });
 
     fn ladder() -> Ladder {
         Ladder { from: 0.0, rungs: geometric(1.0, 2.0, 10.0), tolerance: 1e-6, width: 0.0 }

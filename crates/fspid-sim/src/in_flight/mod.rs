@@ -17,7 +17,7 @@ use crate::propagation::{Motion, Propagation};
 use crate::scenario::Prepared;
 use crate::sensor::{Sensor, SensorState, Truth};
 use crate::surroundings::held;
-use crate::trace::Outcome;
+use crate::trace::{EndCause, Outcome};
 
 /// What is there at a sample before anybody answers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -216,15 +216,15 @@ impl<P: Borrow<Prepared>> Course<P> {
             self.stage += 1;
         }
         let propagation = &prepared.stages[self.stage].propagation;
-        let at_s = || prepared.timing.time_s(k);
+        let ended = |cause| Err(Outcome::ended_early(prepared.timing.time_s(k), cause));
         if let Some(loss) = self.plant.plant_loss() {
-            return Err(Outcome::PlantLost { at_s: at_s(), loss });
+            return ended(EndCause::PlantLost(loss));
         }
         if self.plant.is_lost() {
-            return Err(Outcome::Diverged { at_s: at_s() });
+            return ended(EndCause::Diverged);
         }
         if propagation.is_at_ground(&self.plant) {
-            return Err(Outcome::HitGround { at_s: at_s() });
+            return ended(EndCause::HitGround);
         }
         let disturbance_rad = self.at(|prepared| &prepared.at_elevator);
         let theta_rad = self.plant.theta_rad();

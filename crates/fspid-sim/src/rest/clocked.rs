@@ -1,9 +1,10 @@
-//! Whether a rest holds where a sensor has a clock of its own: what a whole period of its ages makes of the loop.
+//! Stability of an equilibrium where a sensor has a clock of its own, so that the linear loop is periodic: the poles of what a
+//! whole period of its ages makes of the loop (its monodromy matrix).
 
 use fspid_lti::{Matrix, spectral_radius};
 
-use super::Rest;
-use super::stand::{Doubt, Found, Model, Stand, found, stand_of_sides};
+use super::stand::{Found, Model, Stand, found, stand_of_sides};
+use super::{Doubt, Rest};
 use crate::error::SimError;
 use crate::loop_model::{Clocks, Phases};
 
@@ -34,9 +35,7 @@ impl Rest {
                 Ok(for_a_while.into_iter().fold(as_if_they_stayed, together))
             }
             Clocks::Period(_) | Clocks::Nearly(_) => Ok(match self.stand_at_each_age(models)? {
-                Stand::Holds => {
-                    Stand::Undecided { spectral_radius: f64::NAN, doubt: Doubt::ChangingAge }
-                }
+                Stand::Holds => Stand::Undecided(Doubt::ChangingAge),
                 stand => stand,
             }),
         }
@@ -78,7 +77,7 @@ fn is_affordable(models: &[Model], phases: &Phases) -> bool {
 fn largest_growth(all: &[Stand]) -> Option<Stand> {
     let radii = all.iter().map(|it| match *it {
         Stand::Grows { spectral_radius } => Some(spectral_radius),
-        Stand::Holds | Stand::Undecided { .. } => None,
+        Stand::Holds | Stand::Undecided(_) => None,
     });
     let radii = radii.collect::<Option<Vec<f64>>>()?;
     let spectral_radius = radii.into_iter().reduce(f64::max)?;
@@ -89,11 +88,9 @@ fn largest_growth(all: &[Stand]) -> Option<Stand> {
 fn together(one: Stand, other: Stand) -> Stand {
     match (one, other) {
         (Stand::Holds, Stand::Holds) => Stand::Holds,
-        (Stand::Undecided { .. }, _) => one,
-        (_, Stand::Undecided { .. }) => other,
-        (Stand::Grows { spectral_radius }, _) | (_, Stand::Grows { spectral_radius }) => {
-            Stand::Undecided { spectral_radius, doubt: Doubt::ChangingAge }
-        }
+        (Stand::Undecided(_), _) => one,
+        (_, Stand::Undecided(_)) => other,
+        (Stand::Grows { .. }, _) | (_, Stand::Grows { .. }) => Stand::Undecided(Doubt::ChangingAge),
     }
 }
 

@@ -1,4 +1,19 @@
-//! The loop at rest while a set-point is held, with what gains that move make of the command there.
+//! The equilibria of a loop, and the linear loop about each: which pitch, gains and command a constant set-point and load lead to,
+//! and whether small motions about them decay. A rest is such an equilibrium.
+//!
+//! | file | for |
+//! | --- | --- |
+//! | this one | equilibria of the scenario ([`Rest::all`]), and the loop that is linearised about each ([`Side::model`]) |
+//! | `slopes` | linearisation of the rules: slopes of the gains in every direction from an equilibrium, where kinks make them several |
+//! | `stand` | stability: poles of the linear loop, and with kinks motions of the piecewise linear one ([`Stand`]) |
+//! | `clocked` | stability where a sensor has a sample period of its own: the loop of a whole period of both |
+//! | `doubt` | every reason why stability is undecided, with its sentence ([`Doubt`]) |
+//!
+//! Saturation is not here: about an equilibrium no limit of controller or servo acts. Whether limits leave the command that an
+//! equilibrium takes is asked in `held_limits`, and what they make of large motions in [`describing`](crate::describing) and in
+//! flight.
+//!
+//! # The linear loop where gains move
 //!
 //! At rest the command is not zero: it holds the plant. Of that command a part is the product of a gain
 //! and a constant. With a set-point weight b other than 1, $k_p (b r - y)$ is $k_p e + k_p (b - 1) r$; the
@@ -24,10 +39,11 @@
 //!
 //! with the gains k(x) that inputs x would bring about if they stayed, $k' + s \Delta k(x) / \lambda$ within the limits.
 //!
-//! Not here: accumulating laws without leakage, which have no gains at rest, and the size of a motion for which this is a
-//! good approximation.
+//! Not here either: accumulating laws without leakage, which have no gains at rest, and the size of a motion for which this is
+//! a good approximation.
 
 mod clocked;
+mod doubt;
 mod slopes;
 mod stand;
 #[cfg(test)]
@@ -44,7 +60,8 @@ use crate::sensor::Sensor;
 use crate::steady::Steady;
 use slopes::{DIRECTIONS, Slopes};
 
-pub use stand::{Doubt, Stand};
+pub use doubt::Doubt;
+pub use stand::Stand;
 
 /// Halvings in which the pitch at rest is looked for, and doublings of how far from the set-point.
 const HALVINGS: usize = 60;

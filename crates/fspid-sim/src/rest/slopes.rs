@@ -1,4 +1,4 @@
-//! Slopes of the gains over what the supervisor sees, on every side of a place.
+//! Linearisation of the rules: slopes of the gains over what the supervisor sees, on every side of a kink at an equilibrium.
 
 use core::f64::consts::PI;
 

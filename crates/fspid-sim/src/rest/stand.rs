@@ -1,8 +1,9 @@
-//! Whether a rest holds: the one verdict on the stability of a loop, for flights, analyses and requirements.
+//! Stability of an equilibrium: whether a rest holds, the one verdict for flights, analyses and requirements. Poles of the linear
+//! loop tell; where the rules have a kink there, motions of the piecewise linear loop do.
 
 use fspid_core::{Gains, SecondInput};
 
-use super::{Rest, Side, slopes};
+use super::{Doubt, Rest, Side, slopes};
 use crate::controller::Controller;
 use crate::error::SimError;
 use crate::loop_model::{Clocks, LoopModel, SampledPlant};
@@ -42,69 +43,8 @@ pub enum Stand {
         /// By what, a sample: the spectral radius of the one loop there is, or what a motion was seen to grow by.
         spectral_radius: f64,
     },
-    /// Neither is known.
-    Undecided {
-        /// Largest spectral radius of the loops that were asked, as computed.
-        spectral_radius: f64,
-        /// Why.
-        doubt: Doubt,
-    },
-}
-
-/// Why nobody can tell whether a rest holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Doubt {
-    /// Rounding may carry poles across the unit circle.
-    Rounding,
-    /// A side of a kink is unstable, and no motion was seen to grow.
-    OneSide,
-    /// A side of a kink is unstable, and so much is on its way that no motion is followed through the sides.
-    LongWay,
-    /// A sensor shows values of changing age: of the pitch loop, which is stable with one of them and not with another; of a mode
-    /// of the autopilot, which is unstable with one.
-    ChangingAge,
-    /// So much is on its way in a mode of the autopilot that it is not asked for its poles.
-    LongMode,
-    /// It grows at a set-point that the loops around the pitch loop may command.
-    Commanded,
-    /// With a configuration of later there is no trim at the speed and altitude of the start; or with an empty tank none, or one
-    /// that is not shown to hold.
-    ChangedAircraft,
-    /// About the trim of an aircraft something grows that is no pitching.
-    Wings,
-    /// A gyro's erection makes small motions grow, until its bounded rate holds them.
-    Erection,
-    /// The set-point of the end, held on, brings an aircraft to another airspeed, where it grows.
-    HeldOn,
-    /// The trim of an aircraft lies on a kink of its data, where no linear model is that of its small motions.
-    Kink,
-    /// About the trim of an aircraft something moves so fast that the steps of the integration do not follow.
-    FastMotion,
-    /// What is held at the end of the flight takes more than a limit leaves, of a plant that does not come to rest by itself; or
-    /// the flight of one ended at a limit with an error that grows.
-    BeyondLimits,
-}
-
-impl Doubt {
-    /// True for what is no loop of a plant at rest: a set-point that is held says nothing of it.
-    #[must_use]
-    pub fn is_beyond_the_loop(self) -> bool {
-        match self {
-            Self::Rounding
-            | Self::OneSide
-            | Self::LongWay
-            | Self::ChangingAge
-            | Self::Commanded => false,
-            Self::LongMode
-            | Self::ChangedAircraft
-            | Self::Wings
-            | Self::Erection
-            | Self::HeldOn
-            | Self::Kink
-            | Self::FastMotion
-            | Self::BeyondLimits => true,
-        }
-    }
+    /// Neither is known, and why.
+    Undecided(Doubt),
 }
 
 /// The loop of one side: stable, unstable, or neither for all that is known.
@@ -140,20 +80,19 @@ pub(super) fn stand_of_sides(
             return Stand::Grows { spectral_radius };
         }
         let Some(follow) = follow else {
-            return Stand::Undecided { spectral_radius, doubt: Doubt::LongWay };
+            return Stand::Undecided(Doubt::LongWay { spectral_radius });
         };
         return match follow() {
             Some(spectral_radius) => Stand::Grows { spectral_radius },
-            None => Stand::Undecided { spectral_radius, doubt: Doubt::OneSide },
+            None => Stand::Undecided(Doubt::OneSide { spectral_radius }),
         };
     }
     let blurred = found.iter().filter_map(|it| match *it {
         Found::Blurred(radius) => Some(radius),
         Found::Stable | Found::Unstable(_) => None,
     });
-    blurred.reduce(larger).map_or(Stand::Holds, |spectral_radius| Stand::Undecided {
-        spectral_radius,
-        doubt: Doubt::Rounding,
+    blurred.reduce(larger).map_or(Stand::Holds, |spectral_radius| {
+        Stand::Undecided(Doubt::Rounding { spectral_radius })
     })
 }
 
@@ -182,7 +121,7 @@ impl Rest {
     ) -> Result<Stand, SimError> {
         Ok(match self.stand_as_it_is(scenario, plant, controller)? {
             Stand::Grows { spectral_radius } if self.is_only_commanded => {
-                Stand::Undecided { spectral_radius, doubt: Doubt::Commanded }
+                Stand::Undecided(Doubt::Commanded { spectral_radius })
             }
             stand => stand,
         })

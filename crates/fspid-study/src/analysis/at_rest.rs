@@ -108,7 +108,7 @@ impl AtRest {
     /// The same of a flight that ended at a limit with an error that grows, whatever small motions do.
     #[must_use]
     pub(crate) fn lost_at_a_limit(self) -> Self {
-        let lost = || Undecided::beyond(Doubt::BeyondLimits);
+        let lost = || Undecided::at_trim(Doubt::BeyondLimits);
         Self { undecided: self.undecided.or_else(|| self.unstable.is_none().then(lost)), ..self }
     }
 

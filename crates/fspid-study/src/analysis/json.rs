@@ -59,7 +59,7 @@ fn controller(found: &AnalysedLoop) -> Value {
         present(json!({
             "plants": unless_empty(plants, of_several),
             "modes": unless_empty(&found.modes, AnalysedMode::json),
-            "undecided": found.doubt.map(|doubt| doubt.to_string()),
+            "undecided": found.doubt.map(|doubt| Absent::Undecided(doubt).to_string()),
             "flights": found.flights.as_ref().map(Flights::json),
         })),
     ])

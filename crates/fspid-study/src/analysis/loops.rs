@@ -6,8 +6,8 @@ use fspid_lti::{Complex, SampledLoop, SampledMargins};
 use fspid_sim::loop_model::{BreakPoint, SampledPlant};
 use fspid_sim::stability::doubt_beyond;
 use fspid_sim::{
-    AircraftPlant, Controller, LinearPlant, NamedController, Rest, RestPoint, Scenario, Side,
-    SimError,
+    AircraftPlant, Controller, Doubt, LinearPlant, NamedController, Rest, RestPoint, Scenario,
+    Side, SimError,
 };
 
 use super::Question;
@@ -16,7 +16,7 @@ use super::equilibrium::{Equilibrium, equilibrium};
 use super::flights::Flights;
 use super::frozen::{Frozen, FrozenGains, FrozenMap, FrozenPoint, FrozenReach};
 use super::modes::AnalysedMode;
-use super::stability::{Stability, of_stand, why_undecided};
+use super::stability::{Stability, of_stand};
 use crate::metrics::Absent;
 
 /// A controller's loop with a plant, at one rest of the scenario and on one side of the kinks that the rules have there.
@@ -66,8 +66,8 @@ pub struct AnalysedLoop {
     pub flights: Option<Flights>,
     /// The modes of an autopilot, with everything that they engage around this controller.
     pub modes: Vec<AnalysedMode>,
-    /// Why it is undecided whether what flies holds at rest, for all that its loops and modes say: the words of its flights.
-    pub doubt: Option<Absent>,
+    /// Why it is undecided whether what flies holds at rest, for all that its loops and modes say: as its flights are told.
+    pub doubt: Option<Doubt>,
 }
 
 impl AnalysedLoop {
@@ -102,7 +102,7 @@ impl AnalysedLoop {
             plants.push(PlantLoop { from_s: *from_s, frozen, ..found });
         }
         let modes = AnalysedMode::all(scenario, controller, gains)?;
-        let doubt = doubt_beyond(scenario, controller, gains)?.map(|it| why_undecided(&it));
+        let doubt = doubt_beyond(scenario, controller, gains)?.map(|it| it.doubt);
         Ok(Self { name, equilibrium, plants, absent: None, flights, modes, doubt })
     }
 
@@ -148,12 +148,6 @@ impl AnalysedLoop {
             Some(_) => Stability::Undecided,
             None => Stability::of_all(self.modes.iter().map(AnalysedMode::stability)),
         }
-    }
-
-    /// The doubt without the word that it is one.
-    pub(crate) fn doubt_in_words(&self) -> Option<String> {
-        let words = self.doubt?.to_string();
-        Some(words.strip_prefix("undecided: ").map_or(words.clone(), str::to_owned))
     }
 
     /// How many modes of the autopilot grow for certain.
@@ -361,7 +355,7 @@ fn verdict_of(
     controller: &Controller,
 ) -> Result<Result<(), Absent>, SimError> {
     if plant.is_between_slopes() {
-        return Ok(Err(Absent::Kink));
+        return Ok(Err(Absent::Undecided(Doubt::Kink)));
     }
     let sampled = SampledPlant::of(scenario, plant)?;
     Ok(of_stand(rest.stand(scenario, &sampled, controller)?))
@@ -391,15 +385,13 @@ mod tests {
             unstable(f64::NAN),
             unstable(2.0),
             unstable(1.0),
-            Absent::OneSide { spectral_radius: 2.0 },
+            Absent::Undecided(Doubt::OneSide { spectral_radius: 2.0 }),
             Absent::NotProved { order: 100 },
         ];
         let ranks: Vec<f64> = worst_first.into_iter().map(rank_without_margins).collect();
         assert!(ranks.windows(2).all(|two| two[0] < two[1]), "{ranks:?}");
-        assert!(
-            ranks[4] < 0.0
-                && rank_without_margins(Absent::Undecided { spectral_radius: 1.0 }) < -1.0
-        );
+        let rounding = Absent::Undecided(Doubt::Rounding { spectral_radius: 1.0 });
+        assert!(ranks[4] < 0.0 && rank_without_margins(rounding) < -1.0);
         let held = |verdict| Held { from_s: 0.0, at: RestPoint::TRIM, verdict }.rank();
         assert!(held(Err(unstable(1.1))) < held(Err(worst_first[3])));
         assert!(held(Err(worst_first[3])) < held(Ok(())));

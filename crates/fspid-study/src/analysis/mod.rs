@@ -45,7 +45,6 @@ pub(crate) use loops::{held_at_rest, lasting_plants};
 pub use modes::AnalysedMode;
 pub use nonlinear_parts::not_in_the_linear_loop;
 pub use stability::Stability;
-pub(crate) use stability::why_undecided;
 pub(crate) use step::step_responses;
 
 /// What to analyse.

@@ -1,7 +1,7 @@
 //! Margins as a verdict, and which of two loops is worse.
 
 use fspid_lti::{LtiError, SampledLoop, SampledMargins, Stability};
-use fspid_sim::SimError;
+use fspid_sim::{Doubt, SimError};
 
 use super::answer::Margins;
 use crate::metrics::Absent;
@@ -20,7 +20,9 @@ pub(super) fn judged(open: &SampledLoop) -> Result<Result<Box<SampledMargins>, A
             Ok(Err(Absent::Unstable { spectral_radius: radius.unwrap_or(f64::INFINITY) }))
         }
         Err(error) => match error.undecided_radius() {
-            Some(spectral_radius) => Ok(Err(Absent::Undecided { spectral_radius })),
+            Some(spectral_radius) => {
+                Ok(Err(Absent::Undecided(Doubt::Rounding { spectral_radius })))
+            }
             None => Err(error.into()),
         },
     }

@@ -1,7 +1,6 @@
 //! One verdict on the stability of a loop, with the same three words in every answer.
 
-use fspid_sim::stability::Undecided;
-use fspid_sim::{Doubt, Stand};
+use fspid_sim::Stand;
 
 use super::answer::Margins;
 use crate::metrics::Absent;
@@ -67,29 +66,6 @@ pub(super) fn of_stand(stand: Stand) -> Result<(), Absent> {
     match stand {
         Stand::Holds => Ok(()),
         Stand::Grows { spectral_radius } => Err(Absent::Unstable { spectral_radius }),
-        Stand::Undecided { spectral_radius, doubt } => Err(undecided(spectral_radius, doubt)),
-    }
-}
-
-/// Why a rest is undecided.
-pub(crate) fn why_undecided(found: &Undecided) -> Absent {
-    undecided(found.spectral_radius, found.doubt)
-}
-
-fn undecided(spectral_radius: f64, doubt: Doubt) -> Absent {
-    match doubt {
-        Doubt::Rounding => Absent::Undecided { spectral_radius },
-        Doubt::OneSide => Absent::OneSide { spectral_radius },
-        Doubt::LongWay => Absent::LongWay { spectral_radius },
-        Doubt::ChangingAge => Absent::ChangingAge { spectral_radius },
-        Doubt::LongMode => Absent::LongMode,
-        Doubt::Commanded => Absent::Commanded { spectral_radius },
-        Doubt::ChangedAircraft => Absent::ChangedAircraft,
-        Doubt::Wings => Absent::Wings { spectral_radius },
-        Doubt::Erection => Absent::Erection { spectral_radius },
-        Doubt::HeldOn => Absent::HeldOn { spectral_radius },
-        Doubt::Kink => Absent::Kink,
-        Doubt::FastMotion => Absent::FastMotion,
-        Doubt::BeyondLimits => Absent::BeyondLimits,
+        Stand::Undecided(doubt) => Err(Absent::Undecided(doubt)),
     }
 }

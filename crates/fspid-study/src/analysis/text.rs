@@ -57,7 +57,7 @@ fn verdict(found: &AnalysedLoop) -> String {
         1 => String::new(),
         all => format!(" for {bad} of {all} plants"),
     };
-    if let (Stability::Undecided, 0, Some(doubt)) = (stability, bad, found.doubt_in_words()) {
+    if let (Stability::Undecided, 0, Some(doubt)) = (stability, bad, found.doubt) {
         return format!("UNDECIDED {gains}: {doubt}");
     }
     if stability != Stability::Stable {

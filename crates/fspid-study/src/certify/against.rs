@@ -13,8 +13,8 @@ use super::loop_file::LoopFile;
 use super::nonlinear_file::AircraftFile;
 use super::scope::commands_in_words;
 use super::{asked, cases, family, nonlinear};
-use crate::analysis::{AtRest, held_in_words, lasting_plants, why_undecided};
-use crate::metrics::short;
+use crate::analysis::{AtRest, held_in_words, lasting_plants};
+use crate::metrics::{Absent, short};
 use fspid_scenario::file::{Study, Template};
 
 /// What stands in for something that is not there.
@@ -195,7 +195,7 @@ fn not_held(study: &Study, controller: &str) -> Option<Difference> {
     let beyond = at_rest.undecided.filter(|it| it.doubt.is_beyond_the_loop());
     let flown = match (at_rest.unstable, beyond) {
         (Some(unstable), _) => grows_in_words(scenario, &unstable),
-        (None, Some(undecided)) => format!("undecided: {}", why_undecided(&undecided)),
+        (None, Some(undecided)) => format!("undecided: {}", Absent::Undecided(undecided.doubt)),
         (None, None) => return None,
     };
     Some(Difference { path: "at_rest".to_owned(), certified: "stable".to_owned(), flown })

@@ -4,7 +4,7 @@ use std::fmt;
 
 use fspid_sim::signal::Edge;
 use fspid_sim::stability::Unstable;
-use fspid_sim::{ControllerLoss, Exit, Outcome, PlantLoss, Timing, Trace};
+use fspid_sim::{EarlyEnd, Exit, Outcome, Timing, Trace};
 
 use super::{
     Absent, CommandEffort, ErrorIntegrals, Measured, StepMetrics, StepWindow, is_seen_to_stay,
@@ -26,30 +26,8 @@ pub enum Verdict {
     },
     /// There was no step to settle.
     Flown,
-    /// The flight diverged.
-    Diverged {
-        /// When, s.
-        at_s: f64,
-    },
-    /// The aircraft came down to the ground.
-    HitGround {
-        /// When, s.
-        at_s: f64,
-    },
-    /// An external controller crashed, hung, ended or answered nothing that could be flown.
-    ControllerLost {
-        /// When, s.
-        at_s: f64,
-        /// How it was lost.
-        loss: ControllerLoss,
-    },
-    /// Another simulator, which flies the aircraft, crashed, hung, ended or answered nothing that is a flight.
-    PlantLost {
-        /// When, s.
-        at_s: f64,
-        /// How it was lost.
-        loss: PlantLoss,
-    },
+    /// The flight ended before its last sample: it diverged, hit the ground, or lost its controller or its simulator.
+    EndedEarly(EarlyEnd),
     /// The loop is unstable at the gains that it has at rest, although the flight did not diverge in its window.
     Unstable {
         /// Spectral radius of the sampled closed loop.
@@ -81,10 +59,7 @@ impl Verdict {
     pub fn is_failure(self) -> bool {
         match self {
             Self::Settled | Self::NotSettled { .. } | Self::Flown => false,
-            Self::Diverged { .. }
-            | Self::HitGround { .. }
-            | Self::ControllerLost { .. }
-            | Self::PlantLost { .. }
+            Self::EndedEarly(_)
             | Self::Unstable { .. }
             | Self::ModeNeverBegan { .. }
             | Self::LeftRange(_) => true,
@@ -98,10 +73,7 @@ impl Verdict {
             Self::Settled => "settled",
             Self::NotSettled { .. } => "not settled",
             Self::Flown => "flown",
-            Self::Diverged { .. } => "diverged",
-            Self::HitGround { .. } => "hit the ground",
-            Self::ControllerLost { .. } => "controller lost",
-            Self::PlantLost { .. } => "plant lost",
+            Self::EndedEarly(end) => end.cause.kind(),
             Self::Unstable { .. } => "unstable at rest",
             Self::ModeNeverBegan { .. } => "mode never began",
             Self::LeftRange(_) => "left the range",
@@ -111,10 +83,7 @@ impl Verdict {
     /// Why nothing can be measured, where that is so.
     fn absence(self) -> Option<Absent> {
         match self {
-            Self::Diverged { at_s } => Some(Absent::Diverged { at_s }),
-            Self::HitGround { at_s } => Some(Absent::HitGround { at_s }),
-            Self::ControllerLost { at_s, loss } => Some(Absent::ControllerLost { at_s, loss }),
-            Self::PlantLost { at_s, loss } => Some(Absent::PlantLost { at_s, loss }),
+            Self::EndedEarly(end) => Some(Absent::EndedEarly(end)),
             Self::Unstable { spectral_radius, .. } => Some(Absent::Unstable { spectral_radius }),
             Self::Settled
             | Self::NotSettled { .. }
@@ -135,14 +104,7 @@ impl fmt::Display for Verdict {
                 write!(f, ": in its band after {since_s:.3} s, too late to see it stay")
             }
             Self::Flown => f.write_str("flown"),
-            Self::Diverged { at_s } => write!(f, "diverged at t = {} s", short(*at_s)),
-            Self::HitGround { at_s } => write!(f, "hit the ground at t = {} s", short(*at_s)),
-            Self::ControllerLost { at_s, loss } => {
-                write!(f, "the controller {loss} at t = {} s", short(*at_s))
-            }
-            Self::PlantLost { at_s, loss } => {
-                write!(f, "the simulator {loss} at t = {} s", short(*at_s))
-            }
+            Self::EndedEarly(end) => Absent::EndedEarly(*end).fmt(f),
             Self::Unstable { spectral_radius, doubling_s } => {
                 write!(f, "unstable at rest (")?;
                 if doubling_s.is_finite() {
@@ -205,12 +167,7 @@ impl FlightMetrics {
         pushes_s: &[f64],
     ) -> Self {
         let failed = match (trace.outcome, unstable) {
-            (Outcome::Diverged { at_s }, _) => Some(Verdict::Diverged { at_s }),
-            (Outcome::HitGround { at_s }, _) => Some(Verdict::HitGround { at_s }),
-            (Outcome::ControllerLost { at_s, loss }, _) => {
-                Some(Verdict::ControllerLost { at_s, loss })
-            }
-            (Outcome::PlantLost { at_s, loss }, _) => Some(Verdict::PlantLost { at_s, loss }),
+            (Outcome::EndedEarly(end), _) => Some(Verdict::EndedEarly(end)),
             (Outcome::Completed | Outcome::ModeNeverBegan { .. }, Some(unstable)) => {
                 Some(Verdict::Unstable {
                     spectral_radius: unstable.spectral_radius,

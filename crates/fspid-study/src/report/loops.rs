@@ -93,7 +93,7 @@ fn verdict(found: &AnalysedLoop) -> Verdict {
 
 /// What stands in the way although the pitch loop alone may be stable; none where nothing does.
 fn around(found: &AnalysedLoop) -> Option<String> {
-    if let Some(doubt) = found.doubt_in_words() {
+    if let Some(doubt) = found.doubt {
         return Some(format!("Nobody can tell: {doubt}."));
     }
     let growing = found.modes.iter().filter(|mode| mode.stability() != Stability::Stable);

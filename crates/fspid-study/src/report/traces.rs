@@ -1,7 +1,7 @@
 //! Time responses as figures.
 
 use fspid_sim::autopilot::Autopilot;
-use fspid_sim::{AircraftPlant, Controller, Outcome, Scenario, Trace};
+use fspid_sim::{AircraftPlant, Controller, EarlyEnd, EndCause, Outcome, Scenario, Trace};
 
 use super::around::{self, Panel, Shown};
 use super::flight_path::{self, Flown};
@@ -434,7 +434,11 @@ fn shown<'a, T>(trace: &Trace, column: &'a [T]) -> &'a [T] {
 
 /// True for a flight that fails and may go anywhere: what comes down to the ground stays as readable as it was.
 fn grows(result: &ControllerResult) -> bool {
-    fails(result) && !matches!(result.trace.outcome, Outcome::HitGround { .. })
+    let hit_ground = matches!(
+        result.trace.outcome,
+        Outcome::EndedEarly(EarlyEnd { cause: EndCause::HitGround, .. })
+    );
+    fails(result) && !hit_ground
 }
 
 /// True for a flight that ended before its time.

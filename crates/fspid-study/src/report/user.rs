@@ -2,7 +2,7 @@
 
 use fspid_core::{GainCoupling, InputSets, SecondInput, SelfTuner};
 use fspid_fuzzy::UNITS;
-use fspid_sim::{Controller, Plant};
+use fspid_sim::{Controller, EarlyEnd, EndCause, Plant};
 use serde::Serialize;
 
 use super::supervisor;
@@ -51,7 +51,7 @@ pub(super) fn report(
 struct Outcome {
     name: String,
     class: &'static str,
-    word: &'static str,
+    word: String,
     detail: String,
 }
 
@@ -70,27 +70,24 @@ pub(super) fn drawing<'a>(study: &'a Study, simulation: &'a Simulation) -> Drawi
 fn outcome(result: &ControllerResult) -> Outcome {
     let verdict = result.verdict();
     let (class, word) = match verdict {
-        Verdict::Settled => ("good", "\u{2713} Settled"),
-        Verdict::Flown => ("good", "\u{2713} Flown"),
-        Verdict::NotSettled { .. } => ("fair", "! Not settled"),
-        Verdict::Diverged { .. } => ("bad", "\u{2717} DIVERGED"),
-        Verdict::HitGround { .. } => ("bad", "\u{2717} HIT THE GROUND"),
-        Verdict::ControllerLost { .. } => ("bad", "\u{2717} CONTROLLER LOST"),
-        Verdict::PlantLost { .. } => ("bad", "\u{2717} PLANT LOST"),
-        Verdict::Unstable { .. } => ("bad", "\u{2717} UNSTABLE AT REST"),
-        Verdict::LeftRange(_) => ("bad", "\u{2717} LEFT THE RANGE OF ITS DATA"),
-        Verdict::ModeNeverBegan { .. } => ("bad", "\u{2717} MODE NEVER BEGAN"),
+        Verdict::Settled => ("good", "\u{2713} Settled".to_owned()),
+        Verdict::Flown => ("good", "\u{2713} Flown".to_owned()),
+        Verdict::NotSettled { .. } => ("fair", "! Not settled".to_owned()),
+        Verdict::LeftRange(_) => ("bad", "\u{2717} LEFT THE RANGE OF ITS DATA".to_owned()),
+        Verdict::EndedEarly(_) | Verdict::Unstable { .. } | Verdict::ModeNeverBegan { .. } => {
+            ("bad", format!("\u{2717} {}", verdict.kind().to_uppercase()))
+        }
     };
     let detail = match verdict {
-        Verdict::Diverged { at_s } => format!(
+        Verdict::EndedEarly(EarlyEnd { at_s, cause: EndCause::Diverged }) => format!(
             "The pitch angle left every reasonable range at t = {} s. Nothing can be measured in this flight.",
             fixed(at_s, 3)
         ),
-        Verdict::HitGround { at_s } => format!(
+        Verdict::EndedEarly(EarlyEnd { at_s, cause: EndCause::HitGround }) => format!(
             "The aircraft came down to the ground at t = {} s, where the flight ends. Nothing can be measured in it.",
             fixed(at_s, 3)
         ),
-        Verdict::ControllerLost { .. } | Verdict::PlantLost { .. } => format!(
+        Verdict::EndedEarly(_) => format!(
             "{}, where the flight ends. Nothing can be measured in it.",
             capital(&verdict.to_string())
         ),

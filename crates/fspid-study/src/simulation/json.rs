@@ -89,15 +89,11 @@ fn outcome(verdict: Verdict) -> Value {
         Verdict::NotSettled { window_s, since_s: Some(since_s) } => {
             json!({ "kind": kind, "window_s": finite(window_s), "since_s": finite(since_s) })
         }
-        Verdict::Diverged { at_s } | Verdict::HitGround { at_s } => {
-            json!({ "kind": kind, "at_s": finite(at_s) })
-        }
-        Verdict::ControllerLost { at_s, loss } => {
-            json!({ "kind": kind, "at_s": finite(at_s), "loss": loss.kind() })
-        }
-        Verdict::PlantLost { at_s, loss } => {
-            json!({ "kind": kind, "at_s": finite(at_s), "loss": loss.kind() })
-        }
+        Verdict::EndedEarly(end) => present(json!({
+            "kind": kind,
+            "at_s": finite(end.at_s),
+            "loss": end.cause.loss_kind(),
+        })),
         Verdict::Unstable { spectral_radius, doubling_s } => json!({
             "kind": kind,
             "spectral_radius": finite(spectral_radius),

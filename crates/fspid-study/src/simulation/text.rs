@@ -84,14 +84,8 @@ fn push_judgement(out: &mut String, judgement: &Judgement) {
 }
 
 fn step(step: &StepMetrics) -> String {
-    if let Err(
-        reason @ (Absent::Diverged { .. }
-        | Absent::HitGround { .. }
-        | Absent::ControllerLost { .. }
-        | Absent::PlantLost { .. }
-        | Absent::Unstable { .. }
-        | Absent::NotFinite),
-    ) = step.overshoot_pct
+    if let Err(reason @ (Absent::EndedEarly(_) | Absent::Unstable { .. } | Absent::NotFinite)) =
+        step.overshoot_pct
     {
         return format!("no measures ({reason})");
     }

@@ -6,8 +6,8 @@ use fspid_sim::load::{ConstantLoad, HALF_GONE, REMOVED};
 use fspid_sim::stability::Unstable;
 
 use super::ControllerResult;
-use crate::analysis::{AtRest, RestGains, held_in_words, why_undecided};
-use crate::metrics::{EdgeMetrics, left_validity, short};
+use crate::analysis::{AtRest, RestGains, held_in_words};
+use crate::metrics::{Absent, EdgeMetrics, left_validity, short};
 use fspid_diagnostics::digits::to_digits;
 use fspid_scenario::file::RangeRule;
 
@@ -69,7 +69,7 @@ impl AtRest {
     #[must_use]
     pub fn undecided_in_words(&self) -> Option<String> {
         let undecided = self.undecided?;
-        let why = why_undecided(&undecided);
+        let why = Absent::Undecided(undecided.doubt);
         if undecided.doubt.is_beyond_the_loop() {
             return Some(format!("stability at rest: {why}"));
         }

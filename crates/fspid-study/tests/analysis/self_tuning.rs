@@ -1,5 +1,6 @@
 //! Gains that move: their equilibrium and every place where they can stand.
 
+use fspid_sim::Doubt;
 use fspid_study::analysis::{Equilibrium, Stability};
 use fspid_study::metrics::Absent;
 use fspid_study::simulation::Simulation;
@@ -299,7 +300,7 @@ fn a_loop_that_one_side_of_a_kink_would_make_grow_and_no_motion_does_is_called_u
         assert!(verdict.contains(stands), "{amplitude_deg}: {text}");
     }
     let undecided = analysed(TUNED, &[weight, "setpoint.amplitude_deg=-12"]);
-    assert!(matches!(undecided.loops[0].margins(), Err(Absent::OneSide { .. })));
+    assert!(matches!(undecided.loops[0].margins(), Err(Absent::Undecided(Doubt::OneSide { .. }))));
     assert!(undecided.json()["controllers"][0]["stable"].is_null());
 }
 

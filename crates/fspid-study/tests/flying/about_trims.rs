@@ -176,7 +176,7 @@ fn a_gyro_that_erects_to_the_apparent_vertical_is_told_where_small_motions_grow_
     let gyro = "[sensor]\npreset = \"vertical-gyro\"\nseed = 1\npitch = { noise_deg_rt_hz = 0.0, bias_deg = 0.0, drift_deg = 0.0 }\nrate = { noise_deg_s_rt_hz = 0.0, bias_deg_s = 0.0 }\n[loop]";
     let text = NAVION.replace("[loop]", gyro);
     let flown = result(&text, &["setpoint.amplitude_deg=0.001", "loop.duration_s=400.0"]);
-    assert_eq!(doubt(&flown), Some(Doubt::Erection));
+    assert!(matches!(doubt(&flown), Some(Doubt::Erection { .. })));
     let last = flown.trace.theta_rad.iter().rev().take(5000).map(|rad| rad.to_degrees().abs());
     assert!(last.fold(0.0, f64::max) > 0.1);
     let upright = text.replace(
@@ -346,9 +346,9 @@ const DIVE: [&str; 6] = [
 #[test]
 fn a_set_point_that_is_held_on_is_asked_at_the_airspeed_to_which_it_leads() {
     let dive = [&DIVE[..], &["loop.duration_s=80.0"]].concat();
-    assert_eq!(doubt(&result(NAVION, &DIVE)), Some(Doubt::HeldOn));
+    assert!(matches!(doubt(&result(NAVION, &DIVE)), Some(Doubt::HeldOn { .. })));
     let flown = result(NAVION, &dive);
-    assert_eq!(doubt(&flown), Some(Doubt::HeldOn));
+    assert!(matches!(doubt(&flown), Some(Doubt::HeldOn { .. })));
     let rates = flown.trace.theta_rad.windows(2).rev().take(500);
     let swings = rates.fold(0.0, |most: f64, two| most.max((two[1] - two[0]).abs()));
     assert!(swings > 20.0_f64.to_radians() * 0.01, "{swings}");

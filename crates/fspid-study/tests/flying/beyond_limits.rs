@@ -1,6 +1,6 @@
 //! Where limits leave less than what is held takes, and what such flights come to.
 
-use fspid_sim::Doubt;
+use fspid_sim::{Doubt, EarlyEnd, EndCause};
 use fspid_study::metrics::Verdict;
 
 use crate::flying::what_is_held::result;
@@ -88,7 +88,14 @@ fn a_rest_without_an_integral_beyond_a_limit_is_undecided_and_is_left_in_a_longe
     assert_eq!(doubt(&[]), Some(Doubt::BeyondLimits));
     assert_eq!(doubt(&["controller.C.output_limits_deg=[-0.51, 10.0]"]), None);
     let long = result(FED_FORWARD, &["loop.duration_s=400.0"]);
-    assert!(matches!(long.metrics.verdict, Verdict::Diverged { .. }), "{:?}", long.metrics.verdict);
+    assert!(
+        matches!(
+            long.metrics.verdict,
+            Verdict::EndedEarly(EarlyEnd { cause: EndCause::Diverged, .. })
+        ),
+        "{:?}",
+        long.metrics.verdict
+    );
 }
 
 /// A load on a plant that integrates, of which the limit leaves a tenth.

@@ -1,7 +1,7 @@
 //! Flights that come down to the ground, and flights beyond the range of their aircraft's data.
 
 use fspid_scenario::file;
-use fspid_sim::Outcome;
+use fspid_sim::{EarlyEnd, EndCause, Outcome};
 use fspid_study::metrics::{Absent, Verdict};
 use fspid_study::report;
 use fspid_study::simulation::Simulation;
@@ -25,16 +25,18 @@ fn flown(text: &str, set: &[&str]) -> Simulation {
 fn a_flight_ends_where_the_aircraft_touches_the_ground() {
     let simulation = flown(NAVION, &DOWN);
     let result = &simulation.results[0];
-    let Outcome::HitGround { at_s } = result.trace.outcome else {
+    let Outcome::EndedEarly(end) = result.trace.outcome else {
         panic!("{:?}", result.trace.outcome)
     };
+    let EarlyEnd { at_s, cause } = end;
+    assert_eq!(cause, EndCause::HitGround);
     let altitudes = column(&result.trace, "altitude_m");
     assert!(altitudes.iter().all(|altitude| *altitude > 0.0));
     assert!(altitudes[altitudes.len() - 1] < 0.5, "the last sample is just above");
     assert!((at_s - 0.01 * altitudes.len() as f64).abs() < 1e-9, "{at_s}");
-    assert_eq!(result.metrics.verdict, Verdict::HitGround { at_s });
-    assert_eq!(result.metrics.effort, Err(Absent::HitGround { at_s }));
-    assert_eq!(result.metrics.first_step().overshoot_pct, Err(Absent::HitGround { at_s }));
+    assert_eq!(result.metrics.verdict, Verdict::EndedEarly(end));
+    assert_eq!(result.metrics.effort, Err(Absent::EndedEarly(end)));
+    assert_eq!(result.metrics.first_step().overshoot_pct, Err(Absent::EndedEarly(end)));
     let sentence = result.metrics.verdict.to_string();
     assert!(sentence.starts_with("hit the ground at t = 1"), "{sentence}");
     assert!(simulation.text().contains(&sentence), "{}", simulation.text());

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use fspid_aircraft::Quantity;
 use fspid_scenario::file;
-use fspid_sim::{Outcome, fly};
+use fspid_sim::{EarlyEnd, EndCause, Outcome, fly};
 use fspid_study::metrics::Verdict;
 use fspid_study::report;
 use fspid_study::simulation::Simulation;
@@ -29,7 +29,11 @@ fn a_flight_beyond_its_model_says_when_and_by_which_limit() {
 #[test]
 fn an_aircraft_on_its_back_has_diverged() {
     let trace = flown(NAVION, &["controller.PID.kp=-8.0", "loop.duration_s=60.0"]);
-    assert!(matches!(trace.outcome, Outcome::Diverged { .. }), "{:?}", trace.outcome);
+    assert!(
+        matches!(trace.outcome, Outcome::EndedEarly(EarlyEnd { cause: EndCause::Diverged, .. })),
+        "{:?}",
+        trace.outcome
+    );
     assert!(trace.rows() < 6001);
     assert!(trace.theta_rad.iter().all(|theta| theta.is_finite()));
 }

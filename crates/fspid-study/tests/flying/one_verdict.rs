@@ -1,7 +1,7 @@
 //! One verdict on the stability of a loop, whatever its limits are and whoever is asked.
 
-use fspid_sim::Controller;
 use fspid_sim::stability::loop_spectral_radius;
+use fspid_sim::{Controller, EarlyEnd, EndCause};
 use fspid_study::analysis::{Analysis, AtRest, Question, Stability};
 use fspid_study::metrics::Verdict;
 use fspid_study::simulation::Simulation;
@@ -103,7 +103,11 @@ fn said(set: &[String]) -> [(&'static str, Stability); 5] {
     };
     let flight = Simulation::of(&study).expect("it flies");
     let flown = match (flight.results[0].verdict(), at_rest.undecided) {
-        (Verdict::Unstable { .. } | Verdict::Diverged { .. }, _) => Stability::Unstable,
+        (
+            Verdict::Unstable { .. }
+            | Verdict::EndedEarly(EarlyEnd { cause: EndCause::Diverged, .. }),
+            _,
+        ) => Stability::Unstable,
         (_, Some(_)) => Stability::Undecided,
         (_, None) => Stability::Stable,
     };

@@ -1,6 +1,7 @@
 //! Scenarios with an autopilot around the loop: what is judged, and what is refused.
 
 use fspid_scenario::file;
+use fspid_sim::{EarlyEnd, EndCause};
 use fspid_study::analysis::{Analysis, Question, Stability};
 use fspid_study::metrics::Verdict;
 use fspid_study::simulation::Simulation;
@@ -82,7 +83,14 @@ fn outer_loops_that_grow_are_called_unstable_by_flight_and_analysis_alike() {
     let fast = ["outer_loop.altitude.kp=4.0"];
     let flight = flown(CAPTURE, &fast);
     let verdict = flight.results[0].verdict();
-    assert!(matches!(verdict, Verdict::Unstable { .. } | Verdict::Diverged { .. }), "{verdict}");
+    assert!(
+        matches!(
+            verdict,
+            Verdict::Unstable { .. }
+                | Verdict::EndedEarly(EarlyEnd { cause: EndCause::Diverged, .. })
+        ),
+        "{verdict}"
+    );
     let analysis = Analysis::of(&study(CAPTURE, &fast), Question::default()).expect("analysed");
     assert_eq!(analysis.stability(), Stability::Unstable);
     assert!(!analysis.all_held());

@@ -6,6 +6,7 @@ use fspid_scenario::measure::Measure;
 use fspid_scenario::requirement::{AskedIn, Conditions, Origin, Requirement};
 use fspid_scenario::tuning::Objective;
 use fspid_scenario::units::degrees;
+use fspid_sim::Doubt;
 use fspid_study::judgement::{Judgement, NotEvaluated};
 use fspid_study::metrics::{Absent, Verdict};
 use serde::{Deserialize, Serialize};
@@ -187,7 +188,10 @@ pub(crate) fn measured(objectives: &[Objective]) -> Vec<Requirement> {
 fn is_unstable(flight: &FlightResult) -> bool {
     let of_loop = |judgement: &Judgement| match &judgement.found {
         // Where rounding hides it, nobody may call it stable either.
-        Err(NotEvaluated::Unstable { .. } | NotEvaluated::Absent(Absent::Undecided { .. })) => true,
+        Err(
+            NotEvaluated::Unstable { .. }
+            | NotEvaluated::Absent(Absent::Undecided(Doubt::Rounding { .. })),
+        ) => true,
         Ok(case) => judgement.requirement.measure == Measure::Stable && !(case.value >= 1.0),
         Err(_) => false,
     };

@@ -4,7 +4,7 @@ use core::f64::consts::PI;
 use core::ops::ControlFlow;
 
 use fspid_sim::signal::{Profile, Shape};
-use fspid_sim::{Outcome, Scenario, Timing, fly_commanded};
+use fspid_sim::{EarlyEnd, EndCause, Outcome, Scenario, Timing, fly_commanded};
 
 use super::RuleError;
 use super::options::RelayOptions;
@@ -173,14 +173,13 @@ pub(super) fn experiment(
             None => ControlFlow::Continue(()),
         },
     )?;
-    match outcome {
-        Outcome::Diverged { at_s } => return Err(RuleError::RelayDiverged { at_s }),
-        Outcome::HitGround { at_s } => return Err(RuleError::RelayHitGround { at_s }),
-        // A relay is no program that could be lost, and what another simulator flies is not asked.
-        Outcome::Completed
-        | Outcome::ModeNeverBegan { .. }
-        | Outcome::ControllerLost { .. }
-        | Outcome::PlantLost { .. } => {}
+    if let Outcome::EndedEarly(EarlyEnd { at_s, cause }) = outcome {
+        match cause {
+            EndCause::Diverged => return Err(RuleError::RelayDiverged { at_s }),
+            EndCause::HitGround => return Err(RuleError::RelayHitGround { at_s }),
+            // A relay is no program that could be lost, and what another simulator flies is not asked.
+            EndCause::ControllerLost(_) | EndCause::PlantLost(_) => {}
+        }
     }
     let cycles = relay.borrow().cycles.len();
     let Some((settled, k)) = found else {

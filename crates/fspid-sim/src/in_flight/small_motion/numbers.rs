@@ -8,7 +8,7 @@ use crate::error::SimError;
 use crate::in_flight::Course;
 use crate::scenario::Prepared;
 use crate::sensor::SensorState;
-use crate::trace::Outcome;
+use crate::trace::{EarlyEnd, EndCause, Outcome};
 
 /// A flight between two samples.
 #[derive(Clone)]
@@ -33,10 +33,10 @@ impl Ended {
     /// In words, of a mode.
     pub(super) fn of(self, mode: usize) -> SimError {
         match self {
-            Self::Flight(Outcome::Diverged { at_s }) => {
+            Self::Flight(Outcome::EndedEarly(EarlyEnd { at_s, cause: EndCause::Diverged })) => {
                 SimError::LeavesTrim { mode, at_s, how: "diverges" }
             }
-            Self::Flight(Outcome::HitGround { at_s }) => {
+            Self::Flight(Outcome::EndedEarly(EarlyEnd { at_s, cause: EndCause::HitGround })) => {
                 SimError::LeavesTrim { mode, at_s, how: "hits the ground" }
             }
             // Nobody else flies what has equations, and it is long enough.

@@ -56,7 +56,7 @@ fn between(margin: &Margin, way: &str, shown: impl Fn(f64) -> String) -> String 
         Margin::Between { holds, fails, failure } => {
             // Who reads "fails" thinks of the loop.
             let lost = match failure {
-                Failure::ControllerLost { .. } | Failure::PlantLost { .. } => {
+                Failure::EndedEarly(end) if end.cause.loss_kind().is_some() => {
                     format!(" ({failure})")
                 }
                 _ => String::new(),

@@ -1,11 +1,11 @@
 //! The linear loops of a controller: one for each plant that lasts.
 
 use fspid_lti::Mode;
-use fspid_sim::{NamedController, RestPoint, Scenario, SimError};
-
-use crate::analysis::{
-    Analysis, Margins, PlantLoop, Question, RestLoop, decibels, held_at_rest, why_undecided,
+use fspid_sim::{
+    Doubt, EarlyEnd, EndCause, NamedController, Outcome, RestPoint, Scenario, SimError,
 };
+
+use crate::analysis::{Analysis, Margins, PlantLoop, Question, RestLoop, decibels, held_at_rest};
 use crate::judgement::{Case, CasePlace, NotEvaluated, PlantAt};
 use crate::metrics::Absent;
 use crate::simulation::ControllerResult;
@@ -60,7 +60,7 @@ pub(super) fn require_stability(
         let plant = several.then_some(PlantAt { index, from_s: held.from_s });
         match held.verdict {
             // Not decided by the loop: the flight tells.
-            Ok(()) | Err(Absent::OneSide { .. }) => {}
+            Ok(()) | Err(Absent::Undecided(Doubt::OneSide { .. })) => {}
             Err(reason) => {
                 let rest = (held.at != RestPoint::TRIM).then_some(held.at);
                 return Err(with_place(reason, CasePlace { plant, rest, ..CasePlace::default() }));
@@ -122,22 +122,18 @@ pub(super) fn rest_cases(
 /// A flight that diverged is no flight of a stable loop.
 fn diverged(result: &ControllerResult) -> Option<Case> {
     match result.trace.outcome {
-        fspid_sim::Outcome::Diverged { at_s } => {
+        Outcome::EndedEarly(EarlyEnd { at_s, cause: EndCause::Diverged }) => {
             Some(Case { value: 0.0, place: CasePlace { at_s: Some(at_s), ..CasePlace::default() } })
         }
         // What hits the ground may be stable: the flight fails by itself.
-        fspid_sim::Outcome::Completed
-        | fspid_sim::Outcome::ModeNeverBegan { .. }
-        | fspid_sim::Outcome::HitGround { .. }
-        | fspid_sim::Outcome::ControllerLost { .. }
-        | fspid_sim::Outcome::PlantLost { .. } => None,
+        Outcome::EndedEarly(_) | Outcome::Completed | Outcome::ModeNeverBegan { .. } => None,
     }
 }
 
 /// Refuses a flight of which it is not known whether what is no loop of a plant holds: an aircraft of later, a long mode.
 pub(super) fn require_decided(result: &ControllerResult) -> Result<(), NotEvaluated> {
     let beyond = result.at_rest.undecided.filter(|it| it.doubt.is_beyond_the_loop());
-    beyond.map_or(Ok(()), |undecided| Err(NotEvaluated::Absent(why_undecided(&undecided))))
+    beyond.map_or(Ok(()), |undecided| Err(NotEvaluated::Absent(Absent::Undecided(undecided.doubt))))
 }
 
 /// An autopilot's mode that grows is part of no loop with a plant.

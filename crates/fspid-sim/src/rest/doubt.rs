@@ -1,0 +1,117 @@
+//! Why it is undecided whether an equilibrium is stable: each reason with the number that it has and its sentence.
+
+use crate::loop_model::MOST_AS_STATES;
+
+/// Why nobody can tell whether a rest holds. A spectral radius is that of the sampled closed loop that is in doubt, as computed.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum Doubt {
+    /// Rounding may carry poles across the unit circle.
+    #[error(
+        "rounding may carry poles across the unit circle (spectral radius {spectral_radius:.9} as computed)"
+    )]
+    Rounding {
+        /// Spectral radius.
+        spectral_radius: f64,
+    },
+    /// A side of a kink is unstable, and no motion was seen to grow.
+    #[error(
+        "unstable on one side of a kink that the rules have where the loop rests (spectral radius {spectral_radius:.6} there), and no motion was seen to grow"
+    )]
+    OneSide {
+        /// Spectral radius on that side.
+        spectral_radius: f64,
+    },
+    /// A side of a kink is unstable, and so much is on its way that no motion is followed through the sides.
+    #[error(
+        "unstable on one side of a kink that the rules have where the loop rests (spectral radius {spectral_radius:.6} there), and motions are not followed through so many samples on their way"
+    )]
+    LongWay {
+        /// Spectral radius on that side.
+        spectral_radius: f64,
+    },
+    /// A sensor shows values of changing age: of the pitch loop, which is stable with one of them and not with another; of a mode
+    /// of the autopilot, which is unstable with one.
+    #[error(
+        "a sensor with a clock of its own shows values of changing age; with one of them, or over some samples, the loop is unstable, or there are too many of them to be asked in turn"
+    )]
+    ChangingAge,
+    /// So much is on its way in a mode of the autopilot that it is not asked for its poles.
+    #[error("more than {MOST_AS_STATES} samples are on their way in a mode of the autopilot")]
+    LongMode,
+    /// It grows at a set-point that the loops around the pitch loop may command.
+    #[error(
+        "at a set-point that the loops around the pitch loop may command the loop is unstable (spectral radius {spectral_radius:.6})"
+    )]
+    Commanded {
+        /// Spectral radius there.
+        spectral_radius: f64,
+    },
+    /// With a configuration of later there is no trim at the speed and altitude of the start; or with an empty tank none, or one
+    /// that is not shown to hold.
+    #[error(
+        "with its configuration or its fuel of later in the flight the aircraft has no trim at the speed and altitude of the start, or none that is shown to be stable"
+    )]
+    ChangedAircraft,
+    /// About the trim of an aircraft something grows that is no pitching.
+    #[error(
+        "about the trim something grows that is no pitching (spectral radius {spectral_radius:.6}): roll, yaw or bank, with leveller and damper as they are"
+    )]
+    Wings {
+        /// Spectral radius of all small motions, sample to sample.
+        spectral_radius: f64,
+    },
+    /// A gyro's erection makes small motions grow, until its bounded rate holds them.
+    #[error(
+        "with the erection of the vertical gyro small motions grow (spectral radius {spectral_radius:.6}) until its bounded rate holds them, so that an oscillation stays"
+    )]
+    Erection {
+        /// Spectral radius of all small motions, sample to sample.
+        spectral_radius: f64,
+    },
+    /// The set-point of the end, held on, brings an aircraft to another airspeed, where it grows.
+    #[error(
+        "held on, the set-point of the end brings the aircraft with the throttle of its trim to another airspeed, at which the loop is unstable (spectral radius {spectral_radius:.6}): a longer flight shows it"
+    )]
+    HeldOn {
+        /// Spectral radius there.
+        spectral_radius: f64,
+    },
+    /// The trim of an aircraft lies on a kink of its data, where no linear model is that of its small motions.
+    #[error(
+        "the trim lies right on a kink of the aircraft's data (a breakpoint of a table, a row of Mach numbers, a corner of a gearing), where each side has slopes of its own: a trim a little beside it has one linear model"
+    )]
+    Kink,
+    /// About the trim of an aircraft something moves so fast that the steps of the integration do not follow.
+    #[error(
+        "about the trim the airframe has a motion that is too fast for the steps of the integration, which are the sample period and 0.01 s at most: with a shorter period they follow it"
+    )]
+    FastMotion,
+    /// What is held at the end of the flight takes more than a limit leaves, of a plant that does not come to rest by itself; or
+    /// the flight of one ended at a limit with an error that grows.
+    #[error(
+        "the plant does not come to rest by itself, and at the end of the flight set-point and loads take more elevator than a limit leaves, or the command is at a limit and the error grows"
+    )]
+    BeyondLimits,
+}
+
+impl Doubt {
+    /// True for what is no loop of a plant at rest: a set-point that is held says nothing of it.
+    #[must_use]
+    pub fn is_beyond_the_loop(self) -> bool {
+        match self {
+            Self::Rounding { .. }
+            | Self::OneSide { .. }
+            | Self::LongWay { .. }
+            | Self::ChangingAge
+            | Self::Commanded { .. } => false,
+            Self::LongMode
+            | Self::ChangedAircraft
+            | Self::Wings { .. }
+            | Self::Erection { .. }
+            | Self::HeldOn { .. }
+            | Self::Kink
+            | Self::FastMotion
+            | Self::BeyondLimits => true,
+        }
+    }
+}
