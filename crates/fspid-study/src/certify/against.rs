@@ -195,7 +195,7 @@ fn not_held(study: &Study, controller: &str) -> Option<Difference> {
     let beyond = at_rest.undecided.filter(|it| it.doubt.is_beyond_the_loop());
     let flown = match (at_rest.unstable, beyond) {
         (Some(unstable), _) => grows_in_words(scenario, &unstable),
-        (None, Some(undecided)) => format!("undecided: {}", Absent::Undecided(undecided.doubt)),
+        (None, Some(undecided)) => Absent::Undecided(undecided.doubt).to_string(),
         (None, None) => return None,
     };
     Some(Difference { path: "at_rest".to_owned(), certified: "stable".to_owned(), flown })
