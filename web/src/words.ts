@@ -30,15 +30,8 @@ export function toml(value: number): string {
   return /^-?\d+$/.test(text) ? `${text}.0` : text;
 }
 
+/** Measures of a whole flight whose keys are no names with a unit; the others are read off their names. */
 const MEASURES: Record<string, string> = {
-  rise_time_s: "rise time [s]",
-  settling_time_s: "settling time [s]",
-  transient_time_s: "transient time [s]",
-  overshoot_pct: "overshoot [%]",
-  undershoot_pct: "undershoot [%]",
-  final_error_pct: "final error [%]",
-  peak_deg: "peak [deg]",
-  peak_time_s: "peak time [s]",
   iae: "IAE [deg s]",
   itae: "ITAE [deg s²]",
   ise: "ISE [deg² s]",

@@ -8,13 +8,13 @@ use std::sync::Arc;
 use fspid_scenario::dispersion::{Dispersion, Drawn};
 use fspid_scenario::file::Study;
 use fspid_scenario::requirement::Requirement;
-use fspid_scenario::units::degrees;
 use fspid_study::judgement::Judgement;
-use fspid_study::metrics::{CommandEffort, ErrorIntegrals, StepMetrics, Verdict};
-use serde::Serialize;
+use fspid_study::metrics::{METRICS, Metric, Verdict};
 
 use crate::engine::FlightResult;
 use crate::table::{Cell, Column, ColumnTable, Kind, MAX_TEXT_BYTES, Schema, TableError};
+
+pub use fspid_study::metrics::Bad;
 
 /// The verdict on a flight that ended at the ground.
 pub const HIT_GROUND: &str = "hit the ground";
@@ -67,96 +67,33 @@ pub struct Run {
     pub flights: Result<Vec<FlightResult>, String>,
 }
 
-/// Which values of a measure are bad.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Bad {
-    /// High ones, as of overshoot.
-    High,
-    /// Low ones, as of a margin.
-    Low,
-}
-
-/// A measure of a flight that has a column.
-struct MeasureColumn {
-    name: &'static str,
-    unit: &'static str,
-    /// Which values are bad, whatever is asked; none where both sides are, or neither.
-    bad: Option<Bad>,
-    meaning: &'static str,
-    value: fn(&FlightResult) -> Option<f64>,
-}
-
-const HIGH: Option<Bad> = Some(Bad::High);
-const LOW: Option<Bad> = Some(Bad::Low);
-
-const fn measure(
-    (name, unit): (&'static str, &'static str),
-    bad: Option<Bad>,
-    value: fn(&FlightResult) -> Option<f64>,
-    meaning: &'static str,
-) -> MeasureColumn {
-    MeasureColumn { name, unit, bad, meaning, value }
-}
-
-fn first(flight: &FlightResult) -> StepMetrics {
-    flight.metrics.first_step()
-}
-
-fn integral(flight: &FlightResult, value: fn(ErrorIntegrals) -> f64) -> Option<f64> {
-    flight.metrics.integrals.ok().map(value)
-}
-
-fn command(flight: &FlightResult, value: fn(CommandEffort) -> f64) -> Option<f64> {
-    flight.metrics.effort.ok().map(value)
-}
-
-/// Of a flight that can be measured at all.
-fn of_whole(flight: &FlightResult, value: fn(&FlightResult) -> f64) -> Option<f64> {
-    flight.metrics.effort.ok().map(|_| value(flight))
-}
-
-#[rustfmt::skip] // a table: one row a measure
-const MEASURES: [MeasureColumn; 22] = [
-    measure(("rise_time_s", "s"), HIGH, |f| first(f).rise_time_s.ok(), "10 % to 90 % of the first step of the command"),
-    measure(("settling_time_s", "s"), HIGH, |f| first(f).settling_time_s.ok(), "until the response to the first step stays within 2 % of it"),
-    measure(("transient_time_s", "s"), HIGH, |f| first(f).transient_time_s.ok(), "until the response to the first step stays within 2 % of its largest error"),
-    measure(("overshoot_pct", "%"), HIGH, |f| first(f).overshoot_pct.ok(), "beyond the set-point after the first step, of the step"),
-    measure(("undershoot_pct", "%"), HIGH, |f| first(f).undershoot_pct.ok(), "first the wrong way after the first step, of the step"),
-    measure(("final_error_pct", "%"), None, |f| first(f).final_error_pct.ok(), "left at the end of the first step's window, of the step; positive below the set-point"),
-    measure(("peak_deg", "deg"), None, |f| first(f).peak.ok().map(degrees), "largest distance from where the first step began"),
-    measure(("peak_time_s", "s"), None, |f| first(f).peak_time_s.ok(), "time of the peak after the first step"),
-    measure(("iae_deg_s", "deg s"), HIGH, |f| integral(f, |i| degrees(i.iae_rad_s)), "integral of the size of the error over the flight"),
-    measure(("itae_deg_s2", "deg s²"), HIGH, |f| integral(f, |i| degrees(i.itae_rad_s2)), "the same, weighted with the time since the last step"),
-    measure(("ise_deg2_s", "deg² s"), HIGH, |f| integral(f, |i| degrees(degrees(i.ise_rad2_s))), "integral of the squared error over the flight"),
-    measure(("itse_deg2_s2", "deg² s²"), HIGH, |f| integral(f, |i| degrees(degrees(i.itse_rad2_s2))), "the same, weighted with the time since the last step"),
-    measure(("rms_error_deg", "deg"), HIGH, |f| f.metrics.rms_error_rad.ok().map(degrees), "root mean square of the error over the flight"),
-    measure(("largest_error_deg", "deg"), HIGH, |f| of_whole(f, |f| degrees(f.largest_error_rad)), "largest size of the error"),
-    measure(("command_variation_deg", "deg"), HIGH, |f| command(f, |e| degrees(e.variation_rad)), "way of the command: sum of the sizes of its changes"),
-    measure(("largest_command_deg", "deg"), HIGH, |f| command(f, |e| degrees(e.largest_rad)), "largest size of the command"),
-    measure(("command_rate_deg_s", "deg/s"), HIGH, |f| command(f, |e| degrees(e.fastest_rad_s)), "fastest change of the command from sample to sample"),
-    measure(("elevator_travel_deg", "deg"), HIGH, |f| of_whole(f, |f| degrees(f.elevator.variation_rad)), "way of the elevator: sum of the sizes of its changes"),
-    measure(("largest_elevator_deg", "deg"), HIGH, |f| of_whole(f, |f| degrees(f.elevator.largest_rad)), "largest size of the elevator deflection"),
-    measure(("elevator_rate_deg_s", "deg/s"), HIGH, |f| of_whole(f, |f| degrees(f.elevator.fastest_rad_s)), "fastest change of the elevator from sample to sample"),
-    measure(("saturated_pct", "%"), HIGH, |f| f.metrics.effort.ok().and(f.saturated_share).map(|share| 100.0 * share), "samples whose command was cut by the controller's own limits"),
-    measure((LEFT_VALIDITY_AT, "s"), LOW, |f| f.exit.map(|exit| exit.at_s), "when an aircraft first left the range of its model; empty if it did not"),
-];
+/// What is kept beside the measures: when an aircraft left the range of its model, if it did.
+const LEFT_VALIDITY_IS: &str =
+    "when an aircraft first left the range of its model; empty if it did not";
 
 /// Names of the columns of measures, with their units.
 pub fn measure_names() -> impl Iterator<Item = (&'static str, &'static str)> {
-    MEASURES.iter().map(|measure| (measure.name, measure.unit))
+    METRICS.iter().map(|metric| (metric.name, metric.unit)).chain([(LEFT_VALIDITY_AT, "s")])
 }
 
 /// A measure of a flight by the name of its column; `None` where it has none.
 #[must_use]
 pub fn measured(flight: &FlightResult, name: &str) -> Option<f64> {
-    (MEASURES.iter().find(|measure| measure.name == name)?.value)(flight)
+    match Metric::from_name(name) {
+        Some(metric) => metric.of_flight(&flight.metrics).ok(),
+        None if name == LEFT_VALIDITY_AT => left_validity_at_s(flight),
+        None => None,
+    }
+}
+
+fn left_validity_at_s(flight: &FlightResult) -> Option<f64> {
+    flight.exit.map(|exit| exit.at_s)
 }
 
 /// Which values of a measure are bad, by the name of its column, where that is known.
 #[must_use]
 pub fn bad_side(name: &str) -> Option<Bad> {
-    MEASURES.iter().find(|measure| measure.name == name)?.bad
+    if name == LEFT_VALIDITY_AT { Some(Bad::Low) } else { Metric::from_name(name)?.bad }
 }
 
 /// The rows of a campaign: which columns they have, and how they are filled.
@@ -176,10 +113,11 @@ impl Rows {
         let requirements = &study.requirements;
         let mut columns = head(study.scenario.plant.aircraft().is_some());
         columns.extend(study.dispersions.iter().flat_map(parameters));
-        let measures = MEASURES.iter();
-        columns.extend(measures.map(|measure| {
-            Column::new(measure.name, Kind::Float).unit(measure.unit).meaning(measure.meaning)
+        columns.extend(METRICS.iter().map(|metric| {
+            Column::new(metric.name, Kind::Float).unit(metric.unit).meaning(metric.meaning)
         }));
+        let left = Column::new(LEFT_VALIDITY_AT, Kind::Float).unit("s");
+        columns.push(left.meaning(LEFT_VALIDITY_IS));
         columns.extend(requirements.iter().flat_map(asked));
         Ok(Self {
             schema: Arc::new(Schema::new(columns)?),
@@ -238,8 +176,9 @@ impl Rows {
             flight.and_then(FlightResult::diverged_at_s).into(),
         ];
         cells.extend(run.drawn.iter().map(cell));
-        let measure = |measure: &MeasureColumn| flight.and_then(|it| (measure.value)(it));
-        cells.extend(MEASURES.iter().map(|column| Cell::from(measure(column))));
+        let of_flight = |metric: &Metric| metric.of_flight(&flight?.metrics).ok();
+        cells.extend(METRICS.iter().map(|metric| Cell::from(of_flight(metric))));
+        cells.push(flight.and_then(left_validity_at_s).into());
         for requirement in &self.requirements {
             let judgement = flight.and_then(|flight| judged(flight, requirement));
             let value = judgement.and_then(|it| it.found.as_ref().ok()).map(|case| case.value);

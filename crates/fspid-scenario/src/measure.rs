@@ -321,6 +321,24 @@ impl Measure {
     }
 }
 
+/// A measure's name in words, without its unit: `elevator_rate_deg_s` in deg/s is "elevator rate".
+#[must_use]
+pub fn label(name: &str, unit: &str) -> String {
+    let suffix = unit_in_names(unit);
+    let bare = name.strip_suffix(&suffix).and_then(|rest| rest.strip_suffix('_')).unwrap_or(name);
+    let bare = if suffix.is_empty() { name } else { bare };
+    let word = |word: &str| match word {
+        "iae" | "itae" | "ise" | "itse" | "rms" => word.to_uppercase(),
+        _ => word.to_owned(),
+    };
+    bare.split('_').map(word).collect::<Vec<_>>().join(" ")
+}
+
+/// A unit as names end with it: `deg/s` is `deg_s`.
+fn unit_in_names(unit: &str) -> String {
+    unit.replace('%', "pct").replace('\u{b2}', "2").replace(['/', ' '], "_")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -337,23 +355,17 @@ mod tests {
     #[test]
     fn the_unit_of_a_measure_is_the_last_part_of_its_name() {
         for measure in Measure::ALL {
-            let suffix = match measure.unit() {
-                "" => continue,
-                "%" => "_pct",
-                "dB" => "_db",
-                "deg/s" | "deg s" => "_deg_s",
-                "deg s²" => "_deg_s2",
-                "rad/s" => "_rad_s",
-                "rad/s² per g" => "_rad_s2_per_g",
-                "s" => "_s",
-                "deg" => "_deg",
-                "g" => "_g",
-                "ft" => "_ft",
-                "kt" => "_kt",
-                "ft/min" => "_ft_min",
-                other => panic!("{other}"),
-            };
-            assert!(measure.name().ends_with(suffix), "{}", measure.name());
+            let suffix = format!("_{}", unit_in_names(measure.unit()).to_lowercase());
+            let has_unit = !measure.unit().is_empty();
+            assert!(!has_unit || measure.name().ends_with(&suffix), "{}", measure.name());
         }
+    }
+
+    #[test]
+    fn names_lose_their_units_in_words() {
+        assert_eq!(label("elevator_rate_deg_s", "deg/s"), "elevator rate");
+        assert_eq!(label("itse_deg2_s2", "deg\u{b2} s\u{b2}"), "ITSE");
+        assert_eq!(label("overshoot_pct", "%"), "overshoot");
+        assert_eq!(label("disk_margin", ""), "disk margin");
     }
 }

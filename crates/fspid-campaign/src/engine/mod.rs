@@ -15,7 +15,7 @@ use fspid_sim::autopilot::AUTOPILOT_COLUMNS;
 use fspid_sim::{EarlyEnd, EndCause, Exit, Plant, Prepared, SimError, Trace};
 use fspid_study::analysis::AtRest;
 use fspid_study::judgement::{Judgement, judge};
-use fspid_study::metrics::{CommandEffort, FlightMetrics, Verdict, largest_error_rad};
+use fspid_study::metrics::{FlightMetrics, Verdict};
 use fspid_study::simulation::{ControllerResult, Ending};
 
 pub use memory::Memory;
@@ -27,13 +27,6 @@ pub struct FlightResult {
     pub controller: String,
     /// Measures and verdict.
     pub metrics: FlightMetrics,
-    /// Largest error, rad.
-    pub largest_error_rad: f64,
-    /// Effort of the elevator over the whole flight.
-    pub elevator: CommandEffort,
-    /// Samples whose command was cut by the controller's own limits, as a share of those flown. Of an external controller
-    /// nobody knows but itself.
-    pub saturated_share: Option<f64>,
     /// Faults latched by the controller.
     pub faults: Faults,
     /// When an aircraft first left the range of its model, if it did.
@@ -169,9 +162,7 @@ fn measure(
             judgement.controller == result.name || judgement.is_of_aircraft()
         };
         let mine = judgements.iter().filter(concerns).cloned().collect();
-        let is_known = scenario.controllers.iter().any(|named| named.name == result.name);
-        let flown = flight(memory, result, mine, scenario.timing.dt_s());
-        FlightResult { saturated_share: flown.saturated_share.filter(|_| is_known), ..flown }
+        flight(memory, result, mine)
     });
     Ok(flights.collect())
 }
@@ -180,15 +171,11 @@ fn flight(
     memory: &mut Memory,
     result: ControllerResult,
     judgements: Vec<Judgement>,
-    dt_s: f64,
 ) -> FlightResult {
     let ControllerResult { name, trace, metrics, at_rest, range_rule, .. } = result;
     let flight = FlightResult {
         controller: name,
         metrics,
-        largest_error_rad: largest_error_rad(&trace.setpoint_rad, &trace.theta_rad),
-        elevator: CommandEffort::of(&trace.elevator_rad, dt_s),
-        saturated_share: Some(trace.saturated_samples as f64 / trace.rows().max(1) as f64),
         faults: trace.faults,
         exit: trace.exit,
         range_rule,

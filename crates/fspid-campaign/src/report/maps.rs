@@ -5,6 +5,7 @@ use fspid_plot::{
     IntervalColumn, IntervalFigure, IntervalMark, IntervalRow, RunScatter, ShareCell, ShareMap,
 };
 use fspid_scenario::dispersion::Distribution;
+use fspid_scenario::measure::Measure;
 
 use super::by_parameter::{ByParameter, Counted, Counts, Event, counted, pairs};
 use super::distributions::value_at;
@@ -109,7 +110,7 @@ impl What {
             .requirements
             .iter()
             .map(|it| (format!("{REQUIREMENT}{}.value", it.id), it.limits.most.is_some()));
-        let choices = required.chain([("overshoot_pct".to_owned(), true)]);
+        let choices = required.chain([(Measure::Overshoot.name().to_owned(), true)]);
         choices.into_iter().find_map(|(column, above)| {
             let share = if above { 0.95 } else { 0.05 };
             let limit = |it: &ControllerSummary| {

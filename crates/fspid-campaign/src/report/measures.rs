@@ -1,19 +1,20 @@
 //! Which measures stand first, and what they are called.
 
 use super::Source;
-use super::words::{axis_label, capital, cut, label};
+use super::words::{axis_label, capital, cut};
 use crate::rows::REQUIREMENT;
 use crate::summary::{Limits, MeasureSummary};
+use fspid_scenario::measure::{Measure as Asked, label};
 
 /// Measures that every reader looks for, in this order; requirements' values follow.
 const FIRST: [&str; 7] = [
-    "overshoot_pct",
-    "settling_time_s",
-    "rise_time_s",
-    "iae_deg_s",
-    "elevator_travel_deg",
-    "elevator_rate_deg_s",
-    "final_error_pct",
+    Asked::Overshoot.name(),
+    Asked::SettlingTime.name(),
+    Asked::RiseTime.name(),
+    Asked::ErrorIntegral.name(),
+    Asked::ElevatorTravel.name(),
+    Asked::ElevatorRate.name(),
+    Asked::FinalError.name(),
 ];
 
 /// A measure of all controllers.

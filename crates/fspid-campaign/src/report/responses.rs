@@ -2,6 +2,7 @@
 
 use fspid_page::analysis::{Chapter, Item, Picture};
 use fspid_plot::{EnvelopeBand, EnvelopeFigure, EnvelopePanel};
+use fspid_scenario::measure::Measure;
 
 use super::reflown::{Curves, Flights, Reflown, reflown};
 use super::words::{count, list, number};
@@ -93,9 +94,9 @@ fn worst(controller: &ControllerSummary) -> Vec<u64> {
     };
     let lost = controller.failed_runs.iter().filter(is_lost).map(|it| it.run);
     let required = controller.requirements.iter().filter_map(|it| it.worst).map(|it| it.run);
-    let by_measure = ["overshoot_pct", "iae_deg_s", "largest_error_deg"];
-    let highest = by_measure.into_iter().filter_map(|name| {
-        let measure = controller.measures.iter().find(|it| it.name == name)?;
+    let by_measure = [Measure::Overshoot, Measure::ErrorIntegral, Measure::LargestError];
+    let highest = by_measure.into_iter().filter_map(|asked| {
+        let measure = controller.measures.iter().find(|it| it.name == asked.name())?;
         measure.highest.first().map(|it| it.run)
     });
     for run in lost.chain(required).chain(highest) {

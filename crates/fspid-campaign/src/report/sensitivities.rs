@@ -2,9 +2,10 @@
 
 use fspid_page::analysis::{Chapter, DataTable, Datum, Item, Picture};
 use fspid_plot::{IntervalColumn, IntervalFigure, IntervalMark, IntervalRow};
+use fspid_scenario::measure::label;
 
 use super::measures;
-use super::words::{axis_label, cut, label, number, share};
+use super::words::{axis_label, cut, number, share};
 use super::{Source, style};
 use crate::summary::{ControllerSummary, Influence, Sensitivity, SensitivityTarget};
 

@@ -28,19 +28,7 @@ pub(super) fn probability(found: &Probability, confidence: f64) -> String {
     words.split_once(": ").map_or("not judged", |(_, sure)| sure).to_owned()
 }
 
-/// A measure's column in words: `elevator_rate_deg_s` in deg/s is "elevator rate".
-pub(super) fn label(name: &str, unit: &str) -> String {
-    let suffix = unit_in_names(unit);
-    let bare = name.strip_suffix(&suffix).and_then(|rest| rest.strip_suffix('_')).unwrap_or(name);
-    let bare = if suffix.is_empty() { name } else { bare };
-    let word = |word: &str| match word {
-        "iae" | "itae" | "ise" | "itse" | "rms" => word.to_uppercase(),
-        _ => word.to_owned(),
-    };
-    bare.split('_').map(word).collect::<Vec<_>>().join(" ")
-}
-
-/// The same with the unit in brackets, for axes.
+/// What is shown with its unit in brackets, for axes.
 pub(super) fn axis_label(label: &str, unit: &str) -> String {
     if unit.is_empty() { label.to_owned() } else { format!("{label} [{}]", cut(unit, 30)) }
 }
@@ -49,11 +37,6 @@ pub(super) fn axis_label(label: &str, unit: &str) -> String {
 pub(super) fn capital(text: &str) -> String {
     let mut chars = text.chars();
     chars.next().map_or_else(String::new, |first| first.to_uppercase().chain(chars).collect())
-}
-
-/// A unit as names end with it: `deg/s` is `deg_s`.
-fn unit_in_names(unit: &str) -> String {
-    unit.replace('%', "pct").replace('\u{b2}', "2").replace(['/', ' '], "_")
 }
 
 /// Words as a list: "one, two and three".
@@ -85,13 +68,5 @@ mod tests {
         };
         assert_eq!(words(0, 3000), "at most 0.10 % (95 %)");
         assert_eq!(words(0, 0), "not judged");
-    }
-
-    #[test]
-    fn columns_lose_their_units_in_words() {
-        assert_eq!(label("elevator_rate_deg_s", "deg/s"), "elevator rate");
-        assert_eq!(label("itse_deg2_s2", "deg\u{b2} s\u{b2}"), "ITSE");
-        assert_eq!(label("overshoot_pct", "%"), "overshoot");
-        assert_eq!(label("disk_margin", ""), "disk margin");
     }
 }

@@ -14,6 +14,7 @@ use fspid_campaign::{
 };
 use fspid_diagnostics::digits::grouped;
 use fspid_scenario::count::RUNS;
+use fspid_scenario::measure::Measure;
 use serde_json::{Value, json};
 
 use super::asked::counted;
@@ -24,8 +25,12 @@ use crate::answer::Refusal;
 use crate::request::Fields;
 
 /// Measures of rows where nobody asks for others.
-const MEASURES: [&str; 4] =
-    ["overshoot_pct", "settling_time_s", "iae_deg_s", "largest_command_deg"];
+const MEASURES: [&str; 4] = [
+    Measure::Overshoot.name(),
+    Measure::SettlingTime.name(),
+    Measure::ErrorIntegral.name(),
+    Measure::LargestCommand.name(),
+];
 /// Shards of a campaign, of which each is told when it is there.
 const SHARDS: u64 = 64;
 /// Most runs of a shard.

@@ -7,10 +7,11 @@ use fspid_sim::stability::Unstable;
 use fspid_sim::{EarlyEnd, Exit, Outcome, Timing, Trace};
 
 use super::{
-    Absent, CommandEffort, ErrorIntegrals, Measured, StepMetrics, StepWindow, is_seen_to_stay,
-    left_validity, short,
+    Absent, CommandEffort, ErrorIntegrals, Measured, Metric, StepMetrics, StepWindow,
+    is_seen_to_stay, largest_error_rad, left_validity, short,
 };
 use fspid_diagnostics::digits::to_digits;
+use fspid_scenario::measure::Measure;
 
 /// What a flight comes to, in one word.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -148,8 +149,14 @@ pub struct FlightMetrics {
     pub integrals: Result<ErrorIntegrals, Absent>,
     /// Root mean square of the error over the samples of the whole flight, rad.
     pub rms_error_rad: Measured,
+    /// Largest error, rad; of a flight that is lost, up to there.
+    pub largest_error_rad: f64,
     /// Effort of the command over the whole flight.
     pub effort: Result<CommandEffort, Absent>,
+    /// The same of the elevator.
+    pub elevator: Result<CommandEffort, Absent>,
+    /// Samples whose command was cut by the controller's own limits, as a share of those flown.
+    pub saturated_share: Measured,
     /// True for a flight that is not good and whose first movement after its first step is steadily away from the
     /// new set-point, before anything but the command moves it: see `moves_away`. It is a question, and no failure.
     pub wrong_way: bool,
@@ -195,10 +202,11 @@ impl FlightMetrics {
             wrong_way: away && !verdict.is_good(),
             integrals: measured.map(|()| integrals),
             rms_error_rad: measured.map(|()| (squares / trace.rows() as f64).sqrt()),
-            effort: match absence {
-                Some(reason) => Err(reason),
-                None => Ok(CommandEffort::of(&trace.command_rad, timing.dt_s())),
-            },
+            largest_error_rad: largest_error_rad(&trace.setpoint_rad, &trace.theta_rad),
+            effort: measured.map(|()| CommandEffort::of(&trace.command_rad, timing.dt_s())),
+            elevator: measured.map(|()| CommandEffort::of(&trace.elevator_rad, timing.dt_s())),
+            saturated_share: measured
+                .map(|()| trace.saturated_samples as f64 / trace.rows().max(1) as f64),
             edges,
         }
     }
@@ -211,6 +219,15 @@ impl FlightMetrics {
             (None, Some(reason)) => StepMetrics::absent(reason),
             (None, None) => StepMetrics::absent(Absent::NoStep),
         }
+    }
+
+    /// A measure that can be asked for, of one of a step in the first; there is no step to measure what is not one of
+    /// [`METRICS`](super::METRICS).
+    ///
+    /// # Errors
+    /// The reason in the metrics.
+    pub fn measured(&self, measure: Measure) -> Measured {
+        Metric::asked_as(measure).map_or(Err(Absent::NoStep), |metric| metric.of_flight(self))
     }
 
     /// A measure of the step number `index` from 0; absent where there is no such step.

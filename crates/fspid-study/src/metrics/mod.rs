@@ -4,11 +4,13 @@ mod effort;
 mod exit;
 mod extreme;
 mod flight;
+mod metric;
 mod step;
 
 pub use effort::{CommandEffort, ErrorIntegrals, largest_error_rad};
 pub use exit::{LEFT_RANGE, left_validity};
 pub use flight::{EdgeMetrics, FlightMetrics, Verdict};
+pub use metric::{Bad, METRICS, Metric};
 pub(crate) use step::is_seen_to_stay;
 pub use step::{StepMetrics, StepWindow};
 
@@ -43,6 +45,9 @@ pub enum Absent {
         /// Length of the window, s.
         window_s: f64,
     },
+    /// Only an external controller itself knows, and might say it wrongly.
+    #[error("the limits of an external controller are not known here")]
+    OwnWord,
     /// There is no step in the command to measure against.
     #[error("the command has no step")]
     NoStep,

@@ -7,7 +7,7 @@
 use fspid_scenario::measure::Measure;
 
 use super::extreme::{all_finite, extreme};
-use super::{Absent, Measured};
+use super::{Absent, Measured, Metric};
 
 /// Risen is 90 % of the way.
 const RISEN: f64 = 0.9;
@@ -75,18 +75,14 @@ pub struct StepMetrics {
 }
 
 impl StepMetrics {
-    /// The value of a measure by name, or why there is none; only what the paper claims is measured of a step alone.
+    /// The value of a measure that can be asked for, or why there is none; there is no step that has one of a flight.
     ///
     /// # Errors
     /// The reason in the metrics.
     pub fn measured(&self, measure: Measure) -> Measured {
-        match measure {
-            Measure::RiseTime => self.rise_time_s,
-            Measure::SettlingTime => self.settling_time_s,
-            Measure::Overshoot => self.overshoot_pct,
-            Measure::FinalError => self.final_error_pct,
-            _ => Err(Absent::NoStep),
-        }
+        Metric::asked_as(measure)
+            .and_then(|metric| metric.of_step(self))
+            .unwrap_or(Err(Absent::NoStep))
     }
 
     /// The same reason for every measure.

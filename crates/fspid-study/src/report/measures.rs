@@ -1,31 +1,57 @@
 //! Tables of measures: one row for each controller and each step of the command.
 
 use super::traces::fails;
-use crate::metrics::{EdgeMetrics, FlightMetrics, Measured, StepMetrics};
+use crate::metrics::{EdgeMetrics, FlightMetrics, METRICS, Metric, StepMetrics};
 use crate::simulation::{ControllerResult, Simulation};
 use fspid_diagnostics::digits::without_zeros;
 use fspid_page::number;
 use fspid_page::page::{Cell, PageTable, TableRow};
+use fspid_scenario::measure::Measure;
 use fspid_scenario::units::degrees;
 
-/// A column: its heading with the unit, decimals, and the measure.
-type Column = (&'static str, usize, fn(&StepMetrics) -> Measured);
+/// A measure that is shown.
+struct Column {
+    metric: &'static Metric,
+    /// Its heading with the unit.
+    heading: String,
+    decimals: usize,
+}
 
-const COLUMNS: &[Column] = &[
-    ("rise time [s]", 3, |step| step.rise_time_s),
-    ("settling time [s]", 3, |step| step.settling_time_s),
-    ("overshoot [%]", 2, |step| step.overshoot_pct),
-    ("undershoot [%]", 2, |step| step.undershoot_pct),
-    ("final error [%]", 2, |step| step.final_error_pct),
-    ("peak [deg]", 3, |step| step.peak.map(degrees)),
-    ("time of peak [s]", 2, |step| step.peak_time_s),
-];
+impl Column {
+    fn of(metric: &'static Metric) -> Option<Self> {
+        let (heading, decimals) = metric.shown?;
+        Some(Self { metric, heading: format!("{heading} [{}]", metric.unit), decimals })
+    }
+
+    /// The measures of steps, or those of whole flights.
+    fn all(are_of_steps: bool) -> Vec<Self> {
+        let kind = METRICS.iter().filter(|metric| metric.is_of_step() == are_of_steps);
+        kind.filter_map(Self::of).collect()
+    }
+
+    fn of_step(&self, step: &StepMetrics) -> Option<Cell> {
+        self.metric.of_step(step).map(|value| Cell::measured(value, self.decimals))
+    }
+
+    fn of_flight(&self, flight: &FlightMetrics) -> Cell {
+        Cell::measured(self.metric.of_flight(flight), self.decimals)
+    }
+}
+
+/// Headings of these columns behind some others.
+fn head<'a>(before: &[&'a str], columns: &'a [Column]) -> Vec<&'a str> {
+    before.iter().copied().chain(columns.iter().map(|it| it.heading.as_str())).collect()
+}
+
+/// What stands before the measures of a step.
+const OF_A_STEP: [&str; 2] = ["controller", "step of the command"];
 
 /// More steps than these would bury the rest of a report.
 const MOST_STEPS: usize = 40;
 
-/// Columns that the paper speaks of.
-const OF_THE_PAPER: [usize; 4] = [0, 2, 1, 4];
+/// What the paper speaks of.
+const OF_THE_PAPER: [Measure; 4] =
+    [Measure::RiseTime, Measure::Overshoot, Measure::SettlingTime, Measure::FinalError];
 
 /// "2, down: +1 to −1 deg at 6.60 s".
 pub fn step_name(index: usize, edge: &EdgeMetrics) -> String {
@@ -38,12 +64,9 @@ pub fn step_name(index: usize, edge: &EdgeMetrics) -> String {
 }
 
 /// Rows of a flight: one a step, or one that says why there is none.
-fn rows(result: &ControllerResult, columns: &[&Column]) -> Vec<TableRow> {
-    let measures = |step: &StepMetrics| {
-        columns
-            .iter()
-            .map(|(_, decimals, of)| Cell::measured(of(step), *decimals))
-            .collect::<Vec<_>>()
+fn rows(result: &ControllerResult, columns: &[Column]) -> Vec<TableRow> {
+    let measures = |step: &StepMetrics| -> Vec<Cell> {
+        columns.iter().filter_map(|column| column.of_step(step)).collect()
     };
     let metrics = &result.metrics;
     if fails(result) {
@@ -80,10 +103,8 @@ fn rows(result: &ControllerResult, columns: &[&Column]) -> Vec<TableRow> {
 
 /// Every step measure of every controller.
 pub fn table(caption: &str, simulation: &Simulation) -> PageTable {
-    let columns: Vec<&Column> = COLUMNS.iter().collect();
-    let mut head = vec!["controller", "step of the command"];
-    head.extend(columns.iter().map(|column| column.0));
-    let mut table = PageTable::new(caption, &head).in_cards();
+    let columns = Column::all(true);
+    let mut table = PageTable::new(caption, &head(&OF_A_STEP, &columns)).in_cards();
     for result in &simulation.results {
         table.rows.extend(rows(result, &columns));
     }
@@ -93,12 +114,12 @@ pub fn table(caption: &str, simulation: &Simulation) -> PageTable {
 /// What the paper measures, under two fits or variants side by side; both fly the same controllers
 /// and steps.
 pub fn side_by_side(caption: &str, variants: &[(&str, &Simulation)], only: &[&str]) -> PageTable {
-    let columns: Vec<&Column> =
-        OF_THE_PAPER.iter().filter_map(|index| COLUMNS.get(*index)).collect();
-    let mut head = vec!["controller", "step of the command"];
+    let columns: Vec<Column> =
+        OF_THE_PAPER.iter().filter_map(|it| Column::of(Metric::asked_as(*it)?)).collect();
+    let mut head = OF_A_STEP.to_vec();
     let mut groups = vec![("", 2)];
     for (name, _) in variants {
-        head.extend(columns.iter().map(|column| column.0));
+        head.extend(self::head(&[], &columns));
         groups.push((name, columns.len()));
     }
     let mut table = PageTable::new(caption, &head).grouped(&groups).in_cards();
@@ -127,41 +148,19 @@ pub fn side_by_side(caption: &str, variants: &[(&str, &Simulation)], only: &[&st
 
 /// Integrals and effort of whole flights.
 pub fn integrals(caption: &str, simulation: &Simulation) -> PageTable {
-    let head = [
-        "controller",
-        "IAE [deg s]",
-        "ITAE [deg s²]",
-        "ISE [deg² s]",
-        "ITSE [deg² s²]",
-        "command variation [deg]",
-        "largest command [deg]",
-        "fastest command [deg/s]",
-        "samples cut by limits",
-        "faults",
-    ];
+    let columns = Column::all(false);
+    let mut head = head(&["controller"], &columns);
+    head.extend(["samples cut by limits", "faults"]);
     let mut table = PageTable::new(caption, &head).in_cards();
     for result in &simulation.results {
-        let FlightMetrics { integrals, effort, .. } = &result.metrics;
+        let metrics = &result.metrics;
         let mut cells = vec![Cell::text(&result.name)];
         if fails(result) {
-            cells.push(Cell::failing(
-                format!("\u{2717} {}: no measures", result.metrics.verdict),
-                7,
-            ));
-            cells.extend(tail(result));
-            table.push(cells);
-            continue;
+            let reason = format!("\u{2717} {}: no measures", metrics.verdict);
+            cells.push(Cell::failing(reason, columns.len()));
+        } else {
+            cells.extend(columns.iter().map(|column| column.of_flight(metrics)));
         }
-        let squared = |value: f64| degrees(degrees(value));
-        cells.extend([
-            Cell::measured(integrals.map(|i| degrees(i.iae_rad_s)), 4),
-            Cell::measured(integrals.map(|i| degrees(i.itae_rad_s2)), 4),
-            Cell::measured(integrals.map(|i| squared(i.ise_rad2_s)), 4),
-            Cell::measured(integrals.map(|i| squared(i.itse_rad2_s2)), 4),
-            Cell::measured(effort.map(|e| degrees(e.variation_rad)), 3),
-            Cell::measured(effort.map(|e| degrees(e.largest_rad)), 3),
-            Cell::measured(effort.map(|e| degrees(e.fastest_rad_s)), 2),
-        ]);
         cells.extend(tail(result));
         table.push(cells);
     }

@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 use super::{ControllerResult, FailedFlight, Judgement, Simulation};
 use crate::analysis::{AtRest, RestGains};
 use crate::json::{finite, present, unless_empty};
-use crate::metrics::{EdgeMetrics, Measured, StepMetrics, Verdict};
+use crate::metrics::{EdgeMetrics, METRICS, Measured, StepMetrics, Verdict};
 use fspid_scenario::units::degrees;
 
 /// Version of the answer's shape.
@@ -33,17 +33,9 @@ impl Simulation {
 
 fn controller(result: &ControllerResult) -> Value {
     let metrics = &result.metrics;
-    let mut measures = step_measures(&metrics.first_step());
-    let integrals = metrics.integrals;
-    measures.extend([
-        ("iae", integrals.map(|i| degrees(i.iae_rad_s))),
-        ("itae", integrals.map(|i| degrees(i.itae_rad_s2))),
-        ("ise", integrals.map(|i| degrees(degrees(i.ise_rad2_s)))),
-        ("itse", integrals.map(|i| degrees(degrees(i.itse_rad2_s2)))),
-        ("command_variation", metrics.effort.map(|e| degrees(e.variation_rad))),
-        ("command_max_deg", metrics.effort.map(|e| degrees(e.largest_rad))),
-    ]);
-    let (values, absent) = split(&measures);
+    let first_step = metrics.first_step();
+    let of_flight = METRICS.iter().filter_map(|it| Some((it.key?, it.of_flight(metrics))));
+    let (values, absent) = split(step_measures(&first_step).chain(of_flight));
     let failures = result.failures();
     present(json!({
         "name": result.name,
@@ -135,7 +127,7 @@ fn gains(at_rest: &AtRest) -> Value {
 }
 
 fn edge(edge: &EdgeMetrics) -> Value {
-    let (values, absent) = split(&step_measures(&edge.step));
+    let (values, absent) = split(step_measures(&edge.step));
     present(json!({
         "at_s": edge.at_s,
         "from_deg": degrees(edge.from_rad),
@@ -146,29 +138,22 @@ fn edge(edge: &EdgeMetrics) -> Value {
     }))
 }
 
-fn step_measures(step: &StepMetrics) -> Vec<(&'static str, Measured)> {
-    vec![
-        ("rise_time_s", step.rise_time_s),
-        ("settling_time_s", step.settling_time_s),
-        ("transient_time_s", step.transient_time_s),
-        ("overshoot_pct", step.overshoot_pct),
-        ("undershoot_pct", step.undershoot_pct),
-        ("final_error_pct", step.final_error_pct),
-        ("peak_deg", step.peak.map(degrees)),
-        ("peak_time_s", step.peak_time_s),
-    ]
+fn step_measures(step: &StepMetrics) -> impl Iterator<Item = (&'static str, Measured)> {
+    METRICS.iter().filter_map(|it| Some((it.name, it.of_step(step)?)))
 }
 
 /// Every measure by name, `null` for an absent one, and the reasons of the absent ones.
-fn split(measures: &[(&'static str, Measured)]) -> (Map<String, Value>, Map<String, Value>) {
+fn split(
+    measures: impl Iterator<Item = (&'static str, Measured)>,
+) -> (Map<String, Value>, Map<String, Value>) {
     let mut values = Map::new();
     let mut absent = Map::new();
     for (name, measured) in measures {
         match measured {
-            Ok(value) => values.insert((*name).to_owned(), json!(value)),
+            Ok(value) => values.insert(name.to_owned(), json!(value)),
             Err(reason) => {
-                absent.insert((*name).to_owned(), json!(reason.to_string()));
-                values.insert((*name).to_owned(), Value::Null)
+                absent.insert(name.to_owned(), json!(reason.to_string()));
+                values.insert(name.to_owned(), Value::Null)
             }
         };
     }

@@ -21,7 +21,7 @@ use fspid_sim::{
 use crate::analysis::AtRest;
 pub use crate::judgement::Judgement;
 use crate::judgement::{flown_on_their_own, judge};
-use crate::metrics::{FlightMetrics, Verdict};
+use crate::metrics::{Absent, FlightMetrics, Verdict};
 use fspid_scenario::file::{RangeRule, Study};
 
 /// One controller's flight.
@@ -57,9 +57,13 @@ impl ControllerResult {
         let named = scenario.controllers.iter().find(|it| it.name == name);
         let is_lost = named.is_some_and(|it| is_lost_at_a_limit(scenario, &it.controller, &trace));
         let at_rest = if is_lost { at_rest.lost_at_a_limit() } else { at_rest };
+        let mut metrics = FlightMetrics::of(&trace, edges, timing, unstable, &pushes_s);
+        if named.is_none() {
+            metrics.saturated_share = metrics.saturated_share.and(Err(Absent::OwnWord));
+        }
         Self {
             name: name.to_owned(),
-            metrics: FlightMetrics::of(&trace, edges, timing, unstable, &pushes_s),
+            metrics,
             trace,
             at_rest,
             range_rule: study.range_rule,

@@ -68,6 +68,16 @@ fn every_measure_of_an_aircraft_is_what_its_trace_shows() {
     near(measured(Measure::FinalSink), -60.0 * feet(*of("climb_m_s").last().expect("flown")));
 }
 
+#[test]
+fn none_of_them_is_without_an_answer() {
+    let climb = ["aircraft.climb_angle_deg=3.0", "setpoint.amplitude_deg=0.0"];
+    for measure in of_aircraft() {
+        let overshoots = measure == Measure::AltitudeOvershoot;
+        let conditions = if overshoots { "target_ft = 1050.0\nto_s = 9.0" } else { "" };
+        assert!(value(measure, conditions, &climb).0.is_finite(), "{}", measure.name());
+    }
+}
+
 /// A climb at a steady angle: rate and altitude are trigonometry.
 #[test]
 fn a_steady_climb_has_the_rate_and_the_altitude_of_its_angle() {

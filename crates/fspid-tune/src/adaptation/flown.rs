@@ -4,9 +4,9 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use fspid_campaign::engine::{self, FlightResult, Judging, Memory, Stability};
-use fspid_campaign::rows;
 use fspid_core::{Fspid, Gains, Pid};
 use fspid_scenario::file::Study;
+use fspid_scenario::measure::Measure;
 use fspid_scenario::units::degrees;
 use fspid_sim::replay::{Replay, fly_replayed, fly_watching_inputs};
 use fspid_sim::{Controller, Instant, Outcome, Prepared, SimError, Surroundings, Weather};
@@ -53,10 +53,11 @@ impl Value {
         Self { iae_deg_s: f64::INFINITY, travel_deg: f64::INFINITY, lost: true, broken: None };
 
     pub(super) fn of(flight: &FlightResult) -> Self {
-        let measured = |name| rows::measured(flight, name).unwrap_or(f64::INFINITY);
-        let (iae_deg_s, travel_deg) = (measured("iae_deg_s"), measured("elevator_travel_deg"));
+        let measured = |measure| flight.metrics.measured(measure).unwrap_or(f64::INFINITY);
+        let iae_deg_s = measured(Measure::ErrorIntegral);
+        let travel_deg = measured(Measure::ElevatorTravel);
         // Written so that NaN is lost.
-        let near = degrees(flight.largest_error_rad) <= LOST_DEG;
+        let near = degrees(flight.metrics.largest_error_rad) <= LOST_DEG;
         let lost = flight.metrics.verdict.is_failure() || !near || !iae_deg_s.is_finite();
         let broken = flight.judgements.iter().any(|judgement| !judgement.met);
         Self { iae_deg_s, travel_deg, lost, broken: Some(broken) }

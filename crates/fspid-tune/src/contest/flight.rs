@@ -8,28 +8,38 @@ use fspid_scenario::tuning::Objective;
 use fspid_scenario::units::degrees;
 use fspid_sim::Doubt;
 use fspid_study::judgement::{Judgement, NotEvaluated};
-use fspid_study::metrics::{Absent, Verdict};
+use fspid_study::metrics::{Absent, Measured, Verdict};
 use serde::{Deserialize, Serialize};
 
 use crate::bits;
 use crate::score::FlightScore;
 
-/// Measures that are told of every flight: name, unit.
-pub const MEASURES: [(&str, &str); 7] = [
-    ("iae_deg_s", "deg s"),
-    ("itae_deg_s2", "deg s²"),
-    ("elevator_travel_deg", "deg"),
-    ("overshoot_pct", "%"),
-    ("settling_time_s", "s"),
-    ("largest_error_deg", "deg"),
-    ("rms_error_deg", "deg"),
+/// Measures that are told of every flight: not all, and in an order of their own, which the columns of a contest's file and
+/// the keys of its answer keep.
+pub const MEASURES: [Measure; 7] = [
+    Measure::ErrorIntegral,
+    Measure::TimedErrorIntegral,
+    Measure::ElevatorTravel,
+    Measure::Overshoot,
+    Measure::SettlingTime,
+    Measure::LargestError,
+    Measure::RmsError,
 ];
 
 /// Places of some measures in [`MEASURES`].
-pub(crate) const IAE: usize = 0;
-pub(crate) const TRAVEL: usize = 2;
-pub(crate) const OVERSHOOT: usize = 3;
-const SETTLING: usize = 4;
+pub(crate) const IAE: usize = place(Measure::ErrorIntegral);
+pub(crate) const TRAVEL: usize = place(Measure::ElevatorTravel);
+pub(crate) const OVERSHOOT: usize = place(Measure::Overshoot);
+const SETTLING: usize = place(Measure::SettlingTime);
+
+/// Place of a measure in [`MEASURES`]; one that is missing there does not compile.
+const fn place(measure: Measure) -> usize {
+    let mut place = 0;
+    while MEASURES[place] as usize != measure as usize {
+        place += 1;
+    }
+    place
+}
 
 /// Largest error beyond which a flight is lost, deg. A loop with limits oscillates instead of diverging; beyond a
 /// right angle there is no pitch hold left whose error could be compared.
@@ -113,14 +123,11 @@ impl Flight {
         let judged = flight.judgements.split_last().map_or(&[][..], |(_stability, rest)| rest);
         let (asked, costs) = judged.split_at(judged.len().saturating_sub(objectives.len()));
         let score = FlightScore::of(flight, (asked, costs), duration_s);
-        let measures = MEASURES.map(|(name, _)| rows::measured(flight, name));
-        let is_far = !(degrees(flight.largest_error_rad) <= LOST_DEG);
-        let is_lost = flight.metrics.verdict.is_failure() || measures[IAE].is_none() || is_far;
-        let mut measures = if is_lost { [None; MEASURES.len()] } else { measures };
-        let mut counted = measures;
-        for (index, value) in counted.iter_mut().enumerate() {
-            *value = value.or_else(|| stand_in(flight, index, is_lost));
-        }
+        let found = MEASURES.map(|measure| flight.metrics.measured(measure));
+        let is_far = !(degrees(flight.metrics.largest_error_rad) <= LOST_DEG);
+        let is_lost = flight.metrics.verdict.is_failure() || found[IAE].is_err() || is_far;
+        let mut measures = found.map(|value| value.ok().filter(|_| !is_lost));
+        let counted = found.map(|value| if is_lost { Some(f64::INFINITY) } else { counted(value) });
         if is_unstable(flight) {
             // A loop that is unstable at rest settles nothing; in means these count as they flew.
             (measures[OVERSHOOT], measures[SETTLING]) = (None, None);
@@ -206,20 +213,26 @@ fn why_unstable(flight: &FlightResult) -> String {
     }
 }
 
-/// What stands for a measure that a flight does not have.
-fn stand_in(flight: &FlightResult, measure: usize, is_lost: bool) -> Option<f64> {
-    if is_lost {
-        return Some(f64::INFINITY);
+/// What counts of a measure in means: of a step that did not settle its window, none where nothing was asked.
+fn counted(found: Measured) -> Option<f64> {
+    match found {
+        Ok(value) => Some(value),
+        Err(Absent::NoStep) => None,
+        Err(Absent::NotSettled { window_s }) => Some(window_s),
+        Err(_) => Some(f64::INFINITY),
     }
-    let step = flight.metrics.first_step();
-    let why = match measure {
-        OVERSHOOT => step.overshoot_pct.err()?,
-        SETTLING => step.settling_time_s.err()?,
-        _ => return Some(f64::INFINITY),
-    };
-    match why {
-        Absent::NoStep => None,
-        Absent::NotSettled { window_s } if measure == SETTLING => Some(window_s),
-        _ => Some(f64::INFINITY),
+}
+
+#[cfg(test)]
+mod tests {
+    use fspid_study::metrics::Metric;
+
+    use super::*;
+
+    #[test]
+    fn every_measure_of_a_contest_is_one_that_flights_have() {
+        for measure in MEASURES {
+            assert!(Metric::asked_as(measure).is_some(), "{}", measure.name());
+        }
     }
 }

@@ -84,7 +84,7 @@ impl Quantity {
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
-            Self::Measure(index) => MEASURES.get(index).map_or("", |(name, _)| name),
+            Self::Measure(index) => MEASURES.get(index).map_or("", |it| it.name()),
             Self::Cost => "cost",
         }
     }
@@ -93,7 +93,7 @@ impl Quantity {
     #[must_use]
     pub fn unit(self) -> &'static str {
         match self {
-            Self::Measure(index) => MEASURES.get(index).map_or("", |(_, unit)| unit),
+            Self::Measure(index) => MEASURES.get(index).map_or("", |it| it.unit()),
             Self::Cost => "",
         }
     }

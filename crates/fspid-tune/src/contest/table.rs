@@ -93,7 +93,7 @@ fn schema() -> Result<Schema, TuneError> {
         column("cost", Kind::Float)
             .meaning("what the objectives of the tuning cost; empty for a lost flight"),
     ];
-    let measures = MEASURES.iter().map(|(name, unit)| Column::new(*name, Kind::Float).unit(*unit));
+    let measures = MEASURES.map(|it| Column::new(it.name(), Kind::Float).unit(it.unit()));
     columns.extend(measures);
     Ok(Schema::new(columns)?)
 }

@@ -7,9 +7,7 @@ use fspid_sim::{Timing, Trace};
 
 use super::aircraft;
 use crate::judgement::{Case, CasePlace, NotEvaluated, StepAt};
-use crate::metrics::{
-    Absent, CommandEffort, EdgeMetrics, ErrorIntegrals, FlightMetrics, is_seen_to_stay,
-};
+use crate::metrics::{Absent, EdgeMetrics, FlightMetrics, is_seen_to_stay};
 use crate::simulation::ControllerResult;
 use fspid_scenario::file::Study;
 use fspid_scenario::measure::{Family, Measure};
@@ -25,16 +23,14 @@ pub(super) fn cases(
     check_air(study, &requirement.conditions)?;
     let flown =
         Flown { trace: &result.trace, metrics: &result.metrics, timing: study.scenario.timing };
-    match requirement.measure {
-        measure if measure.family() == Family::Aircraft => {
+    match (requirement.measure, requirement.measure.family()) {
+        (_, Family::Aircraft) => {
             let time = flown.time(&requirement.conditions)?;
             aircraft::case(study, &result.trace, requirement, time).map(|case| vec![case])
         }
-        Measure::RecoveryTime => flown.recovery(&requirement.conditions, requirement.most),
-        Measure::FinalErrorAngle => flown.final_errors(&requirement.conditions),
-        Measure::Overshoot | Measure::RiseTime | Measure::SettlingTime | Measure::FinalError => {
-            flown.steps(requirement)
-        }
+        (Measure::RecoveryTime, _) => flown.recovery(&requirement.conditions, requirement.most),
+        (Measure::FinalErrorAngle, _) => flown.final_errors(&requirement.conditions),
+        (_, Family::Step) => flown.steps(requirement),
         _ => flown.whole(requirement).map(|case| vec![case]),
     }
 }
@@ -264,36 +260,12 @@ impl Flown<'_> {
     /// A measure of the whole flight or of the time that counts.
     fn whole(&self, requirement: &Requirement) -> Result<Case, NotEvaluated> {
         let time = self.time(&requirement.conditions)?;
-        let dt_s = self.timing.dt_s();
-        let effort = |of: fn(&CommandEffort) -> f64| {
-            self.metrics.effort.map(|effort| of(&effort)).map_err(NotEvaluated::from)
+        let value = match requirement.measure {
+            Measure::LargestError => return Ok(self.largest_error(time)),
+            Measure::RmsError => self.rms_deg(time),
+            measure => self.metrics.measured(measure)?,
         };
-        let integral = |of: fn(&ErrorIntegrals) -> f64| {
-            self.metrics.integrals.map(|found| of(&found)).map_err(NotEvaluated::from)
-        };
-        let nowhere = |value: f64| Case { value, place: CasePlace::default() };
-        match requirement.measure {
-            Measure::RmsError => Ok(nowhere(self.rms_deg(time))),
-            Measure::LargestError => Ok(self.largest_error(time)),
-            Measure::ErrorIntegral => Ok(nowhere(degrees(integral(|i| i.iae_rad_s)?))),
-            Measure::TimedErrorIntegral => Ok(nowhere(degrees(integral(|i| i.itae_rad_s2)?))),
-            Measure::CommandVariation => Ok(nowhere(degrees(effort(|e| e.variation_rad)?))),
-            Measure::ElevatorTravel => {
-                let elevator = CommandEffort::of(&self.trace.elevator_rad, dt_s);
-                Ok(nowhere(degrees(elevator.variation_rad)))
-            }
-            Measure::LargestCommand => Ok(nowhere(degrees(effort(|e| e.largest_rad)?))),
-            Measure::CommandRate => Ok(nowhere(degrees(effort(|e| e.fastest_rad_s)?))),
-            Measure::ElevatorRate => {
-                let elevator = CommandEffort::of(&self.trace.elevator_rad, dt_s);
-                Ok(nowhere(degrees(elevator.fastest_rad_s)))
-            }
-            // The share of samples whose command was cut, and nothing else comes here.
-            _ => {
-                let share = self.trace.saturated_samples as f64 / self.trace.rows() as f64;
-                Ok(nowhere(100.0 * share))
-            }
-        }
+        Ok(Case { value, place: CasePlace::default() })
     }
 
     /// As in the metrics of a flight, in radians first.

@@ -2,6 +2,7 @@
 
 use fspid_page::analysis::{Chapter, DataTable, Datum, Item};
 use fspid_page::number::significant;
+use fspid_scenario::measure::label;
 
 use super::chapter;
 use crate::contest::compare::{Comparison, Standing};
@@ -80,16 +81,18 @@ fn difference(found: Option<&Comparison>) -> Datum {
 /// The other measures of everyone, and other ways to compare.
 pub(super) fn more(outcome: &Outcome) -> DataTable {
     let reference = cut(name(outcome, outcome.judged.against), 40);
-    let others = [1, 3, 4, 5, 6].map(Quantity::Measure);
+    let is_other =
+        |it: &Quantity| ![Quantity::ERROR, Quantity::ACTIVITY, Quantity::Cost].contains(it);
+    let others: Vec<Quantity> = Quantity::all().filter(is_other).collect();
     let mut head = vec!["controller".to_owned()];
-    head.extend(others.iter().map(|it| format!("{} [{}]", in_words(it.name()), it.unit())));
+    head.extend(others.iter().map(|it| format!("{} [{}]", label(it.name(), it.unit()), it.unit())));
     head.push("cost".to_owned());
     head.push("difference of travel (interval)".to_owned());
     head.extend(["ratio of mean IAE", "IAE in a typical case (interval)"].map(str::to_owned));
     let rows = outcome.first().ranking.into_iter().map(|place| {
         let of = |quantity| Datum::Number(spread_of(outcome, place, quantity));
         let mut row = vec![Datum::Text(cut(name(outcome, place), 60))];
-        row.extend(others.map(of));
+        row.extend(others.iter().copied().map(of));
         row.push(of(Quantity::Cost));
         row.push(difference(outcome.activity_of(place)));
         row.extend(typical(outcome.comparison(place)));
@@ -102,13 +105,6 @@ pub(super) fn more(outcome: &Outcome) -> DataTable {
     );
     let head: Vec<&str> = head.iter().map(String::as_str).collect();
     table(caption, &head, rows.collect())
-}
-
-/// A measure's name without its unit.
-fn in_words(name: &str) -> String {
-    let bare =
-        ["_deg_s2", "_deg_s", "_deg", "_pct", "_s"].iter().find_map(|it| name.strip_suffix(it));
-    bare.unwrap_or(name).replace('_', " ").replace("itae", "ITAE").replace("rms", "RMS")
 }
 
 fn typical(found: Option<&Comparison>) -> [Datum; 2] {

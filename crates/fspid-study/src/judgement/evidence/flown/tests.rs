@@ -238,6 +238,11 @@ fn the_largest_error_is_the_first_of_its_size_and_stays_one_that_is_no_number() 
     near(of(Measure::LargestError, Some(0.6), None).value, 8.0);
     let nothing = of(Measure::LargestError, Some(0.6), Some(0.9));
     assert_eq!((nothing.value, nothing.place), (0.0, CasePlace::default()));
+    let in_parts = |it: &Measure| it.family() == Family::Flight && it.takes("from_s");
+    for measure in Measure::ALL.into_iter().filter(in_parts) {
+        let [part, whole] = [Some(0.1), None].map(|from_s| of(measure, from_s, None).value);
+        assert!(part < whole, "{} is that of the part: {part} {whole}", measure.name());
+    }
     let mut errors = [1.0; 11];
     errors[3] = f64::NAN;
     let lost = Whole::with_errors(errors);
