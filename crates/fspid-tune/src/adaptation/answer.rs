@@ -2,11 +2,12 @@
 
 use fspid_core::Gains;
 
+use super::Adaptation;
 use super::best::Best;
 use super::flown::{First, Treated};
-use super::means::{Draws, Estimate, Kind, Means, Quantity, Weights, line};
+use super::means::{Draws, Estimate, Kind, Means, Parts, Quantity, Weights, line};
+use super::plants::Plants;
 use super::treatment::Treatment;
-use super::{Adaptation, Plants};
 use crate::source::in_commands;
 
 /// What flew in the place of the self-tuner, beside the self-tuner as it is.
@@ -89,8 +90,12 @@ pub struct Following {
 pub struct PlantRow {
     /// Its first case.
     pub name: String,
+    /// In how many ways it is written; flights that have the same bits with either are of one plant.
+    pub written: usize,
     /// Its flights.
     pub flights: usize,
+    /// Those of which the win is made; without any it is no evidence.
+    pub kept: usize,
     /// Change of pitch acceleration with the elevator, 1/s².
     pub effectiveness_1_s2: Option<f64>,
     /// True airspeed, m/s.
@@ -142,6 +147,9 @@ pub struct Answer {
 
 const GAINS: [&str; 3] = ["kp", "ki", "kd"];
 
+/// Sizes of commands that are nearer to their mean are one, deg.
+const STILL_DEG: f64 = 1e-9;
+
 fn parts(gains: Gains<f64>) -> [f64; 3] {
     [gains.kp, gains.ki, gains.kd]
 }
@@ -149,21 +157,15 @@ fn parts(gains: Gains<f64>) -> [f64; 3] {
 pub(super) fn answer(
     asked: &Adaptation,
     named: Vec<String>,
-    (firsts, plants): (&[First], &Plants),
+    (firsts, plants, parts): (&[First], &Plants, &Parts),
     treated: &[Treated],
     best: &[Option<Best>],
 ) -> Answer {
-    let of_plant: Vec<(usize, Treated)> =
-        plants.of.iter().copied().zip(treated.iter().cloned()).collect();
-    let flown: Vec<(usize, Treated)> = match asked.against {
-        Some(_) => of_plant,
-        // Without another controller the chain begins at the nominal gains.
-        None => of_plant.into_iter().map(|(plant, values)| (plant, without(values))).collect(),
-    };
-    let means = Means::of(&flown, plants.keys.len());
+    let flown: Vec<(usize, &Treated)> = plants.of.iter().copied().zip(treated).collect();
+    // Without another controller the chain begins at the nominal gains.
+    let means = Means::of(&flown, parts);
     let seeds = usize::try_from(asked.options.seeds).unwrap_or(1);
-    let draws = Draws::new(plants.keys.len(), seeds);
-    let told = Told { means: &means, draws: &draws };
+    let told = Told { means: &means, draws: &Draws::of_win(parts, seeds), seeds };
     let facts = Facts { firsts, plants, best };
     let nominal = asked.flights.jobs().next().and_then(|(case, run)| {
         let study = asked.flights.study(&[], case, run).ok()?;
@@ -181,26 +183,22 @@ pub(super) fn answer(
         runs: asked.options.runs,
         flights: firsts.len(),
         kept: means.kept,
-        plants: facts.rows(&named),
+        plants: facts.rows(&named, &means),
         win: told.between(chain.first().copied(), Treatment::AsItIs, Quantity::Iae),
         win_travel: told.between(chain.first().copied(), Treatment::AsItIs, Quantity::Travel),
         steps: told.steps(chain),
         rows: rows(&told, treated, asked.against.is_some()),
-        moved: facts.moved(&draws, nominal.unwrap_or(Gains::ZERO)),
-        following: facts.following(&draws),
+        moved: facts.moved(nominal.unwrap_or(Gains::ZERO)),
+        following: facts.following(),
     }
-}
-
-/// Values without the controller that is compared with.
-fn without(mut treated: Treated) -> Treated {
-    treated.values[Treatment::Against.place()].clear();
-    treated
 }
 
 /// Estimates from means.
 struct Told<'a> {
     means: &'a Means,
+    /// Of the plants in the win.
     draws: &'a Draws,
+    seeds: usize,
 }
 
 impl Told<'_> {
@@ -223,9 +221,28 @@ impl Told<'_> {
         to: Treatment,
         quantity: Quantity,
     ) -> Option<Estimate> {
-        let from = from?;
-        let found = self.draws.estimate(Kind::Any, |it| self.logarithm(from, to, quantity, it))?;
+        self.by(self.draws, (from?, to), quantity)
+    }
+
+    fn by(
+        &self,
+        draws: &Draws,
+        (from, to): (Treatment, Treatment),
+        quantity: Quantity,
+    ) -> Option<Estimate> {
+        let found = draws.estimate(Kind::Any, |it| self.logarithm(from, to, quantity, it))?;
         Some(found.map(libm::exp))
+    }
+
+    /// Ratio of one to the flights as they are. Some may be lost, or not be there, of plants that are in the win; what is of
+    /// fewer plants has fewer for its interval.
+    fn beside(&self, to: Treatment, quantity: Quantity) -> Option<Estimate> {
+        let of = self.means.plants_of(to);
+        let ratio = |draws: &Draws| self.by(draws, (Treatment::AsItIs, to), quantity);
+        match of == self.means.plants_of(Treatment::AsItIs) {
+            true => ratio(self.draws),
+            false => ratio(&Draws::new(&Parts::of(&of), self.seeds)),
+        }
     }
 
     fn steps(&self, chain: &[Treatment]) -> Vec<Step> {
@@ -255,11 +272,10 @@ fn rows(told: &Told<'_>, treated: &[Treated], against: bool) -> Vec<Row> {
     let row = |treatment: Treatment| {
         let flown = || treated.iter().flat_map(|it| &it.values[treatment.place()]);
         let is_asked = flown().next().is_some_and(|it| it.broken.is_some());
-        let from = Some(Treatment::AsItIs);
         Row {
             treatment,
-            iae: told.between(from, treatment, Quantity::Iae),
-            travel: told.between(from, treatment, Quantity::Travel),
+            iae: told.beside(treatment, Quantity::Iae),
+            travel: told.beside(treatment, Quantity::Travel),
             lost: flown().filter(|it| it.lost).count(),
             flights: flown().count(),
             broken: is_asked.then(|| flown().filter(|it| it.broken != Some(false)).count()),
@@ -283,11 +299,13 @@ impl Facts<'_> {
         self.firsts.get(place).map(of)
     }
 
-    fn rows(&self, named: &[String]) -> Vec<PlantRow> {
-        let row = |plant: usize| {
+    fn rows(&self, named: &[String], means: &Means) -> Vec<PlantRow> {
+        let row = |(plant, kept): (usize, usize)| {
             let place = self.plants.of.iter().position(|it| *it == plant).unwrap_or(0);
             PlantRow {
                 name: named.get(place).cloned().unwrap_or_default(),
+                written: self.plants.written[plant],
+                kept,
                 flights: self.plants.of.iter().filter(|it| **it == plant).count(),
                 effectiveness_1_s2: self.of_first(plant, |it| it.effectiveness_1_s2).flatten(),
                 airspeed_m_s: self.of_first(plant, |it| it.airspeed_m_s).flatten(),
@@ -295,7 +313,7 @@ impl Facts<'_> {
                 best: self.best_of(plant),
             }
         };
-        (0..self.plants.keys.len()).map(row).collect()
+        means.flights_of(Treatment::AsItIs).enumerate().map(row).collect()
     }
 
     fn best_of(&self, plant: usize) -> Option<Gains<f64>> {
@@ -308,7 +326,14 @@ impl Facts<'_> {
         all.filter(|(first, _)| !first.lost)
     }
 
-    fn moved(&self, draws: &Draws, nominal: Gains<f64>) -> [Moved; 3] {
+    /// Those of some plants alone: of gains there are no seeds, and nothing is flown again.
+    fn draws(&self, is_in: impl Fn(usize) -> bool) -> Draws {
+        let is_in: Vec<bool> = (0..self.plants.count()).map(is_in).collect();
+        Draws::new(&Parts::of(&is_in), 1)
+    }
+
+    fn moved(&self, nominal: Gains<f64>) -> [Moved; 3] {
+        let draws = self.draws(|plant| self.kept().any(|(_, of)| of == plant));
         let of = |gain: usize| {
             let share = |part: usize| {
                 draws.estimate(Kind::Share, |weights| {
@@ -356,20 +381,25 @@ impl Facts<'_> {
         (whole > 0.0).then_some(found)
     }
 
-    fn following(&self, draws: &Draws) -> [Following; 3] {
+    fn following(&self) -> [Following; 3] {
         let of = |gain: usize| {
-            let mean = |plant: usize| self.plants.means.get(plant).map(|it| parts(*it)[gain]);
+            // A plant all of whose flights are lost has none of its own.
+            let is_flown = |plant: &usize| self.kept().any(|(_, of)| of == *plant);
+            let mean = |plant: usize| {
+                let means = self.plants.means.get(plant).filter(|_| is_flown(&plant));
+                means.map(|it| parts(*it)[gain])
+            };
             let best = |plant: usize| self.best_of(plant).map(|it| parts(it)[gain]);
             let effectiveness =
                 |plant: usize| self.of_first(plant, |it| it.effectiveness_1_s2).flatten();
             let airspeed = |plant: usize| self.of_first(plant, |it| it.airspeed_m_s).flatten();
             Following {
                 gain: GAINS[gain],
-                effectiveness: self.by(draws, effectiveness, mean),
-                best_by_effectiveness: self.by(draws, effectiveness, best),
-                airspeed: self.by(draws, airspeed, mean),
-                best: self.by(draws, best, mean),
-                amplitude: self.by_amplitude(draws, gain),
+                effectiveness: self.by(effectiveness, mean),
+                best_by_effectiveness: self.by(effectiveness, best),
+                airspeed: self.by(airspeed, mean),
+                best: self.by(best, mean),
+                amplitude: self.by_amplitude(gain),
             }
         };
         [of(0), of(1), of(2)]
@@ -378,26 +408,26 @@ impl Facts<'_> {
     /// How something of a plant follows something else, both in logarithms.
     fn by(
         &self,
-        draws: &Draws,
         x: impl Fn(usize) -> Option<f64>,
         y: impl Fn(usize) -> Option<f64>,
     ) -> Option<Followed> {
         let logarithm =
             |value: Option<f64>| value.filter(|it| *it > 0.0 && it.is_finite()).map(libm::log);
-        let pairs: Vec<(f64, f64, usize)> = (0..self.plants.keys.len())
+        let pairs: Vec<(f64, f64, usize)> = (0..self.plants.count())
             .filter_map(|plant| Some((logarithm(x(plant))?, logarithm(y(plant))?, plant)))
             .collect();
-        followed(draws, &pairs)
+        let draws = self.draws(|plant| pairs.iter().any(|(_, _, of)| *of == plant));
+        followed(&draws, &pairs)
     }
 
     /// How the mean gain of a flight follows the size of its command, beside the other flights of its plant.
-    fn by_amplitude(&self, draws: &Draws, gain: usize) -> Option<Followed> {
+    fn by_amplitude(&self, gain: usize) -> Option<Followed> {
         let logarithm = |first: &First| {
             let mean = first.moments[gain][0];
             (mean > 0.0).then(|| libm::log(mean))
         };
         let mut pairs = Vec::new();
-        for plant in 0..self.plants.keys.len() {
+        for plant in 0..self.plants.count() {
             let mine = || self.kept().filter(|(_, of)| *of == plant).map(|(first, _)| first);
             let logs: Option<Vec<f64>> = mine().map(logarithm).collect();
             let (logs, count) = (logs?, mine().count() as f64);
@@ -409,7 +439,10 @@ impl Facts<'_> {
                     .map(|(it, log)| (it.amplitude_deg - amplitude, log - of_logs, plant)),
             );
         }
-        followed(draws, &pairs)
+        // Commands of one size say nothing of a slope.
+        let says = |plant, &(x, _, of): &(f64, f64, usize)| of == plant && x.abs() > STILL_DEG;
+        let draws = self.draws(|plant| pairs.iter().any(|pair| says(plant, pair)));
+        followed(&draws, &pairs)
     }
 }
 

@@ -1,5 +1,6 @@
 //! Flights of the self-tuner, as it is and treated.
 
+use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -10,6 +11,7 @@ use fspid_scenario::measure::Measure;
 use fspid_scenario::units::degrees;
 use fspid_sim::replay::{Replay, fly_replayed, fly_watching_inputs};
 use fspid_sim::{Controller, Instant, Outcome, Prepared, SimError, Surroundings, Weather};
+use sha2::{Digest as _, Sha256};
 
 use super::treatment::{COUNT, Treatment};
 use crate::draw::Draw;
@@ -106,17 +108,25 @@ pub(super) struct Record {
     gains: Vec<Gains<f64>>,
     inputs: Vec<[f64; 2]>,
     lost: bool,
+    /// The same for flights with the same bits of pitch, elevator and gains.
+    trace: String,
 }
 
 impl Record {
     fn of(prepared: &Prepared, controller: &Fspid<f64>) -> Result<Self, SimError> {
         let (mut record, mut meter) = (Self::default(), Meter::default());
+        let mut trace = Sha256::new();
         let outcome = fly_watching_inputs(prepared, controller, |instant, inputs| {
             record.gains.push(instant.step.gains);
+            let Gains { kp, ki, kd } = instant.step.gains;
+            for value in [instant.theta_rad, instant.elevator_rad, kp, ki, kd] {
+                trace.update(value.to_bits().to_le_bytes());
+            }
             record.inputs.push(inputs);
             meter.take(&instant)
         })?;
         record.lost = meter.value(outcome, prepared.timing().dt_s()).lost;
+        record.trace = trace.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
         Ok(record)
     }
 
@@ -135,8 +145,10 @@ impl Record {
 /// What is known of a flight before it is treated.
 #[derive(Clone, Debug)]
 pub(super) struct First {
-    /// The same for flights of the same plant.
+    /// The same for flights whose plant is written alike.
     pub(super) key: String,
+    /// The same for flights with the same bits.
+    pub(super) trace: String,
     /// Change of pitch acceleration with the elevator, 1/s².
     pub(super) effectiveness_1_s2: Option<f64>,
     pub(super) airspeed_m_s: Option<f64>,
@@ -163,6 +175,7 @@ pub(super) fn first(
     let largest = prepared.setpoint_rad().iter().fold(0.0, |most: f64, it| most.max(it.abs()));
     let first = First {
         key: hex_digest(&format!("{parts:?}")),
+        trace: record.trace.clone(),
         effectiveness_1_s2: effectiveness_1_s2(study),
         airspeed_m_s: study.airframes.first().and_then(|it| it.airspeed_m_s),
         amplitude_deg: degrees(largest),
@@ -171,6 +184,29 @@ pub(super) fn first(
         signals: signals(study, &prepared),
     };
     Ok((first, record.gains))
+}
+
+impl First {
+    /// Mean gains of the flight.
+    pub(super) fn mean(&self) -> Gains<f64> {
+        let [[kp, _], [ki, _], [kd, _]] = self.moments;
+        Gains { kp, ki, kd }
+    }
+}
+
+/// What a flight comes to with the plant of another study in the place of its own; none where that cannot be flown.
+pub(super) fn with_plant_of(
+    mut study: Study,
+    other: Study,
+    watch: Watch<'_>,
+) -> Result<Option<String>, TuneError> {
+    watch.ask(1)?;
+    let (own, other) = (&mut study.scenario, other.scenario);
+    (own.plant, own.plant_changes, own.actuator) =
+        (other.plant, other.plant_changes, other.actuator);
+    let Ok(prepared) = own.prepare() else { return Ok(None) };
+    let tuner = tuner(&study).ok_or_else(no_tuner)?;
+    Ok(Record::of(&prepared, tuner).ok().map(|record| record.trace))
 }
 
 /// Everything that enters a flight beside its plant; where it flies is the plant's.
@@ -191,7 +227,11 @@ type Sums = Vec<[f64; 4]>;
 
 /// Sums of the gains that flights with the same signals have at each sample.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Schedules(Vec<Schedule>);
+pub(super) struct Schedules {
+    of_signals: Vec<Schedule>,
+    /// Signals that a plant flies more than once, and the plant.
+    again: BTreeSet<(String, usize)>,
+}
 
 /// Those of the same signals.
 #[derive(Clone, Debug, Default)]
@@ -200,50 +240,80 @@ struct Schedule {
     all: Sums,
     /// Of each part of the plants that has some.
     parts: Vec<(usize, Sums)>,
+    /// Of each plant that has more than one such flight.
+    plants: Vec<(usize, Sums)>,
 }
 
 impl Schedules {
-    /// Takes in a flight that is not lost, of a plant of that part.
-    pub(super) fn add(&mut self, signals: &str, part: usize, gains: &[Gains<f64>]) {
-        let place = self.0.iter().position(|it| it.signals == signals).unwrap_or(self.0.len());
-        if place == self.0.len() {
-            self.0.push(Schedule { signals: signals.to_owned(), ..Schedule::default() });
-        }
-        let Some(Schedule { all, parts, .. }) = self.0.get_mut(place) else { return };
-        add(all, gains);
-        match parts.iter_mut().find(|(it, _)| *it == part) {
-            Some((_, sums)) => add(sums, gains),
-            None => {
-                let mut sums = Sums::new();
-                add(&mut sums, gains);
-                parts.push((part, sums));
+    /// Without gains yet; of flights, and the plant of each.
+    pub(super) fn of(firsts: &[First], plants: &[usize]) -> Self {
+        let (mut once, mut again) = (BTreeSet::new(), BTreeSet::new());
+        for (first, plant) in firsts.iter().zip(plants).filter(|(first, _)| !first.lost) {
+            if !once.insert((&first.signals, *plant)) {
+                again.insert((first.signals.clone(), *plant));
             }
+        }
+        Self { of_signals: Vec::new(), again }
+    }
+
+    /// Takes in a flight that is not lost, of a plant that may be in a part.
+    pub(super) fn add(
+        &mut self,
+        signals: &str,
+        (plant, part): (usize, Option<usize>),
+        gains: &[Gains<f64>],
+    ) {
+        let known = self.of_signals.iter().position(|it| it.signals == signals);
+        let place = known.unwrap_or(self.of_signals.len());
+        if known.is_none() {
+            let signals = signals.to_owned();
+            self.of_signals.push(Schedule { signals, ..Schedule::default() });
+        }
+        let schedule = &mut self.of_signals[place];
+        add(&mut schedule.all, gains);
+        if let Some(part) = part {
+            add_to(&mut schedule.parts, part, gains);
+        }
+        if self.again.contains(&(signals.to_owned(), plant)) {
+            add_to(&mut schedule.plants, plant, gains);
         }
     }
 
-    /// Mean gains of the other flights with the same signals, sample by sample, without those of a part of the plants; none
-    /// where there are none.
+    /// Mean gains of the flights of other plants with the same signals, sample by sample, without those of a part of the
+    /// plants; none where there are none.
     fn of_others(
         &self,
-        signals: &str,
+        (signals, plant): (&str, usize),
         own: &Record,
         without: Option<usize>,
     ) -> Option<Vec<Gains<f64>>> {
-        let Schedule { all, parts, .. } = self.0.iter().find(|it| it.signals == signals)?;
+        let Schedule { all, parts, plants, .. } =
+            self.of_signals.iter().find(|it| it.signals == signals)?;
         let left = parts.iter().find(|(part, _)| Some(*part) == without).map(|(_, sums)| sums);
+        let of_plant = plants.iter().find(|(it, _)| *it == plant).map(|(_, sums)| sums);
         let others = all.iter().zip(&own.gains).enumerate().map(|(sample, (sum, own))| {
-            let left = left.and_then(|sums| sums.get(sample)).copied().unwrap_or_default();
+            let at = |sums: Option<&Sums>| sums.and_then(|sums| sums.get(sample)).copied();
+            let left = at(left).unwrap_or_default();
+            let own = at(of_plant).unwrap_or([own.kp, own.ki, own.kd, 1.0]);
             let mut others = [0.0; 4];
-            for ((other, sum), left) in others.iter_mut().zip(sum).zip(left) {
-                *other = sum - left;
+            for (place, other) in others.iter_mut().enumerate() {
+                *other = sum[place] - left[place] - own[place];
             }
             let [kp, ki, kd, count] = others;
-            let rest = count - 1.0;
-            let mean = |sum: f64, own: f64| (sum - own) / rest;
-            let gains = Gains { kp: mean(kp, own.kp), ki: mean(ki, own.ki), kd: mean(kd, own.kd) };
-            (rest > 0.5).then_some(gains)
+            (count > 0.5).then(|| Gains { kp: kp / count, ki: ki / count, kd: kd / count })
         });
         others.collect()
+    }
+}
+
+fn add_to(known: &mut Vec<(usize, Sums)>, of: usize, gains: &[Gains<f64>]) {
+    match known.iter_mut().find(|(it, _)| *it == of) {
+        Some((_, sums)) => add(sums, gains),
+        None => {
+            let mut sums = Sums::new();
+            add(&mut sums, gains);
+            known.push((of, sums));
+        }
     }
 }
 
@@ -299,49 +369,88 @@ impl Treated {
     }
 }
 
-/// A flight by its number, the part that its plant is in, and of how many.
-#[derive(Clone, Copy)]
-pub(super) struct Numbered {
-    pub(super) number: usize,
-    pub(super) part: usize,
-    pub(super) parts: usize,
+/// A flight that is flown again with gains or inputs that somebody has.
+struct Again<'a> {
+    prepared: Prepared,
+    tuner: &'a Fspid<f64>,
+    record: Record,
+    /// The plant that it is of.
+    plant: usize,
+    signals: String,
 }
 
-/// Flies a study with its own gains and inputs at other moments, and with the gains that its flight has on other plants: on all
-/// of them, and on those without each part.
+impl<'a> Again<'a> {
+    fn of(study: &'a Study, plant: usize) -> Result<Self, TuneError> {
+        let prepared = study.scenario.prepare().map_err(|error| unflown(&error))?;
+        let tuner = tuner(study).ok_or_else(no_tuner)?;
+        let record = Record::of(&prepared, tuner).map_err(|error| unflown(&error))?;
+        Ok(Self { signals: signals(study, &prepared), prepared, tuner, record, plant })
+    }
+
+    fn fly(&self, replay: Replay<'_>) -> Result<Value, TuneError> {
+        flown(&self.prepared, self.tuner, replay).map_err(|error| unflown(&error))
+    }
+
+    /// With the gains that its flight has on other plants, without a part of them; none where there are none.
+    fn of_others(
+        &self,
+        schedules: &Schedules,
+        without: Option<usize>,
+        watch: Watch<'_>,
+    ) -> Result<Option<Value>, TuneError> {
+        if self.record.lost {
+            return Ok(None);
+        }
+        let others = schedules.of_others((&self.signals, self.plant), &self.record, without);
+        let fly = |gains: Vec<Gains<f64>>| {
+            watch.ask(1)?;
+            self.fly(Replay::Gains(&gains))
+        };
+        others.map(fly).transpose()
+    }
+}
+
+/// Flies a study with the gains that its flight has on other plants, without each part of these; not without its own part.
+pub(super) fn without_parts(
+    study: &Study,
+    (plant, part, parts): (usize, usize, usize),
+    schedules: &Schedules,
+    watch: Watch<'_>,
+) -> Result<Vec<Option<Value>>, TuneError> {
+    let again = Again::of(study, plant)?;
+    let without = |left: usize| match left == part {
+        true => Ok(None),
+        false => again.of_others(schedules, Some(left), watch),
+    };
+    (0..parts).map(without).collect()
+}
+
+/// Flies a study, given by its number and its plant, with its own gains and inputs at other moments, and with the gains that
+/// its flight has on other plants.
 pub(super) fn replayed(
     study: &Study,
-    (numbered, schedules): (Numbered, &Schedules),
+    (number, plant): (usize, usize),
+    schedules: &Schedules,
     (seed, seeds): (u64, u64),
     watch: Watch<'_>,
-) -> Result<(Values, Vec<Option<Value>>), TuneError> {
+) -> Result<Values, TuneError> {
     let mut values = Values::default();
-    let prepared = study.scenario.prepare().map_err(|error| unflown(&error))?;
-    let tuner = tuner(study).ok_or_else(no_tuner)?;
-    let record = Record::of(&prepared, tuner).map_err(|error| unflown(&error))?;
-    let fly = |replay: Replay<'_>| flown(&prepared, tuner, replay).map_err(|error| unflown(&error));
-    let signals = signals(study, &prepared);
-    let others = |without: Option<usize>| {
-        let others = schedules.of_others(&signals, &record, without).filter(|_| !record.lost);
-        let fly = |gains: Vec<Gains<f64>>| watch.ask(1).and_then(|()| fly(Replay::Gains(&gains)));
-        others.map(fly).transpose()
-    };
-    values[Treatment::OtherPlants.place()].extend(others(None)?);
-    let without = |part: usize| if part == numbered.part { Ok(None) } else { others(Some(part)) };
-    let left = (0..numbered.parts).map(without).collect::<Result<_, _>>()?;
+    let again = Again::of(study, plant)?;
+    let record = &again.record;
+    values[Treatment::OtherPlants.place()].extend(again.of_others(schedules, None, watch)?);
     for seed in (0..seeds).map(|place| seed.wrapping_add(place)) {
         watch.ask(Treatment::DRAWN.len())?;
-        let mut draw = Draw::of(seed, numbered.number as u64);
+        let mut draw = Draw::of(seed, number as u64);
         let turned = turned(&record.gains, &mut draw);
         let order = draw.order(record.gains.len());
         let gains = shuffled(&record.gains, &order);
         let inputs = shuffled(&record.inputs, &order);
         let replays = [Replay::Gains(&turned), Replay::Gains(&gains), Replay::Inputs(&inputs)];
         for (treatment, replay) in Treatment::DRAWN.into_iter().zip(replays) {
-            values[treatment.place()].push(fly(replay)?);
+            values[treatment.place()].push(again.fly(replay)?);
         }
     }
-    Ok((values, left))
+    Ok(values)
 }
 
 fn flown(prepared: &Prepared, tuner: &Fspid<f64>, replay: Replay<'_>) -> Result<Value, SimError> {

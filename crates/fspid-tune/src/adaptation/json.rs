@@ -24,6 +24,7 @@ impl Answer {
             "answer": self.headline(),
             "flights": self.flights,
             "kept": self.kept,
+            "plants_kept": self.plants_kept(),
             "win": { "iae_ratio": estimate(self.win), "travel_ratio": estimate(self.win_travel) },
             "steps": self.steps.iter().map(|it| step(it, self.called(it).0)).collect::<Vec<_>>(),
             "flown": self.rows.iter().map(row).collect::<Vec<_>>(),
@@ -42,7 +43,7 @@ const NULL: [(&str, &str); 14] = [
     ("iae_ratio", FEW),
     ("travel_ratio", FEW),
     ("share", "there is no win of which it would be a share, or too few flights are left"),
-    ("interval", "one seed has no interval, and neither has a single flight"),
+    ("interval", "it is of fewer than five plants, or nothing is left of it without some of them"),
     ("breaks_a_requirement", "nothing is required"),
     ("share_between_plants", STILL),
     ("share_between_flights", STILL),
@@ -116,7 +117,9 @@ fn plant(it: &PlantRow) -> Value {
     let gains = |it: Gains<f64>| json!({ "kp": it.kp, "ki": it.ki, "kd": it.kd });
     json!({
         "first_case": it.name,
+        "written": it.written,
         "flights": it.flights,
+        "kept": it.kept,
         "effectiveness_1_s2": it.effectiveness_1_s2,
         "airspeed_m_s": it.airspeed_m_s,
         "mean_gains": gains(it.mean),

@@ -16,14 +16,45 @@ const ROUNDING: f64 = 1e-12;
 /// Correlations and shares are no nearer to 1: their transformations end there.
 const MOST: f64 = 1.0 - 1e-15;
 
-/// The part that a plant is in.
-pub(super) fn part_of(plant: usize) -> usize {
-    plant % PARTS
+/// Most parts that so many plants can have.
+pub(super) fn most_parts(plants: usize) -> usize {
+    plants.min(PARTS)
 }
 
-/// How many parts so many plants have; none where there are too few for an interval.
-pub(super) fn parts(plants: usize) -> usize {
-    if plants < FEWEST { 0 } else { plants.min(PARTS) }
+/// The parts of the plants that a number is made of; the others are in none.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Parts {
+    of: Vec<Option<usize>>,
+    /// Of how many plants.
+    plants: usize,
+}
+
+impl Parts {
+    /// Of plants, each with whether it is in the number: what is not in it is no evidence.
+    pub(super) fn of(is_in: &[bool]) -> Self {
+        let mut plants = 0;
+        let part = |is_in: &bool| {
+            is_in.then(|| {
+                plants += 1;
+                (plants - 1) % PARTS
+            })
+        };
+        Self { of: is_in.iter().map(part).collect(), plants }
+    }
+
+    /// The part that a plant is in.
+    pub(super) fn part(&self, plant: usize) -> Option<usize> {
+        self.of.get(plant).copied().flatten()
+    }
+
+    /// How many parts are left out; none where there are too few plants for an interval.
+    pub(super) fn count(&self) -> usize {
+        if self.plants < FEWEST { 0 } else { most_parts(self.plants) }
+    }
+
+    pub(super) fn has(&self, plant: usize) -> bool {
+        self.part(plant).is_some()
+    }
 }
 
 /// A number with its interval, which is told for five plants and more.
@@ -114,13 +145,26 @@ pub(super) struct Draws {
 }
 
 impl Draws {
-    pub(super) fn new(plants: usize, seeds: usize) -> Self {
-        let as_flown = Weights { plants: vec![1.0; plants], seeds: vec![1.0; seeds], left: None };
+    /// Of the win, which is flown again without each part of its plants.
+    pub(super) fn of_win(parts: &Parts, seeds: usize) -> Self {
+        let mut draws = Self::new(parts, seeds);
+        for (part, (_, weights)) in draws.parts.iter_mut().enumerate() {
+            weights.left = Some(part);
+        }
+        draws
+    }
+
+    /// Of what is not flown again.
+    pub(super) fn new(parts: &Parts, seeds: usize) -> Self {
+        let plants = parts.of.len();
+        let often = |stays: &dyn Fn(usize) -> bool| -> Vec<f64> {
+            (0..plants).map(|it| if parts.has(it) && stays(it) { 1.0 } else { 0.0 }).collect()
+        };
+        let as_flown = Weights { plants: often(&|_| true), seeds: vec![1.0; seeds], left: None };
         let part = |part: usize| {
-            let stays = |plant: usize| if part_of(plant) == part { 0.0 } else { 1.0 };
-            let kept: Vec<f64> = (0..plants).map(stays).collect();
-            let share = 1.0 - kept.iter().sum::<f64>() / plants as f64;
-            (share, Weights { plants: kept, left: Some(part), ..as_flown.clone() })
+            let kept = often(&|plant| parts.part(plant) != Some(part));
+            let share = 1.0 - kept.iter().sum::<f64>() / parts.plants as f64;
+            (share, Weights { plants: kept, ..as_flown.clone() })
         };
         let seed = |seed: usize| {
             let mut without = as_flown.clone();
@@ -129,7 +173,7 @@ impl Draws {
         };
         // Of one seed nobody knows what another would do.
         let left_seeds = if seeds < 2 { 0 } else { seeds };
-        let (parts, seeds) = ((0..parts(plants)).map(part), (0..left_seeds).map(seed));
+        let (parts, seeds) = ((0..parts.count()).map(part), (0..left_seeds).map(seed));
         Self { parts: parts.collect(), seeds: seeds.collect(), as_flown }
     }
 
@@ -193,7 +237,7 @@ fn of_seeds(seeds: &[f64]) -> f64 {
 /// Sums over the flights of a plant: of each seed, how far the logarithm is from that of the flight as it is.
 #[derive(Clone, Debug, Default)]
 struct Sums {
-    flights: f64,
+    flights: usize,
     iae: Vec<f64>,
     travel: Vec<f64>,
 }
@@ -220,21 +264,43 @@ pub(super) struct Means {
     pub(super) chain: Vec<Treatment>,
 }
 
+/// What the win is made of: what nobody flew is no part of it; what somebody flew is asked of every flight in it.
+fn chain<'a>(flights: impl Iterator<Item = &'a Values> + Clone) -> Vec<Treatment> {
+    let flown = |treatment: &Treatment| flights.clone().any(|values| has(values, *treatment));
+    Treatment::CHAIN.into_iter().filter(flown).collect()
+}
+
+/// Which plants have a flight in the win; of flights, and the plant of each.
+pub(super) fn in_the_win(flights: &[Values], of: &[usize], plants: usize) -> Vec<bool> {
+    let chain = chain(flights.iter());
+    let all = of.iter().copied().zip(flights.iter().cloned());
+    let (sums, _) = sums(all, plants, &chain);
+    sums.iter().map(|plant| plant[Treatment::AsItIs.place()].flights > 0).collect()
+}
+
 impl Means {
     /// Of flights, each with the number of its plant.
-    pub(super) fn of(flights: &[(usize, Treated)], plants: usize) -> Self {
-        // What nobody flew is no part of the chain; what somebody flew is asked of every flight in it.
-        let chain = Treatment::CHAIN.into_iter();
-        let chain: Vec<Treatment> =
-            chain.filter(|it| flights.iter().any(|(_, flight)| has(&flight.values, *it))).collect();
+    pub(super) fn of(flights: &[(usize, &Treated)], parts: &Parts) -> Self {
+        let plants = parts.of.len();
+        let chain = chain(flights.iter().map(|(_, flight)| &flight.values));
         let all = flights.iter().map(|(plant, flight)| (*plant, flight.values.clone()));
         let (as_flown, kept) = sums(all, plants, &chain);
         let without = |part: usize| {
-            let others = flights.iter().filter(|(plant, _)| part_of(*plant) != part);
+            let others = flights.iter().filter(|(plant, _)| parts.part(*plant) != Some(part));
             let others = others.map(|(plant, flight)| (*plant, flight.without(part)));
             sums(others, plants, &chain).0
         };
-        Self { plants: as_flown, left: (0..parts(plants)).map(without).collect(), kept, chain }
+        Self { plants: as_flown, left: (0..parts.count()).map(without).collect(), kept, chain }
+    }
+
+    /// Which plants have a flight among those that a mean is of.
+    pub(super) fn plants_of(&self, treatment: Treatment) -> Vec<bool> {
+        self.flights_of(treatment).map(|flights| flights > 0).collect()
+    }
+
+    /// How many flights of each plant a mean is of.
+    pub(super) fn flights_of(&self, treatment: Treatment) -> impl Iterator<Item = usize> {
+        self.plants.iter().map(move |plant| plant[treatment.place()].flights)
     }
 
     /// Mean of how far the logarithm is from that of the flights as they are; `None` where nobody flew so.
@@ -256,7 +322,7 @@ impl Means {
             };
             for (place, part) in sums.iter().enumerate() {
                 sum += often * seed(place) * part;
-                whole += often * seed(place) * flights;
+                whole += often * seed(place) * *flights as f64;
             }
         }
         (whole > 0.0).then_some(sum / whole)
@@ -295,7 +361,7 @@ impl Sums {
         if values.is_empty() {
             return;
         }
-        self.flights += 1.0;
+        self.flights += 1;
         self.iae.resize(values.len(), 0.0);
         self.travel.resize(values.len(), 0.0);
         for (place, value) in values.iter().enumerate() {
@@ -339,6 +405,11 @@ mod tests {
         assert_eq!(line_of(&[]), None);
     }
 
+    /// All of so many plants.
+    fn all_of(plants: usize, seeds: usize) -> Draws {
+        Draws::new(&Parts::of(&vec![true; plants]), seeds)
+    }
+
     /// Mean of numbers, one for each plant.
     fn mean(values: &[f64], weights: &Weights) -> Option<f64> {
         let sum: f64 = weights.plants.iter().zip(values).map(|(w, it)| w * it).sum();
@@ -352,25 +423,25 @@ mod tests {
             let value = |it: usize| (1e4 * (1.0 + libm::sin(1.0 + 12.9898 * it as f64))) % 1.0;
             let values: Vec<f64> = (0..plants).map(value).collect();
             let mean_of_all = values.iter().sum::<f64>() / plants as f64;
-            let found = Draws::new(plants, 1).estimate(Kind::Any, |it| mean(&values, it));
+            let found = all_of(plants, 1).estimate(Kind::Any, |it| mean(&values, it));
             let found = found.expect("a mean");
             let [lower, upper] = found.interval.expect("enough plants");
             assert!((0.5 * (lower + upper) - mean_of_all).abs() < 1e-12, "{found:?}");
             let square = |it: &f64| (it - mean_of_all) * (it - mean_of_all);
             let squares: f64 = values.iter().map(square).sum();
             let error = libm::sqrt(squares / (plants * (plants - 1)) as f64);
-            let far = beyond(0.05, parts(plants) as f64 - 1.0) * error;
+            let far = beyond(0.05, most_parts(plants) as f64 - 1.0) * error;
             // Parts of several plants each scatter as they happen to.
             let near = if plants <= PARTS { 1e-9 } else { 0.5 };
             assert!((0.5 * (upper - lower) / far - 1.0).abs() < near, "{plants}: {found:?} {far}");
         }
-        let few = Draws::new(FEWEST - 1, 1).estimate(Kind::Any, |_| Some(1.0));
+        let few = all_of(FEWEST - 1, 1).estimate(Kind::Any, |_| Some(1.0));
         assert!(few.is_some_and(|it| it.interval.is_none()));
     }
 
     #[test]
     fn the_interval_of_a_correlation_stays_within_one_and_that_of_a_share_within_its_ends() {
-        let draws = Draws::new(5, 1);
+        let draws = all_of(5, 1);
         let pairs = [(0.0, 0.1), (1.0, 0.9), (2.0, 2.2), (3.0, 2.9), (4.0, 4.4)];
         let part = |which: usize| {
             let pairs = &pairs;
@@ -400,7 +471,7 @@ mod tests {
     fn seeds_are_in_the_interval() {
         let values = [1.0, 2.0, 3.0, 4.0, 5.0];
         let width = |seeds: usize| {
-            let draws = Draws::new(5, seeds);
+            let draws = all_of(5, seeds);
             let found = draws.estimate(Kind::Any, |weights| {
                 let seeds = weights.seeds.iter().enumerate().map(|(at, w)| w * at as f64);
                 let count: f64 = weights.seeds.iter().sum();

@@ -14,8 +14,9 @@
 //! that of how much has to be known.
 //!
 //! # How sure
-//! A plant is an aircraft at a condition with its actuator. Flights of one plant are not independent, least of all steps up
-//! and down of a linear one; so plants are left out with all their flights, in at most twenty parts, one after the other, and
+//! A plant is an aircraft at a condition with its actuator, however it is written: plants whose flights have the same bits
+//! with either of them are one. Flights of one plant are not independent, least of all steps up and down of a linear one; so
+//! plants that have a flight in the win are left out with all their flights, in at most twenty parts, one after the other, and
 //! the flights of the others that go by gains of all or of other plants are flown again without them (a jackknife: Busing,
 //! Meijer and van der Leeden 1999). Seeds of the shuffles are left out one by one. Intervals are Student's, of 95 %.
 
@@ -25,6 +26,7 @@ mod flown;
 mod json;
 mod means;
 mod page;
+mod plants;
 mod text;
 mod treatment;
 
@@ -50,7 +52,9 @@ use crate::flights::{Asked, Dispersed, Flights, FlownCase, Flyer, each_once, flo
 use crate::source::Source;
 use crate::space::Space;
 use best::Best;
-use flown::{First, Numbered, Schedules, Treated};
+use flown::{First, Schedules, Treated, Value, Values};
+use means::Parts;
+use plants::Plants;
 
 /// What can be chosen.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -154,8 +158,9 @@ impl Adaptation {
     pub fn expected(&self) -> usize {
         let drawn = Treatment::DRAWN.len() * usize::try_from(self.options.seeds).unwrap_or(0);
         // Without each part of the plants two flights more; nobody knows yet how many plants there are.
-        let left = Treatment::OF_OTHERS.len() * means::parts(self.flights.count());
-        self.flights.count() * (8 + drawn + left + self.options.budget)
+        let left = Treatment::OF_OTHERS.len() * means::most_parts(self.flights.count());
+        // Also to tell plants apart, and for the gains of others.
+        self.flights.count() * (12 + drawn + left + self.options.budget)
     }
 
     /// Makes it, on all threads of the pool that this is called in. The same bits on any number of them.
@@ -164,50 +169,87 @@ impl Adaptation {
     /// [`TuneError::Stopped`]; a case that cannot be flown.
     pub fn measured(&self, watch: Watch<'_>) -> Result<Answer, TuneError> {
         let jobs: Vec<Job<'_>> = self.flights.jobs().collect();
-        let (firsts, schedules) = self.firsts(&jobs, watch)?;
-        let plants = Plants::of(&firsts);
+        let firsts = self.firsts(&jobs, watch)?;
+        let plants = Plants::of(&firsts, |flight, other| {
+            flown::with_plant_of(self.study(jobs[flight])?, self.study(jobs[other])?, watch)
+        })?;
+        let nobody = Parts::of(&vec![false; plants.count()]);
+        let schedules = self.schedules(&jobs, (&firsts, &plants), &nobody, watch)?;
         let known = Known { firsts: &firsts, plants: &plants, schedules: &schedules };
-        let treated: Vec<(Treated, Option<FlightResult>)> = jobs
+        let treated: Vec<(Values, Option<FlightResult>)> = jobs
             .par_iter()
             .enumerate()
             .map_init(Memory::default, |memory, (number, job)| {
                 self.treated(memory, (number, *job), known, watch)
             })
             .collect::<Result<_, _>>()?;
-        let best: Vec<Option<Best>> = (0..plants.keys.len())
+        let best: Vec<Option<Best>> = (0..plants.count())
             .into_par_iter()
             .map(|plant| self.best(plant, &jobs, &treated, &plants, watch))
             .collect::<Result<_, _>>()?;
-        let mut treated: Vec<Treated> = treated.into_iter().map(|(treated, _)| treated).collect();
+        let mut values: Vec<Values> = treated.into_iter().map(|(values, _)| values).collect();
         for (plant, best) in best.iter().enumerate() {
             let mine = plants.flown(plant, &firsts);
             for (place, value) in mine.zip(best.iter().flat_map(|best| &best.values)) {
-                treated[place].values[Treatment::PlantTuned.place()] = vec![*value];
+                values[place][Treatment::PlantTuned.place()] = vec![*value];
             }
         }
+        let parts = Parts::of(&means::in_the_win(&values, &plants.of, plants.count()));
+        let left = self.left(&jobs, (&firsts, &plants), &parts, watch)?;
+        let treated = values.into_iter().zip(left).map(|(values, left)| Treated { values, left });
+        let treated: Vec<Treated> = treated.collect();
         let named = jobs.iter().map(|(case, _)| case.name.clone()).collect();
-        Ok(answer::answer(self, named, (&firsts, &plants), &treated, &best))
+        Ok(answer::answer(self, named, (&firsts, &plants, &parts), &treated, &best))
     }
 
-    /// All flights as they are, and what gains they have at each moment.
-    fn firsts(
+    /// All flights as they are.
+    fn firsts(&self, jobs: &[Job<'_>], watch: Watch<'_>) -> Result<Vec<First>, TuneError> {
+        jobs.par_iter().map(|job| Ok(flown::first(&self.study(*job)?, watch)?.0)).collect()
+    }
+
+    /// What gains the flights have at each moment that are not lost, by signals, plants and their parts.
+    fn schedules(
         &self,
         jobs: &[Job<'_>],
+        (firsts, plants): (&[First], &Plants),
+        parts: &Parts,
         watch: Watch<'_>,
-    ) -> Result<(Vec<First>, Schedules), TuneError> {
-        let (mut firsts, mut schedules) = (Vec::<First>::new(), Schedules::default());
-        let mut keys: Vec<String> = Vec::new();
-        for some in jobs.chunks(AT_ONCE) {
+    ) -> Result<Schedules, TuneError> {
+        let mut schedules = Schedules::of(firsts, &plants.of);
+        for (some, place) in jobs.chunks(AT_ONCE).zip((0..).step_by(AT_ONCE)) {
             let flown = some.par_iter().map(|job| flown::first(&self.study(*job)?, watch));
-            for (first, gains) in flown.collect::<Result<Vec<_>, TuneError>>()? {
-                let plant = place_of(&mut keys, &first.key);
+            let flown = flown.collect::<Result<Vec<_>, TuneError>>()?;
+            for ((first, gains), plant) in flown.iter().zip(&plants.of[place..]) {
                 if !first.lost {
-                    schedules.add(&first.signals, means::part_of(plant), &gains);
+                    schedules.add(&first.signals, (*plant, parts.part(*plant)), gains);
                 }
-                firsts.push(first);
             }
         }
-        Ok((firsts, schedules))
+        Ok(schedules)
+    }
+
+    /// What depends on other plants, without each part of them; of plants that are in the win alone.
+    fn left(
+        &self,
+        jobs: &[Job<'_>],
+        (firsts, plants): (&[First], &Plants),
+        parts: &Parts,
+        watch: Watch<'_>,
+    ) -> Result<Vec<Vec<[Option<Value>; 2]>>, TuneError> {
+        if parts.count() == 0 {
+            return Ok(vec![Vec::new(); jobs.len()]);
+        }
+        let schedules = self.schedules(jobs, (firsts, plants), parts, watch)?;
+        let without = plants.without(firsts, parts);
+        let left = |memory: &mut Memory, (job, plant): (&Job<'_>, &usize)| {
+            let Some(part) = parts.part(*plant) else { return Ok(Vec::new()) };
+            let study = self.study(*job)?;
+            let standing = flown::standing(memory, &study, &without, watch)?;
+            let of = (*plant, part, parts.count());
+            let others = flown::without_parts(&study, of, &schedules, watch)?;
+            Ok(standing.into_iter().map(Some).zip(others).map(<[_; 2]>::from).collect())
+        };
+        jobs.par_iter().zip(&plants.of).map_init(Memory::default, left).collect()
     }
 
     fn study(&self, (case, run): Job<'_>) -> Result<Study, TuneError> {
@@ -220,7 +262,7 @@ impl Adaptation {
         (number, job): (usize, Job<'_>),
         Known { firsts, plants, schedules }: Known<'_>,
         watch: Watch<'_>,
-    ) -> Result<(Treated, Option<FlightResult>), TuneError> {
+    ) -> Result<(Values, Option<FlightResult>), TuneError> {
         let study = self.study(job)?;
         let other = self.theirs.as_ref().map(|theirs| {
             let (case, run) = theirs.jobs().nth(number).ok_or("nobody flies".to_owned())?;
@@ -237,22 +279,18 @@ impl Adaptation {
         ];
         let (mut values, as_it_is) = flown::stood(memory, &study, other.as_ref(), &means, watch)?;
         let seeds = (self.options.seed, self.options.seeds);
-        let (part, parts) = (means::part_of(plant), plants.without.len());
-        let numbered = Numbered { number, part, parts };
-        let (drawn, others) = flown::replayed(&study, (numbered, schedules), seeds, watch)?;
+        let again = flown::replayed(&study, (number, plant), schedules, seeds, watch)?;
         for treatment in Treatment::DRAWN.into_iter().chain([Treatment::OtherPlants]) {
-            values[treatment.place()].clone_from(&drawn[treatment.place()]);
+            values[treatment.place()].clone_from(&again[treatment.place()]);
         }
-        let standing = flown::standing(memory, &study, &plants.without, watch)?;
-        let left = standing.into_iter().map(Some).zip(others).map(<[_; 2]>::from).collect();
-        Ok((Treated { values, left }, as_it_is))
+        Ok((values, as_it_is))
     }
 
     fn best(
         &self,
         plant: usize,
         jobs: &[Job<'_>],
-        treated: &[(Treated, Option<FlightResult>)],
+        treated: &[(Values, Option<FlightResult>)],
         plants: &Plants,
         watch: Watch<'_>,
     ) -> Result<Option<Best>, TuneError> {
@@ -260,77 +298,13 @@ impl Adaptation {
         let mut asked = Vec::new();
         for ((job, (_, as_it_is)), _) in mine {
             // What is lost as it is has nothing to be compared with; the places are those of `Plants::flown`.
-            if let Some(as_it_is) = as_it_is.clone().filter(|it| !flown::Value::of(it).lost) {
+            if let Some(as_it_is) = as_it_is.clone().filter(|it| !Value::of(it).lost) {
                 asked.push(best::Asked { study: self.study(*job)?, as_it_is });
             }
         }
         let start = plants.means.get(plant).copied().unwrap_or(plants.all);
         best::best(&asked, start, (self.options.budget, self.options.seed), watch)
     }
-}
-
-impl First {
-    /// Mean gains of the flight.
-    fn mean(&self) -> Gains<f64> {
-        let [[kp, _], [ki, _], [kd, _]] = self.moments;
-        Gains { kp, ki, kd }
-    }
-}
-
-/// Which flights are of the same plant, and the mean gains of all and of each; lost flights have no part in means.
-#[derive(Clone, Debug)]
-struct Plants {
-    keys: Vec<String>,
-    /// The plant of each flight.
-    of: Vec<usize>,
-    all: Gains<f64>,
-    means: Vec<Gains<f64>>,
-    /// Of all but each part of the plants.
-    without: Vec<Gains<f64>>,
-}
-
-/// The place of a key among those that are known; a new one is put behind them.
-fn place_of(keys: &mut Vec<String>, key: &str) -> usize {
-    let place = keys.iter().position(|it| it == key).unwrap_or(keys.len());
-    if place == keys.len() {
-        keys.push(key.to_owned());
-    }
-    place
-}
-
-impl Plants {
-    fn of(firsts: &[First]) -> Self {
-        let mut keys: Vec<String> = Vec::new();
-        let of: Vec<usize> = firsts.iter().map(|first| place_of(&mut keys, &first.key)).collect();
-        let kept = || firsts.iter().zip(&of).filter(|(first, _)| !first.lost);
-        let all = mean(kept().map(|(first, _)| first.mean())).unwrap_or(Gains::ZERO);
-        let of_plant = |plant: usize| {
-            mean(kept().filter(|(_, of)| **of == plant).map(|(first, _)| first.mean()))
-        };
-        let without = |part: usize| {
-            let others = kept().filter(|(_, of)| means::part_of(**of) != part);
-            mean(others.map(|(first, _)| first.mean())).unwrap_or(all)
-        };
-        let without = (0..means::parts(keys.len())).map(without).collect();
-        let means = (0..keys.len()).map(|plant| of_plant(plant).unwrap_or(all)).collect();
-        Self { keys, all, means, without, of }
-    }
-
-    /// Places of the flights of a plant that are not lost as they are.
-    fn flown<'a>(&'a self, plant: usize, firsts: &'a [First]) -> impl Iterator<Item = usize> + 'a {
-        let mine = self.of.iter().zip(firsts).enumerate();
-        mine.filter(move |(_, (of, first))| **of == plant && !first.lost).map(|(place, _)| place)
-    }
-}
-
-fn mean(gains: impl Iterator<Item = Gains<f64>>) -> Option<Gains<f64>> {
-    let (mut sum, mut count) = ([0.0; 3], 0.0);
-    for Gains { kp, ki, kd } in gains {
-        sum = [sum[0] + kp, sum[1] + ki, sum[2] + kd];
-        count += 1.0;
-    }
-    let [kp, ki, kd] = sum.map(|it| it / count);
-    (count > 0.0).then_some(Gains { kp, ki, kd })
 }
 
 /// Whether a controller tunes itself.

@@ -1,6 +1,7 @@
 //! The page: what the win is made of, then what that rests on.
 
 use fspid_campaign::Plan;
+use fspid_diagnostics::digits::counted;
 use fspid_page::analysis::{Chapter, DataTable, Datum, Item, Picture, Standing as Colour, Verdict};
 use fspid_page::campaign::CampaignPage;
 use fspid_plot::{
@@ -58,7 +59,11 @@ impl Answer {
                 "compared with",
                 self.against.clone().unwrap_or("its own nominal gains".to_owned()),
             ),
-            fact("flights", format!("{} of {} plants", self.flights, self.plants.len())),
+            fact("flights", format!("{} of {}", self.flights, counted(self.plants.len(), "plant"))),
+            fact(
+                "in the win",
+                format!("{} of {}", self.kept, counted(self.plants_kept(), "plant")),
+            ),
             fact("shuffles of each flight", format!("{seeds}, seeds from {seed} on")),
             fact("candidates for each plant", budget.to_string()),
             fact("digest of the scenario", self.digest.clone()),
@@ -201,6 +206,7 @@ impl Answer {
             let mut cells = vec![
                 Datum::Text(row.name.clone()),
                 Datum::Number(row.flights.to_string()),
+                Datum::Number(row.kept.to_string()),
                 Datum::Number(known(row.effectiveness_1_s2)),
                 Datum::Number(known(row.airspeed_m_s)),
             ];
@@ -210,6 +216,7 @@ impl Answer {
         let head = [
             "first case of the plant",
             "flights",
+            "in the win",
             "effectiveness [1/s²]",
             "airspeed [m/s]",
             "kp, mean",

@@ -56,22 +56,34 @@ impl Answer {
         step.is_some_and(|it| it.interval.is_some_and(|[_, upper]| upper < 1.0))
     }
 
+    /// Plants that have a flight in the win; the others are no evidence of it.
+    #[must_use]
+    pub fn plants_kept(&self) -> usize {
+        self.plants.iter().filter(|it| it.kept > 0).count()
+    }
+
     /// True where there are plants enough, and flights that other plants fly as well.
     pub(super) fn is_told(&self) -> bool {
-        self.plants.len() >= FEWEST && self.step(Treatment::OtherPlants).is_some()
+        self.plants_kept() >= FEWEST && self.step(Treatment::OtherPlants).is_some()
     }
 
     /// What it comes to, in a sentence without numbers.
     #[must_use]
     pub fn headline(&self) -> String {
         let name = &self.controller;
-        if self.plants.len() < FEWEST {
+        if self.plants_kept() < FEWEST {
+            let words = |plants: usize| match plants {
+                0 => "none is".to_owned(),
+                1 => "one is".to_owned(),
+                many => format!("{many} are"),
+            };
+            let (kept, all) = (self.plants_kept(), self.plants.len());
+            let here = match kept == all {
+                true => format!("here {} flown", words(all)),
+                false => format!("of the {all} that fly here {} in the win", words(kept)),
+            };
             return format!(
-                "Of {name} nothing is said for certain: adaptation is judged over {FEWEST} plants or more, and here {} flown.",
-                match self.plants.len() {
-                    1 => "one is".to_owned(),
-                    many => format!("{many} are"),
-                }
+                "Of {name} nothing is said for certain: adaptation is judged over {FEWEST} plants or more, and {here}."
             );
         }
         if self.step(Treatment::OtherPlants).is_none() {
@@ -99,7 +111,7 @@ impl Answer {
     pub fn detail(&self) -> String {
         let beside = self.against.as_deref().unwrap_or("its own nominal gains");
         let flights = counted(self.kept, "flight");
-        let plants = counted(self.plants.len(), "plant");
+        let plants = counted(self.plants_kept(), "plant");
         let iae = self.win.map_or("no mean".to_owned(), change);
         let travel = self.win_travel.map_or("no mean".to_owned(), change);
         format!(
@@ -147,8 +159,8 @@ impl Answer {
                 counted(usize::try_from(seeds).unwrap_or(usize::MAX), "shuffle")
             ),
         ];
-        notes.push(match self.plants.len() < FEWEST {
-            true => format!("Fewer than {FEWEST} plants: no intervals."),
+        notes.push(match self.plants_kept() < FEWEST {
+            true => format!("Fewer than {FEWEST} plants in the win: no intervals of it."),
             false => "Intervals are of 95 %, Student's, by what it changes to leave out plants, each with all its flights and its gains in the means of others, and seeds; of very few plants they are still somewhat short.".to_owned(),
         });
         if self.kept < self.flights {
@@ -156,6 +168,29 @@ impl Answer {
                 "{} of {} left out of the win: lost with some of what it is made of, or flown on no other plant.",
                 self.flights - self.kept,
                 counted(self.flights, "flight")
+            ));
+        }
+        notes.extend(self.of_plants());
+        notes
+    }
+
+    /// What of the plants is no evidence, or none of its own.
+    fn of_plants(&self) -> Vec<String> {
+        let mut notes = Vec::new();
+        let outside = self.plants.len() - self.plants_kept();
+        if outside > 0 {
+            let is = if outside == 1 { "is" } else { "are" };
+            notes.push(format!(
+                "{} of {} {is} in no part of the win, and no evidence of it: no interval and no count goes by {}.",
+                outside,
+                counted(self.plants.len(), "plant"),
+                if outside == 1 { "it" } else { "them" }
+            ));
+        }
+        for plant in self.plants.iter().filter(|it| it.written > 1) {
+            notes.push(format!(
+                "The plant of \"{}\" is written in {} ways, and is one: each of its flights has the same bits with any of them.",
+                plant.name, plant.written
             ));
         }
         notes
