@@ -41,17 +41,21 @@ mod signals {
     use signal_hook::flag;
     use signal_hook::iterator::Signals;
 
-    /// Hears every signal that asks the program to end, and that whoever started it does not want to be ignored: `nohup`
-    /// lets it outlive its terminal, and a script what is pressed at the script.
+    /// Hears every signal that asks the program to end.
+    ///
+    /// A terminal that closes is left alone where whoever started the program ignores it, as `nohup` does. The others are
+    /// heard all the same: what starts a program in the background ignores Ctrl-C for it, and has no other way to stop it
+    /// that keeps what it did.
     ///
     /// What it starts does not inherit this, as it would signals that are held back.
     pub(super) fn listen() -> io::Result<()> {
         // A file that grows beyond the limit of the shell is an error where it is written, as a full disk is; the signal
         // that comes with it would end the program there, with nothing told and its new file left.
         flag::register(SIGXFSZ, Arc::default())?;
-        let ignored = ignored();
-        let heard = [SIGINT, SIGTERM, SIGHUP].into_iter();
-        let mut signals = Signals::new(heard.filter(|signal| ignored >> (signal - 1) & 1 == 0))?;
+        let mut signals = Signals::new([SIGINT, SIGTERM])?;
+        if !ignores(SIGHUP) {
+            signals.handle().add_signal(SIGHUP)?;
+        }
         std::thread::Builder::new().name("signals".into()).spawn(move || {
             for signal in signals.forever() {
                 super::heard(signal == SIGINT);
@@ -60,12 +64,12 @@ mod signals {
         Ok(())
     }
 
-    /// The signals that whoever started the program ignores, a bit each from 1 on, as Linux tells it. Where nobody tells it
-    /// may have been `nohup`.
-    fn ignored() -> u64 {
+    /// Whether whoever started the program ignores a signal, as Linux tells it. Where nobody tells it may be so.
+    fn ignores(signal: i32) -> bool {
         let told = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
         let mask = told.lines().find_map(|line| line.strip_prefix("SigIgn:"));
-        mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(1 << (SIGHUP - 1))
+        mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok())
+            .is_none_or(|mask| mask >> (signal - 1) & 1 == 1)
     }
 }
 
