@@ -289,8 +289,13 @@ fn a_live_autopilot_is_flown_and_gets_its_channel_back() {
 #[cfg(unix)]
 #[test]
 fn a_live_autopilot_gets_its_channel_back_from_a_program_that_is_terminated() {
-    // A terminal that closes is told twice, by the system and by a shell.
-    for signals in [["-TERM", "-TERM"], ["-HUP", "-HUP"], ["-HUP", "-TERM"], ["-INT", "-INT"]] {
+    // A terminal that closes is told twice, by the system and by a shell; who started this test with `nohup` ignores it.
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let hears_hangups =
+        ignored.is_some_and(|mask| !mask.ends_with(['1', '3', '5', '7', '9', 'b', 'd', 'f']));
+    let all = [["-TERM", "-TERM"], ["-INT", "-INT"], ["-HUP", "-HUP"], ["-HUP", "-TERM"]];
+    for signals in all.into_iter().take(if hears_hangups { 4 } else { 2 }) {
         let folder = folder();
         let words = "drive pitch.toml --controller FSPID --send override --listen 127.0.0.1:0 --stale 10 \
                      --set loop.duration_s=300";

@@ -93,7 +93,7 @@ fn an_interrupted_command_says_so_as_json_too() {
     for (signal, words) in [
         ("-INT", "campaign run a.toml --runs 100000000 --quiet --out c"),
         ("-TERM", "campaign search - --measure overshoot_pct"),
-        ("-HUP", "learn - --teacher mirrored --range 1 --points 3,3 --out l.toml"),
+        ("-TERM", "learn - --teacher mirrored --range 1 --points 3,3 --out l.toml"),
         ("-TERM", "simulate -"),
     ] {
         let arguments: Vec<&str> = words.split(' ').chain(["--format", "json"]).collect();
