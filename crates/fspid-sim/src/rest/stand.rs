@@ -5,6 +5,7 @@ use fspid_core::{Gains, SecondInput};
 use super::{Rest, Side, slopes};
 use crate::controller::Controller;
 use crate::error::SimError;
+use crate::leads_to::Led;
 use crate::loop_model::{Clocks, LoopModel, SampledPlant};
 use crate::scenario::Scenario;
 
@@ -52,7 +53,7 @@ pub enum Stand {
 }
 
 /// Why nobody can tell whether a rest holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Doubt {
     /// Rounding may carry poles across the unit circle.
     Rounding,
@@ -74,8 +75,11 @@ pub enum Doubt {
     Wings,
     /// A gyro's erection makes small motions grow, until its bounded rate holds them.
     Erection,
-    /// The set-point of the end, held on, brings an aircraft to another airspeed, where it grows.
+    /// Pitch that is held on with the throttle of the start brings an aircraft to another airspeed, where it grows: by the set-point
+    /// of the end, or by a configuration or fuel of later.
     HeldOn,
+    /// A mode of the autopilot brings an aircraft to another airspeed or altitude, where it grows, or to none within its limits.
+    Led(Led),
     /// The trim of an aircraft lies on a kink of its data, where no linear model is that of its small motions.
     Kink,
     /// About the trim of an aircraft something moves so fast that the steps of the integration do not follow.
@@ -100,6 +104,7 @@ impl Doubt {
             | Self::Wings
             | Self::Erection
             | Self::HeldOn
+            | Self::Led(_)
             | Self::Kink
             | Self::FastMotion
             | Self::BeyondLimits => true,

@@ -88,6 +88,7 @@ fn undecided(spectral_radius: f64, doubt: Doubt) -> Absent {
         Doubt::Wings => Absent::Wings { spectral_radius },
         Doubt::Erection => Absent::Erection { spectral_radius },
         Doubt::HeldOn => Absent::HeldOn { spectral_radius },
+        Doubt::Led(led) => Absent::Led { led, spectral_radius },
         Doubt::Kink => Absent::Kink,
         Doubt::FastMotion => Absent::FastMotion,
         Doubt::BeyondLimits => Absent::BeyondLimits,

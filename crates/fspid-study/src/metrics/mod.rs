@@ -13,8 +13,9 @@ pub(crate) use step::is_seen_to_stay;
 pub use step::{StepMetrics, StepWindow};
 
 use fspid_diagnostics::digits::without_zeros;
+use fspid_sim::autopilot::Quantity;
 use fspid_sim::loop_model::MOST_AS_STATES;
-use fspid_sim::{ControllerLoss, PlantLoss};
+use fspid_sim::{ControllerLoss, Led, PlantLoss};
 
 /// Why a measure has no value.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -149,12 +150,20 @@ pub enum Absent {
         /// Spectral radius of all small motions, sample to sample.
         spectral_radius: f64,
     },
-    /// The set-point of the end brings the aircraft to another airspeed, where the loop grows.
+    /// Pitch that is held on brings the aircraft to another airspeed, where the loop grows.
     #[error(
-        "undecided: held on, the set-point of the end brings the aircraft with the throttle of its trim to another airspeed, at which the loop is unstable (spectral radius {spectral_radius:.6}): a longer flight shows it"
+        "undecided: held on, the pitch of the end brings the aircraft, with its configuration or its fuel of later and the throttle of its trim at the start, to another airspeed, at which the loop is unstable (spectral radius {spectral_radius:.6}): a longer flight shows it"
     )]
     HeldOn {
         /// Spectral radius of the sampled closed loop there.
+        spectral_radius: f64,
+    },
+    /// A mode of the autopilot brings the aircraft to another airspeed or altitude, where it grows, or to none.
+    #[error("undecided: {}", led_in_words(.led, *.spectral_radius))]
+    Led {
+        /// The mode, and where it leads to.
+        led: Led,
+        /// Spectral radius there, of everything that the mode engages.
         spectral_radius: f64,
     },
     /// The trim lies on a kink of the aircraft's data.
@@ -186,6 +195,27 @@ pub enum Absent {
         "the accumulating law moves the gains at rest without end, so that there is no equilibrium; gain_limits, dead_zone or leakage_per_s bound it"
     )]
     GainsDrift,
+}
+
+/// Which mode leads where, and what is there.
+fn led_in_words(led: &Led, spectral_radius: f64) -> String {
+    let target = led.target.map(|(quantity, target)| {
+        let (value, unit) = match quantity {
+            Quantity::Altitude | Quantity::GlideSlope => (target, "m"),
+            Quantity::VerticalSpeed | Quantity::Airspeed => (target, "m/s"),
+            Quantity::FlightPath | Quantity::Heading => (target.to_degrees(), "deg"),
+        };
+        format!(", which holds {} at {} {unit},", quantity.in_words(), short(value))
+    });
+    let mode = format!("mode {} of the autopilot{}", led.mode + 1, target.unwrap_or_default());
+    match led.airspeed_m_s {
+        Some(airspeed_m_s) => format!(
+            "{mode} brings the aircraft in time to {airspeed_m_s:.1} m/s, with the throttle as it is if nobody moves it, where everything together that it engages is unstable (spectral radius {spectral_radius:.6}): a longer flight shows it"
+        ),
+        None => format!(
+            "{mode} leads to no straight flight within the limits of the aircraft's data and controls, with the throttle as it is where nobody moves it: a longer flight shows it"
+        ),
+    }
 }
 
 /// A measure, or why there is none.
