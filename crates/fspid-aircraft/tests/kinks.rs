@@ -9,6 +9,8 @@ use fspid_aircraft::{
     Validity,
 };
 
+use fspid_aircraft::trim::{Held, Path, Power};
+
 use crate::support::derivative_data;
 
 const NAVION: &str = "navion";
@@ -192,6 +194,46 @@ fn a_pitch_that_is_held_leads_to_the_flight_that_has_the_same_throttle() {
         }
         for nowhere in [1.5, -1.5, f64::NAN, f64::INFINITY] {
             assert_eq!(aircraft.at_held_pitch(&trim, nowhere), None, "{name} {nowhere}");
+        }
+    }
+}
+
+/// What a trim finds and what is held on the way from another trim is one flight.
+#[test]
+fn what_is_held_leads_to_the_trim_that_has_it() {
+    let data = derivative_data(NAVION);
+    let model = data.force_model(Laws::default());
+    let aircraft = Aircraft::new(data.mass_properties(), model, Environment::STANDARD);
+    let aircraft = aircraft.expect("a body");
+    let trim = trimmed(&aircraft, target(&data));
+    let TrimTarget { airspeed_m_s, altitude_m, .. } = trim.target;
+    let there = TrimTarget {
+        airspeed_m_s: airspeed_m_s + 6.0,
+        altitude_m: altitude_m + 400.0,
+        flight_path_rad: -0.03,
+    };
+    let asked = trimmed(&aircraft, there);
+    let powers = [Power::Throttle(asked.point.throttle), Power::Airspeed(there.airspeed_m_s)];
+    let paths = [
+        Path::Pitch(asked.point.alpha_rad - 0.03),
+        Path::FlightPath(-0.03),
+        Path::VerticalSpeed(there.airspeed_m_s * libm::sin(-0.03)),
+        Path::Airspeed(there.airspeed_m_s),
+    ];
+    for power in powers {
+        for path in paths {
+            let found =
+                aircraft.at_held(&trim, &Held { power, path, altitude_m: there.altitude_m });
+            // An airspeed that both hold says nothing of the path.
+            if matches!((power, path), (Power::Airspeed(_), Path::Airspeed(_))) {
+                assert_eq!(found, None);
+                continue;
+            }
+            let found = found.unwrap_or_else(|| panic!("{power:?} {path:?}"));
+            assert!((found.target.airspeed_m_s - there.airspeed_m_s).abs() < 1e-6);
+            assert!((found.target.flight_path_rad + 0.03).abs() < 1e-8);
+            assert!((found.point.throttle - asked.point.throttle).abs() < 1e-8);
+            assert!((found.point.alpha_rad - asked.point.alpha_rad).abs() < 1e-8);
         }
     }
 }

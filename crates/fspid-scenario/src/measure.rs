@@ -198,7 +198,7 @@ const ROWS: [Row; 51] = {
         row(M::LargestLoadFactor, ("largest_load_factor_g", "g"), Aircraft, TIMES, "largest load factor along the body's upward axis; 1 in level flight"),
         row(M::LeastLoadFactor, ("least_load_factor_g", "g"), Aircraft, TIMES, "least load factor along the body's upward axis; its limits may be below 0"),
         row(M::AltitudeLoss, ("altitude_loss_ft", "ft"), Aircraft, TARGET, "largest fall below the altitude of the start, or below the target; 0 where it never is below"),
-        row(M::AltitudeOvershoot, ("altitude_overshoot_ft", "ft"), Aircraft, TARGET, "how far it goes beyond the target altitude, seen from the start; one that does not get there has none"),
+        row(M::AltitudeOvershoot, ("altitude_overshoot_ft", "ft"), Aircraft, TARGET, "how far it goes beyond the target altitude, seen from the start, or beyond the start, seen from the target; one that does not get there has none"),
         row(M::AltitudeDeviation, ("altitude_deviation_ft", "ft"), Aircraft, TARGET, "largest distance from the altitude of the start, or from the target"),
         row(M::LargestAirspeed, ("largest_airspeed_kt", "kt"), Aircraft, TIMES, "largest true airspeed"),
         row(M::LeastAirspeed, ("least_airspeed_kt", "kt"), Aircraft, TIMES, "least true airspeed"),

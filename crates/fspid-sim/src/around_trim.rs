@@ -7,6 +7,8 @@ use crate::aircraft::{AircraftPlant, Change, Standing, step_s};
 use crate::controller::Controller;
 use crate::error::SimError;
 use crate::in_flight::{Alone, Seeing, poles_of_mode, radii_alone};
+use crate::leads_to::{Place, places};
+use crate::plant::Plant;
 use crate::rest::{Doubt, RestPoint};
 use crate::scenario::Scenario;
 use crate::stability::{
@@ -27,12 +29,13 @@ pub(crate) fn growth(
     gains: Gains<f64>,
 ) -> Result<GrowthAtRest, SimError> {
     let mut found = GrowthAtRest::default();
-    for standing in aircraft.standings() {
+    let standings = aircraft.standings();
+    for standing in &standings {
         let Some(own) = standing.flown_in(scenario) else {
             found.doubt(Undecided::at_trim(Doubt::ChangedAircraft));
             continue;
         };
-        let of_it = match (standing.by, of_standing(&own, &standing, (controller, gains))) {
+        let of_it = match (standing.by, of_standing(&own, standing, (controller, gains))) {
             (Change::Nothing, of_it) => of_it?,
             (Change::Configuration, Ok(of_it)) => of_it,
             // How much is burnt only the flight tells.
@@ -40,6 +43,12 @@ pub(crate) fn growth(
             (Change::Configuration | Change::Fuel, _) => doubted(Doubt::ChangedAircraft),
         };
         found = found.and(of_it);
+    }
+    // Where a flight comes to later is in doubt at most.
+    if found.holds() {
+        let places = places(scenario, aircraft, &standings);
+        let mut doubts = places.iter().map(|it| of_place(scenario, it, (controller, gains)));
+        found.undecided = doubts.find_map(Result::transpose).transpose()?;
     }
     Ok(found)
 }
@@ -65,7 +74,7 @@ fn of_standing(
         found.doubt(Undecided::at_trim(Doubt::FastMotion));
     }
     Ok(found.and(match &scenario.autopilot {
-        None => alone(scenario, (controller, gains)).and(held_on(scenario, (controller, gains))?),
+        None => alone(scenario, (controller, gains)),
         Some(_) => of_modes(scenario, standing, (controller, gains))?,
     }))
 }
@@ -106,21 +115,36 @@ fn alone(scenario: &Scenario, held: Held<'_>) -> GrowthAtRest {
     first.map_or(GrowthAtRest::default(), |(seeing, radius)| doubted(of_seeing(seeing, radius)))
 }
 
-/// Where the aircraft comes to with nobody at its throttle, if the set-point of the end is held on. Where it comes to nothing
-/// within its limits nothing is asked.
-fn held_on(scenario: &Scenario, (controller, gains): Held<'_>) -> Result<GrowthAtRest, SimError> {
-    let none = Ok(GrowthAtRest::default());
-    let Some(plant) = scenario.plant.aircraft() else { return none };
-    let by_rad = scenario.held_at_the_end_rad();
-    if by_rad == 0.0 {
-        return none;
+/// What is in doubt where a flight comes to that goes on. In a mode everything is asked together: its pitch loop alone, with a
+/// throttle that stays and a path that nobody holds, may run away slowly where the mode does not.
+fn of_place(
+    scenario: &Scenario,
+    place: &Place,
+    (controller, gains): Held<'_>,
+) -> Result<Option<Undecided>, SimError> {
+    let grown = |spectral_radius| match place.led {
+        None => Doubt::HeldOn { spectral_radius },
+        Some(led) => Doubt::Led { led, spectral_radius },
+    };
+    let Some(plant) = &place.plant else {
+        return Ok(place.led.map(|led| Undecided::at_trim(Doubt::LedNowhere(led))));
+    };
+    let linear = plant.linear()?;
+    // Differences about a kink are of no motion.
+    if linear.is_between_slopes() {
+        return Ok(Some(Undecided::at_trim(Doubt::Kink)));
     }
-    let Some(there) = plant.at_held_pitch(by_rad) else { return none };
-    let linear = there.linear()?;
-    let found = growth_of_plant(scenario, (0.0, &linear), controller, gains)?;
-    Ok(found.certain.map_or(GrowthAtRest::default(), |Unstable { spectral_radius, .. }| {
-        doubted(Doubt::HeldOn { spectral_radius })
-    }))
+    let there = Plant::Aircraft(Box::new(plant.clone()));
+    let own = Scenario { plant: there, ..scenario.clone() };
+    let found = match place.led {
+        None => growth_of_plant(&own, (0.0, &linear), controller, gains)?
+            .and(alone(&own, (controller, gains))),
+        // Who leaves the place within a few samples grows.
+        Some(led) => of_mode(&own, led.mode, (controller, gains))
+            .unwrap_or_else(|_| doubted(grown(f64::INFINITY))),
+    };
+    let certain = found.certain.map(|it| Undecided::at_trim(grown(it.spectral_radius)));
+    Ok(certain.or(found.undecided))
 }
 
 /// Why it is not decided where sensors that show motions otherwise change the answer.

@@ -19,6 +19,8 @@ use crate::validity::{Departure, Range, Travel};
 use crate::vector::Vector3;
 use search::Search;
 
+pub use held::{Held, Path, Power};
+
 /// Largest acceleration left in a trim: 10⁻⁹ ft/s².
 pub const ACCELERATION_LEFT_M_S2: f64 = 3.048e-10;
 

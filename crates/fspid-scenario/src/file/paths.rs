@@ -12,6 +12,7 @@ use super::{LoadError, Problems, build, changed_document, extra::Extra, read_tex
 use crate::keyed::check::{self, allowed};
 use crate::keyed::schema::{self, kind as schema_of};
 use crate::keyed::{Checked, Entry, KeyName, KeyRow, Kind, Section, Table, Way, join};
+use crate::setting_path::{SettingPath, Step, steps};
 use fspid_diagnostics::Report;
 
 /// Top-level keys whose numbers cannot differ from run to run.
@@ -74,6 +75,33 @@ pub fn paths_of(
     }
     report.finish(name)?;
     Ok(rows)
+}
+
+/// The row of a place, however `--set` may call it: an entry of a list by its number too, where rows call it by its name.
+#[must_use]
+pub fn row_at<'a>(rows: &'a [PathRow], path: &str) -> Option<&'a PathRow> {
+    let all: Vec<(Vec<Step>, &PathRow)> =
+        rows.iter().filter_map(|row| Some((steps(&row.path)?, row))).collect();
+    let mut found: Vec<Step> = Vec::new();
+    for step in SettingPath::parse(path)?.steps() {
+        let name = match step {
+            Step::Index(index) => name_of_entry(&all, &found, *index),
+            Step::Name(_) => None,
+        };
+        found.push(name.map_or_else(|| step.clone(), Step::Name));
+    }
+    all.into_iter().find_map(|(steps, row)| (steps == found).then_some(row))
+}
+
+/// The name of an entry of the list at some steps; none where entries have no names, or too few are there.
+fn name_of_entry(all: &[(Vec<Step>, &PathRow)], list: &[Step], index: usize) -> Option<String> {
+    let names = all.iter().filter_map(|(steps, row)| match steps.strip_prefix(list)? {
+        [Step::Name(name), Step::Name(key)] if key == "name" => {
+            (row.value.as_ref() == Some(&quoted(name))).then_some(name)
+        }
+        _ => None,
+    });
+    names.cloned().nth(index)
 }
 
 /// The answer for people.

@@ -1,5 +1,7 @@
 //! The aircraft that a flight stands with: as it is at the start, after each change of a configuration, with an empty tank.
 
+use fspid_aircraft::Trim;
+
 use super::{AircraftPlant, Changing, Forces};
 use crate::plant::Plant;
 use crate::scenario::Scenario;
@@ -69,11 +71,9 @@ impl AircraftPlant {
         all
     }
 
-    /// The aircraft where it comes to when its pitch is held so much higher with the throttle of its trim; nothing where that
-    /// is no flight within its limits.
-    pub(crate) fn at_held_pitch(&self, by_rad: f64) -> Option<Self> {
-        let trim = self.aircraft().at_held_pitch(self.trim(), by_rad)?;
-        Some(Self { trim, ..self.clone() })
+    /// The aircraft where it has another trim.
+    pub(crate) fn at(&self, trim: Trim) -> Self {
+        Self { trim, ..self.clone() }
     }
 
     /// The aircraft of a time with that much fuel, as if it stayed so; nothing where it has no trim.

@@ -1,5 +1,6 @@
 //! Why it is undecided whether an equilibrium is stable: each reason with the number that it has and its sentence.
 
+use crate::leads_to::Led;
 use crate::loop_model::MOST_AS_STATES;
 
 /// Why nobody can tell whether a rest holds. A spectral radius is that of the sampled closed loop that is in doubt, as computed.
@@ -68,14 +69,28 @@ pub enum Doubt {
         /// Spectral radius of all small motions, sample to sample.
         spectral_radius: f64,
     },
-    /// The set-point of the end, held on, brings an aircraft to another airspeed, where it grows.
+    /// Pitch that is held on with the throttle of the start brings an aircraft to another airspeed, where it grows: by the set-point
+    /// of the end, or by a configuration or fuel of later.
     #[error(
-        "held on, the set-point of the end brings the aircraft with the throttle of its trim to another airspeed, at which the loop is unstable (spectral radius {spectral_radius:.6}): a longer flight shows it"
+        "held on, the pitch of the end brings the aircraft, with its configuration or its fuel of later and the throttle of its trim at the start, to another airspeed, at which the loop is unstable (spectral radius {spectral_radius:.6}): a longer flight shows it"
     )]
     HeldOn {
         /// Spectral radius there.
         spectral_radius: f64,
     },
+    /// A mode of the autopilot brings an aircraft to another airspeed or altitude, where it grows.
+    #[error(
+        "{led}, where everything together that it engages is unstable (spectral radius {spectral_radius:.6}): a longer flight shows it"
+    )]
+    Led {
+        /// The mode, and where it leads to.
+        led: Led,
+        /// Spectral radius there, of everything that the mode engages.
+        spectral_radius: f64,
+    },
+    /// A mode of the autopilot leads an aircraft to no flight within its limits.
+    #[error("{0}: a longer flight shows it")]
+    LedNowhere(Led),
     /// The trim of an aircraft lies on a kink of its data, where no linear model is that of its small motions.
     #[error(
         "the trim lies right on a kink of the aircraft's data (a breakpoint of a table, a row of Mach numbers, a corner of a gearing), where each side has slopes of its own: a trim a little beside it has one linear model"
@@ -109,6 +124,8 @@ impl Doubt {
             | Self::Wings { .. }
             | Self::Erection { .. }
             | Self::HeldOn { .. }
+            | Self::Led { .. }
+            | Self::LedNowhere(_)
             | Self::Kink
             | Self::FastMotion
             | Self::BeyondLimits => true,

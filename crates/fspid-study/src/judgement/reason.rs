@@ -66,6 +66,18 @@ pub enum NotEvaluated {
         /// End of the flight, s.
         end_s: f64,
     },
+    /// The time that counts begins just before the end of the flight.
+    #[error(
+        "from {} s on only {} s were flown: at least a tenth of that time shows that it stays, or give the end with to_s",
+        to_digits(*from_s, 6),
+        to_digits(*end_s - *from_s, 3)
+    )]
+    LittleFlown {
+        /// Start of that time, s.
+        from_s: f64,
+        /// End of the flight, s.
+        end_s: f64,
+    },
     /// The flight is in another air.
     #[error("asked for {} air, but the flight has {found}", asked.name())]
     OtherAir {

@@ -5,6 +5,7 @@
 use fspid_aircraft::AirMotion;
 use fspid_proof::Effort;
 use fspid_sim::Doubt;
+use fspid_sim::autopilot::Quantity;
 use fspid_study::analysis::{Analysis, Question, Stability};
 use fspid_study::certify::Certification;
 use fspid_study::report;
@@ -362,6 +363,161 @@ fn a_set_point_that_is_held_on_is_asked_at_the_airspeed_to_which_it_leads() {
     let there = plant.aircraft().at_held_pitch(plant.trim(), -2.0_f64.to_radians());
     let told_m_s = there.expect("it glides").target.airspeed_m_s;
     assert!((airspeed_m_s / told_m_s - 1.0).abs() < 0.03, "{airspeed_m_s} {told_m_s}");
+}
+
+/// A Navion at 40 m/s whose vertical speed is held by pitch, in two modes.
+const TWO_MODES: &str = r#"
+schema = 1
+name = "two modes"
+[aircraft]
+name = "navion"
+airspeed_m_s = 40.0
+altitude_m = 3000.0
+[actuator]
+time_constant_s = 0.1
+[loop]
+sample_period_s = 0.02
+duration_s = 20.0
+[setpoint]
+kind = "step"
+amplitude_deg = 0.0
+[[outer_loop]]
+name = "vertical speed"
+kind = "pid"
+holds = "vertical-speed"
+moves = "pitch"
+kp = 0.5
+ki = 0.3
+least = -20.0
+most = 10.0
+most_per_s = 2.0
+[[outer_loop]]
+name = "autothrottle"
+kind = "pid"
+holds = "airspeed"
+moves = "throttle"
+kp = 0.1
+ki = 0.01
+[[mode]]
+name = "level"
+engage = ["vertical speed"THROTTLE]
+[[mode]]
+name = "then"
+at_s = 3.0
+engage = ["vertical speed"THROTTLE]
+target = { TARGET }
+[[controller]]
+name = "PID"
+kind = "pid"
+kp = 4
+ki = 0.5
+kd = 0.3
+derivative_filter_s = 0.05
+"#;
+
+fn two_modes(throttle: bool, target: &str) -> String {
+    let by = if throttle { ", \"autothrottle\"" } else { "" };
+    TWO_MODES.replace("THROTTLE", by).replace("TARGET", target)
+}
+
+/// How far pitch swings in the last 2000 samples of a flight, deg.
+fn swing_deg(flown: &ControllerResult) -> f64 {
+    let last = || flown.trace.theta_rad.iter().rev().take(2000);
+    let most = last().copied().fold(f64::NEG_INFINITY, f64::max);
+    (most - last().copied().fold(f64::INFINITY, f64::min)).to_degrees()
+}
+
+/// Modes were asked at the trim of the start alone: pitch swings by 10 deg without end at 78 m/s, "stable" and margins met.
+#[test]
+fn a_mode_is_asked_at_the_airspeed_that_its_targets_lead_to() {
+    let faster = two_modes(true, "airspeed_m_s = 78.0");
+    let led = |text: &str, set: &[&str]| match doubt(&result(text, set)) {
+        Some(Doubt::Led { led, .. } | Doubt::LedNowhere(led)) => {
+            Some((led.mode, led.target, led.airspeed_m_s))
+        }
+        None => None,
+        other => panic!("{other:?}"),
+    };
+    let (mode, target, airspeed_m_s) = led(&faster, &[]).expect("in doubt");
+    assert_eq!((mode, target), (1, Some((Quantity::Airspeed, 78.0))));
+    assert!((airspeed_m_s.expect("it is flown") - 78.0).abs() < 1e-9);
+    let flown = result(&faster, &["loop.duration_s=300.0"]);
+    assert!(swing_deg(&flown) > 5.0, "{}", swing_deg(&flown));
+    let why = Analysis::of(&study(&faster, &[]), Question::default()).expect("a loop").json();
+    let why = why["controllers"][0]["undecided"].as_str().expect("a reason").to_owned();
+    assert!(why.contains("mode 2 of the autopilot, which holds airspeed at 78 m/s,"), "{why}");
+    // A little faster it is held, and flown.
+    assert_eq!(led(&two_modes(true, "airspeed_m_s = 48.0"), &[]), None);
+    let calm = result(&two_modes(true, "airspeed_m_s = 48.0"), &["loop.duration_s=200.0"]);
+    assert!(swing_deg(&calm) < 0.2, "{}", swing_deg(&calm));
+    // No such flight is in the data.
+    let (_, _, nowhere) = led(&two_modes(true, "airspeed_m_s = 150.0"), &[]).expect("in doubt");
+    assert_eq!(nowhere, None);
+}
+
+/// With nobody at the throttle a path has an airspeed of its own.
+#[test]
+fn a_mode_without_a_throttle_is_asked_at_the_airspeed_that_its_path_makes() {
+    let down = two_modes(false, "vertical_speed_m_s = -4.6");
+    let flown = result(&down, &["loop.duration_s=300.0"]);
+    let Some(Doubt::Led { led, .. }) = doubt(&flown) else { panic!("{:?}", flown.at_rest) };
+    assert_eq!(led.target, Some((Quantity::VerticalSpeed, -4.6)));
+    let told_m_s = led.airspeed_m_s.expect("it is flown");
+    let airspeed_m_s = flown.trace.column("airspeed_m_s").expect("it has one");
+    let last_m_s = airspeed_m_s.last().copied().expect("flown");
+    assert!((last_m_s / told_m_s - 1.0).abs() < 0.05, "{last_m_s} {told_m_s}");
+    assert!(swing_deg(&flown) > 5.0, "{}", swing_deg(&flown));
+    assert_eq!(doubt(&result(&two_modes(false, "vertical_speed_m_s = -0.5"), &[])), None);
+}
+
+/// A Navion at 42 m/s with an air brake out, which is drawn in.
+const DRAWN_IN: &str = r#"
+schema = 1
+name = "drawn in"
+[aircraft]
+name = "navion"
+airspeed_m_s = 42.0
+altitude_m = 1000.0
+climb_angle_deg = -3.0
+configuration = ["brake"]
+[[configuration]]
+name = "brake"
+assumption = "made up"
+drag.reference = 0.12
+[[configuration_change]]
+name = "brake"
+to = 0.0
+at_s = 3.0
+takes_s = 4.0
+[actuator]
+time_constant_s = 0.1
+[loop]
+sample_period_s = 0.02
+duration_s = 50.0
+[setpoint]
+kind = "step"
+amplitude_deg = 0.5
+at_s = 9.0
+[[controller]]
+name = "PID"
+kind = "pid"
+kp = 5.0
+ki = 0.5
+kd = 0.3
+derivative_filter_s = 0.05
+"#;
+
+/// The changed aircraft was asked with a throttle of its own at the speed of the start, where it is held. The throttle stays, and
+/// at 75 m/s the elevator goes from end to end.
+#[test]
+fn a_changed_aircraft_is_asked_at_the_airspeed_that_its_old_throttle_makes() {
+    let brake = doubt(&result(DRAWN_IN, &[]));
+    assert!(matches!(brake, Some(Doubt::HeldOn { .. })), "{brake:?}");
+    let flown = result(DRAWN_IN, &["loop.duration_s=250.0"]);
+    assert!(swing_deg(&flown) > 5.0, "{}", swing_deg(&flown));
+    let stays = ["configuration_change[0].to=1.0"];
+    assert_eq!(doubt(&result(DRAWN_IN, &stays)), None);
+    assert_eq!(doubt(&result(DRAWN_IN, &["controller[0].kp=2.0"])), None);
 }
 
 /// `"stable": true` in JSON, where the flight said that nobody knows.

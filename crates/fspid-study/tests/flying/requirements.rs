@@ -120,6 +120,15 @@ fn a_target_that_is_not_reached_is_not_praised_for_no_overshoot() {
     assert!(why("target_ft = 1050.0\nto_s = 2.0").contains("was not reached"));
 }
 
+/// Two samples were enough for a set that asks for a held level from some second on.
+#[test]
+fn a_level_that_is_held_from_the_last_moments_on_is_not_evaluated() {
+    let why = reason(Measure::AltitudeDeviation, "from_s = 9.98", &[]);
+    assert!(why.contains("only 0.02 s were flown"), "{why}");
+    assert!(value(Measure::AltitudeDeviation, "from_s = 9.0", &[]).0.is_finite());
+    assert!(value(Measure::AltitudeDeviation, "from_s = 9.98\nto_s = 10.0", &[]).0.is_finite());
+}
+
 #[test]
 fn when_the_worst_was_is_told() {
     let (_, at_s) = value(Measure::LargestLoadFactor, "", &[]);

@@ -66,6 +66,20 @@ fn the_limits_of_a_key_end_the_interval_and_what_is_no_number_has_none() {
     }
 }
 
+/// `controller[0].kp` was not there, which `--set` takes as `controller.P.kp`.
+#[test]
+fn a_number_has_its_interval_by_every_path_that_set_takes() {
+    let text = integrator(0, 5.0);
+    let (named, numbered) = (around(&text, "controller.P.kp"), around(&text, "controller[0].kp"));
+    assert_eq!((numbered.present, &numbered.asked), (named.present, &named.asked));
+    assert_eq!(numbered.search, named.search);
+    let question =
+        |path| Question { text: &text, name: "test.toml", folder: None, path, sets: &[] };
+    for path in ["controller[1].kp", "plant[0].numerator", "controller[0]"] {
+        assert!(interval(&question(path)).is_err(), "{path}");
+    }
+}
+
 /// What `fspid verify --set path=value` says of a controller, or of all.
 fn verified(text: &str, path: &str, value: f64, controller: Option<&str>) -> bool {
     verified_with(text, &[format!("{path}={value:?}")], controller)

@@ -141,11 +141,12 @@ impl Seen<'_> {
         CasePlace { at_s: self.trace.time_s.get(sample).copied(), ..CasePlace::default() }
     }
 
-    /// Beyond the target, on the side where the flight does not start. A flight that does not get there overshoots
-    /// nothing, and is not praised for it.
+    /// Beyond the target, on the side where the flight does not start, or beyond the start on the other side, whichever is
+    /// more: a change of level leaves neither. A flight that does not get there overshoots nothing, and is not praised for it.
     fn overshoot(&self) -> Result<Case, NotEvaluated> {
         let target_m = self.target_m.ok_or(NotEvaluated::NoTarget)?;
-        let way_m = target_m - self.start_m()?;
+        let start_m = self.start_m()?;
+        let way_m = target_m - start_m;
         if !(way_m.abs() > SAME_ALTITUDE_M) {
             return Err(NotEvaluated::AtTarget { target_ft: target_m / FOOT_M });
         }
@@ -159,7 +160,9 @@ impl Seen<'_> {
         if found.value > 0.0 && left_m > CREEPS_M {
             return Err(NotEvaluated::StillGoing { target_ft: target_m / FOOT_M });
         }
-        Ok(found)
+        let behind_m = |altitude_m: f64| (start_m - altitude_m) * way_m.signum();
+        let behind = self.largest("altitude_m", |altitude_m| behind_m(altitude_m) / FOOT_M)?;
+        Ok(if behind.value > found.value { behind } else { found })
     }
 
     /// How far the altitude rose in the last tenth of the flight, m; none where the time that counts ends before it.
@@ -234,6 +237,14 @@ mod tests {
         assert!(short.contains("1200 ft was not reached: 50 ft were left"), "{short}");
         let there = overshoot(&[800.0, 850.0], 800.0).expect_err("nothing to climb");
         assert!(there.contains("800 ft"), "{there}");
+    }
+
+    /// From 1000 to 1100 ft by way of 798 ft: the change of level was that of a flight that goes 10 ft too far.
+    #[test]
+    fn beyond_the_old_level_counts_as_beyond_the_new_one_does() {
+        assert_eq!(overshoot(&[1000.0, 798.0, 1110.0, 1100.0], 1100.0), Ok((202.0, 1.0)));
+        assert_eq!(overshoot(&[1000.0, 1030.0, 890.0, 900.0], 900.0), Ok((30.0, 1.0)));
+        assert_eq!(overshoot(&[1000.0, 995.0, 1110.0, 1100.0], 1100.0), Ok((10.0, 2.0)));
     }
 
     #[test]

@@ -26,6 +26,7 @@ pub(super) fn cases(
     match (requirement.measure, requirement.measure.family()) {
         (_, Family::Aircraft) => {
             let time = flown.time(&requirement.conditions)?;
+            flown.is_seen_to_stay(&requirement.conditions)?;
             aircraft::case(study, &result.trace, requirement, time).map(|case| vec![case])
         }
         (Measure::RecoveryTime, _) => flown.recovery(&requirement.conditions, requirement.most),
@@ -193,6 +194,18 @@ impl Flown<'_> {
 
     fn time(&self, conditions: &Conditions) -> Result<RangeInclusive<usize>, NotEvaluated> {
         time_that_counts(self.timing, self.trace.rows(), conditions)
+    }
+
+    /// Refuses a time from some second to the end of the flight that is too short to show that something is held, unless its
+    /// end is asked for by itself.
+    fn is_seen_to_stay(&self, conditions: &Conditions) -> Result<(), NotEvaluated> {
+        let end_s = self.timing.end_s();
+        match conditions.from_s.filter(|_| conditions.to_s.is_none()) {
+            Some(from_s) if !is_seen_to_stay(from_s, end_s + 1e-6 * self.timing.dt_s()) => {
+                Err(NotEvaluated::LittleFlown { from_s, end_s })
+            }
+            _ => Ok(()),
+        }
     }
 
     fn recovery(

@@ -19,7 +19,7 @@ mod words;
 use std::path::Path;
 
 use fspid_diagnostics::nearest;
-use fspid_scenario::file::{PathRow, Problems, paths_of};
+use fspid_scenario::file::{PathRow, Problems, paths_of, row_at};
 use serde_json::{Value, json};
 
 pub use look::Asked;
@@ -39,7 +39,7 @@ pub struct Question<'a> {
     pub name: &'a str,
     /// The folder that it names files from; without one it can name none.
     pub folder: Option<&'a Path>,
-    /// Where the number is, as [`paths_of`] tells it.
+    /// Where the number is, as `--set` takes it.
     pub path: &'a str,
     /// Ready sets that are required too, with their choices, such as `mil-f-8785c:level=2`.
     pub sets: &'a [String],
@@ -90,15 +90,15 @@ pub fn interval(question: &Question<'_>) -> Result<Interval, IntervalError> {
     let rows = paths_of(question.text, question.name, question.folder, &[])
         .map_err(IntervalError::Problems)?;
     let path = question.path.to_owned();
-    let row = rows.iter().find(|row| row.path == path);
-    let row = row.ok_or_else(|| no_place(&rows, &path))?;
+    let row = row_at(&rows, &path).ok_or_else(|| no_place(&rows, &path))?;
     let kind = row.schema.get("type").and_then(Value::as_str);
     let number = row.value.as_ref().and_then(|value| value.parse::<f64>().ok());
     let is_number = matches!(kind, Some("number" | "integer"));
     let Some(present) = number.filter(|number| is_number && number.is_finite()) else {
         return Err(IntervalError::NoNumber { path });
     };
-    let mut looker = Looker::new(question, owner(&rows, &path)).map_err(IntervalError::Problems)?;
+    let mut looker =
+        Looker::new(question, owner(&rows, &row.path)).map_err(IntervalError::Problems)?;
     let whole = kind == Some("integer");
     let size = if present == 0.0 { 1.0 } else { present.abs() };
     let within = if whole { 1.0 } else { TOLERANCE * size };

@@ -269,3 +269,18 @@ fn command_and_elevator_are_measured_each_by_itself() {
     assert!(value(Measure::ErrorIntegral) > 0.0);
     assert!(value(Measure::TimedErrorIntegral) != value(Measure::ErrorIntegral));
 }
+
+/// Two samples of a climb through a level were a level that is held.
+#[test]
+fn an_altitude_that_is_held_is_seen_for_a_tenth_of_the_time_before_it() {
+    let flight = Whole::with_errors([0.0; 11]);
+    let asked = |from_s, to_s| flight.flown().is_seen_to_stay(&from_to(from_s, to_s));
+    let little = |from_s| Err(NotEvaluated::LittleFlown { from_s, end_s: 1.0 });
+    assert_eq!(asked(None, None), Ok(()));
+    assert_eq!(asked(Some(0.9), None), Ok(()));
+    assert_eq!(asked(Some(1.0 / 1.1), None), Ok(()));
+    assert_eq!(asked(Some(0.92), None), little(0.92));
+    let why = little(0.98).expect_err("a reason").to_string();
+    assert!(why.contains("from 0.98 s on only 0.02 s were flown"), "{why}");
+    assert_eq!(asked(Some(0.98), Some(1.0)), Ok(()));
+}
