@@ -80,6 +80,8 @@ pub enum Doubt {
     Kink,
     /// About the trim of an aircraft something moves so fast that the steps of the integration do not follow.
     FastMotion,
+    /// Gains of a loop around the pitch loop move with its error and multiply what it holds, and what comes of that may grow.
+    OuterGains,
     /// What is held at the end of the flight takes more than a limit leaves, of a plant that does not come to rest by itself; or
     /// the flight of one ended at a limit with an error that grows.
     BeyondLimits,
@@ -102,6 +104,7 @@ impl Doubt {
             | Self::HeldOn
             | Self::Kink
             | Self::FastMotion
+            | Self::OuterGains
             | Self::BeyondLimits => true,
         }
     }
@@ -109,7 +112,7 @@ impl Doubt {
 
 /// The loop of one side: stable, unstable, or neither for all that is known.
 #[derive(Clone, Copy)]
-pub(super) enum Found {
+pub(crate) enum Found {
     Stable,
     Unstable(f64),
     Blurred(f64),
@@ -125,7 +128,7 @@ struct Phase {
 }
 
 /// What the loops of all sides say together; where one is unstable beside others, motions are followed.
-pub(super) fn stand_of_sides(
+pub(crate) fn stand_of_sides(
     found: &[Found],
     follow: Option<impl FnOnce() -> Option<f64>>,
 ) -> Stand {
@@ -220,6 +223,15 @@ impl Rest {
         let same_states =
             phases.iter().flat_map(|phase| &phase.closed).all(|rows| rows.len() == size);
         if same_states { self.largest_growth(&phases) } else { None }
+    }
+
+    /// The same where one loop for each side is given by its rows, with what its supervisor sees of a state: its two inputs.
+    pub(crate) fn growth_through(
+        &self,
+        closed: Vec<Vec<Vec<f64>>>,
+        seen: [Vec<f64>; 2],
+    ) -> Option<f64> {
+        self.largest_growth(&[Phase { closed, seen }])
     }
 
     /// The loops of one sample, and what the supervisor sees in it.

@@ -90,6 +90,7 @@ fn undecided(spectral_radius: f64, doubt: Doubt) -> Absent {
         Doubt::HeldOn => Absent::HeldOn { spectral_radius },
         Doubt::Kink => Absent::Kink,
         Doubt::FastMotion => Absent::FastMotion,
+        Doubt::OuterGains => Absent::OuterGains,
         Doubt::BeyondLimits => Absent::BeyondLimits,
     }
 }

@@ -167,6 +167,11 @@ pub enum Absent {
         "undecided: about the trim the airframe has a motion that is too fast for the steps of the integration, which are the sample period and 0.01 s at most: with a shorter period they follow it"
     )]
     FastMotion,
+    /// Gains of a loop around the pitch loop multiply what it holds while they move with its error.
+    #[error(
+        "undecided: gains of a loop around the pitch loop move with its error and multiply what it holds (a set-point weight other than 1, the literal integral, no integral), and what comes of that may grow"
+    )]
+    OuterGains,
     /// A plant that does not come to rest by itself is to be held where the limits leave too little for it.
     #[error(
         "undecided: the plant does not come to rest by itself, and at the end of the flight set-point and loads take more elevator than a limit leaves, or the command is at a limit and the error grows"

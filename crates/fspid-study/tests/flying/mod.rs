@@ -17,6 +17,7 @@ mod lqi;
 mod moving_air;
 mod old_scenarios;
 mod one_verdict;
+mod outer_gains;
 mod outer_loops;
 mod requirements;
 mod six_dof;

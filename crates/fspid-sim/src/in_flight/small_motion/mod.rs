@@ -6,21 +6,24 @@
 //! until all ages have come, or the largest age is taken, or the smallest ([`Seeing`]). Every target is what the trim has; a beam is level there. The actuator is its lag and its
 //! delay.
 
+mod moving;
 mod numbers;
 mod still;
 
 use fspid_core::{Gains, State};
 use fspid_lti::{Complex, Matrix, eigenvalues, modulus};
 
+use self::moving::{Sides, sides};
 use self::numbers::{Ended, Flying, Place, ROLLING, is_of_the_wings, places};
 use self::still::{on_its_way, settling_samples, still, still_alone, unlimited};
 use super::Course;
 use crate::aircraft::{AircraftPlant, Change};
-use crate::autopilot::Mode;
+use crate::autopilot::{Autopilot, Mode};
 use crate::controller::Controller;
 use crate::error::SimError;
 use crate::flown::Perturbation;
 use crate::loop_model::MOST_AS_STATES;
+use crate::rest::{Doubt, Stand};
 use crate::scenario::{Prepared, Scenario};
 use crate::stability::MODE_RADIUS;
 
@@ -39,8 +42,10 @@ pub struct ModePoles {
     pub from_s: f64,
     /// Poles of the sampled loop, each as $s = \ln z / T$ in 1/s; those of pure delays, z = 0, are left out.
     pub poles: Vec<Complex>,
-    /// Largest size of z.
+    /// Largest size of z; where rules have a kink at rest, of all sides, or what a motion through them was seen to grow by.
     pub spectral_radius: f64,
+    /// Why it is not known whether the mode holds.
+    pub doubt: Option<Doubt>,
 }
 
 /// The poles of a scenario's aircraft with a controller and, one mode after another, everything that an autopilot engages;
@@ -90,10 +95,33 @@ fn poles_shown(
     if first == Seeing::Latest {
         return Ok(latest);
     }
-    let ModePoles { spectral_radius, .. } = poles_of_mode(scenario, held, mode, first)?;
-    let agree = (spectral_radius <= MODE_RADIUS) == (latest.spectral_radius <= MODE_RADIUS);
+    let ModePoles { spectral_radius, doubt, .. } = poles_of_mode(scenario, held, mode, first)?;
+    let agree = doubt == latest.doubt
+        && (spectral_radius <= MODE_RADIUS) == (latest.spectral_radius <= MODE_RADIUS);
     let poles = if agree { latest.poles } else { Vec::new() };
-    Ok(ModePoles { poles, spectral_radius, ..latest })
+    Ok(ModePoles { poles, spectral_radius, doubt, ..latest })
+}
+
+/// A mode of an autopilot whose small motions are asked.
+struct Asked<'a> {
+    scenario: &'a Scenario,
+    autopilot: &'a Autopilot,
+    mode: usize,
+    seeing: Seeing,
+    /// Of pitch, without limits.
+    controller: Controller,
+}
+
+impl Asked<'_> {
+    fn mode(&self) -> Option<&Mode> {
+        self.autopilot.modes().get(self.mode)
+    }
+
+    fn small<'a>(&self, prepared: &'a Prepared) -> Result<Small<'a>, SimError> {
+        let samples = [settling_samples(self.scenario)?, self.seeing.samples(self.scenario)];
+        let found = Small::of(prepared, samples, self.mode(), self.controller);
+        found.map_err(|ended| ended.of(self.mode))
+    }
 }
 
 /// The same of one mode of the autopilot that a scenario has.
@@ -104,21 +132,30 @@ pub(crate) fn poles_of_mode(
     seeing: Seeing,
 ) -> Result<ModePoles, SimError> {
     let autopilot = scenario.autopilot.as_ref().ok_or(SimError::NotLinear)?;
-    let controller = &unlimited(controller, gains)?;
+    let controller = unlimited(controller, gains)?;
     let samples = on_its_way(scenario);
     if samples > MOST_AS_STATES {
         return Err(SimError::LongWay { samples, most: MOST_AS_STATES });
     }
-    let still = still(scenario, autopilot, mode, seeing)?;
-    let samples = [settling_samples(scenario)?, seeing.samples(scenario)];
-    let motion = small_motions(&still, samples, autopilot.modes().get(mode), controller);
-    let (_, matrix) = motion.map_err(|ended| ended.of(mode))?;
+    let asked = Asked { scenario, autopilot, mode, seeing, controller };
+    let prepared = still(scenario, autopilot, mode, seeing)?;
+    let small = asked.small(&prepared)?;
+    let (found, largest, doubt) = match sides(&asked, &small)? {
+        None => {
+            let found = eigenvalues(&small.matrix)?;
+            let largest = found.iter().map(|z| modulus(*z)).fold(0.0, f64::max);
+            (found, largest, None)
+        }
+        Some(Sides { stand, eigenvalues, largest }) => match stand {
+            Stand::Holds => (eigenvalues, largest, None),
+            Stand::Grows { spectral_radius } => (eigenvalues, spectral_radius, None),
+            Stand::Undecided { .. } => (Vec::new(), f64::NAN, Some(Doubt::OuterGains)),
+        },
+    };
     let dt_s = scenario.timing.dt_s();
-    let found = eigenvalues(&matrix)?;
-    let largest = found.iter().map(|z| modulus(*z)).fold(0.0, f64::max);
     let poles = found.iter().filter(|z| modulus(**z) > GONE).map(|z| in_s(*z, dt_s)).collect();
-    let spectral_radius = a_sample(largest, samples[1]);
-    Ok(ModePoles { mode, from_s: 0.0, poles, spectral_radius })
+    let spectral_radius = a_sample(largest, small.samples);
+    Ok(ModePoles { mode, from_s: 0.0, poles, spectral_radius, doubt })
 }
 
 /// What a growth over so many samples is a sample.
@@ -159,8 +196,8 @@ pub(crate) fn radii_alone(
     let controller = unlimited(controller, gains)?;
     let still = still_alone(scenario, seeing)?.prepare()?;
     let samples = [settling_samples(scenario)?, seeing.samples(scenario)];
-    let motion = small_motions(&still, samples, None, &controller);
-    let (places, matrix) = motion.map_err(|ended| ended.of(0))?;
+    let small = Small::of(&still, samples, None, controller).map_err(|ended| ended.of(0))?;
+    let Small { places, matrix, .. } = &small;
     let radius = |matrix: &Matrix| radius(matrix).map(|radius| a_sample(radius, samples[1]));
     let at = |beyond: usize| {
         places.iter().position(|place| matches!(place, Place::Beyond(at) if *at == beyond))
@@ -168,8 +205,8 @@ pub(crate) fn radii_alone(
     let rolls = at(ROLLING).zip(at(AILERON)).and_then(|(row, column)| matrix.get(row, column));
     let pitching: Vec<usize> =
         (0..places.len()).filter(|at| !places.get(*at).is_some_and(is_of_the_wings)).collect();
-    let all = rolls.filter(|by_aileron| *by_aileron != 0.0).map(|_| radius(&matrix));
-    Ok(Some(Alone { pitching: radius(&part(&matrix, &pitching)?)?, all: all.transpose()? }))
+    let all = rolls.filter(|by_aileron| *by_aileron != 0.0).map(|_| radius(matrix));
+    Ok(Some(Alone { pitching: radius(&part(matrix, &pitching)?)?, all: all.transpose()? }))
 }
 
 fn radius(matrix: &Matrix) -> Result<f64, SimError> {
@@ -191,34 +228,62 @@ fn part(matrix: &Matrix, places: &[usize]) -> Result<Matrix, SimError> {
 const DIFFERENCE: f64 = 1e-5;
 
 /// What some samples make of each number, after others, by central differences.
-fn small_motions(
-    prepared: &Prepared,
-    [settling_samples, samples]: [usize; 2],
-    mode: Option<&Mode>,
-    controller: &Controller,
-) -> Result<(Vec<Place>, Matrix), Ended> {
-    let course = Course::start(prepared, &Perturbation::NONE)?;
-    let mut at = Flying { course, memory: State::new() };
-    for _ in 0..settling_samples {
-        at.fly(controller)?;
+struct Small<'a> {
+    /// After those others.
+    at: Flying<'a>,
+    samples: usize,
+    controller: Controller,
+    places: Vec<Place>,
+    matrix: Matrix,
+}
+
+impl<'a> Small<'a> {
+    fn of(
+        prepared: &'a Prepared,
+        [settling_samples, samples]: [usize; 2],
+        mode: Option<&Mode>,
+        controller: Controller,
+    ) -> Result<Self, Ended> {
+        let course = Course::start(prepared, &Perturbation::NONE)?;
+        let mut at = Flying { course, memory: State::new() };
+        for _ in 0..settling_samples {
+            at.fly(&controller)?;
+        }
+        let places = places(&mut at, mode, &controller);
+        let from = at.read(&places);
+        let matrix = Matrix::zeros(from.len(), from.len());
+        let mut small = Self { at, samples, controller, places, matrix };
+        for (column, (place, value)) in small.places.clone().into_iter().zip(from).enumerate() {
+            for (row, entry) in small.differences(place, value)?.into_iter().enumerate() {
+                small.matrix.set(row, column, entry).map_err(SimError::from)?;
+            }
+        }
+        Ok(small)
     }
-    let places = places(&mut at, mode, controller);
-    let from = at.read(&places);
-    let mut matrix = Matrix::zeros(from.len(), from.len());
-    for (column, (place, value)) in places.iter().zip(&from).enumerate() {
+
+    /// What becomes of a number that is `value` now.
+    fn differences(&self, place: Place, value: f64) -> Result<Vec<f64>, Ended> {
         let half = DIFFERENCE * value.abs().max(1.0);
         let arrive = |by: f64| {
-            let mut moved = at.clone();
-            moved.nudge(*place, by);
-            for _ in 0..samples {
-                moved.fly(controller)?;
+            let mut moved = self.at.clone();
+            moved.nudge(place, by);
+            for _ in 0..self.samples {
+                moved.fly(&self.controller)?;
             }
-            Ok::<_, Ended>(moved.read(&places))
+            Ok::<_, Ended>(moved.read(&self.places))
         };
         let (more, less) = (arrive(half)?, arrive(-half)?);
-        for (row, (more, less)) in more.iter().zip(&less).enumerate() {
-            matrix.set(row, column, (more - less) / (2.0 * half)).map_err(SimError::from)?;
-        }
+        Ok(more.iter().zip(&less).map(|(more, less)| (more - less) / (2.0 * half)).collect())
     }
-    Ok((places, matrix))
+
+    /// The same of a number that need not be one of the matrix.
+    fn column(&self, place: Place) -> Result<Vec<f64>, Ended> {
+        let value = self.at.clone().read(&[place]);
+        self.differences(place, value.first().copied().unwrap_or(0.0))
+    }
+
+    /// What a loop is held at, and what it commands, as its controller counts.
+    fn held_by(&self, autopilot: &Autopilot, number: usize) -> Option<[f64; 2]> {
+        self.at.course.around.as_ref()?.state.held_by(autopilot, number)
+    }
 }

@@ -56,7 +56,7 @@ impl Flying<'_> {
 }
 
 /// A number of a flight.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 pub(super) enum Place {
     /// Of pitching and its actuator.
     Pitching(usize),

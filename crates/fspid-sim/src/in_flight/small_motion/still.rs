@@ -178,7 +178,7 @@ fn sensors(scenario: &Scenario) -> impl Iterator<Item = &Sensor> {
 }
 
 /// The gains that a controller has with everything at zero.
-fn at_rest(controller: &Controller) -> Gains<f64> {
+pub(super) fn at_rest(controller: &Controller) -> Gains<f64> {
     match controller {
         Controller::Fixed(pid) => pid.gains(),
         Controller::SelfTuning(fspid) => fspid.tuner().gains_at_rest(),
