@@ -14,6 +14,7 @@ mod limits;
 mod linear_file;
 mod loading;
 mod lqi;
+mod modes_at_rest;
 mod moving_air;
 mod old_scenarios;
 mod one_verdict;

@@ -14,7 +14,7 @@ use fspid_core::{Gains, State};
 use fspid_lti::{Complex, Matrix, eigenvalues, modulus};
 
 use self::moving::{Sides, sides};
-use self::numbers::{Ended, Flying, Place, ROLLING, is_of_the_wings, places};
+use self::numbers::{Ended, Flying, Place, ROLLING, TURNING, is_of_the_wings, places};
 use self::still::{on_its_way, settling_samples, still, still_alone, unlimited};
 use super::Course;
 use crate::aircraft::{AircraftPlant, Change};
@@ -46,6 +46,13 @@ pub struct ModePoles {
     pub spectral_radius: f64,
     /// Why it is not known whether the mode holds.
     pub doubt: Option<Doubt>,
+}
+
+impl ModePoles {
+    fn undecided(mode: usize, doubt: Doubt) -> Self {
+        let (poles, doubt) = (Vec::new(), Some(doubt));
+        Self { mode, from_s: 0.0, poles, spectral_radius: f64::NAN, doubt }
+    }
 }
 
 /// The poles of a scenario's aircraft with a controller and, one mode after another, everything that an autopilot engages;
@@ -120,7 +127,7 @@ impl Asked<'_> {
     fn small<'a>(&self, prepared: &'a Prepared) -> Result<Small<'a>, SimError> {
         let samples = [settling_samples(self.scenario)?, self.seeing.samples(self.scenario)];
         let found = Small::of(prepared, samples, self.mode(), self.controller);
-        found.map_err(|ended| ended.of(self.mode))
+        found.map_err(|ended| ended.of(self.mode))?.without_free_wings()
     }
 }
 
@@ -140,22 +147,24 @@ pub(crate) fn poles_of_mode(
     let asked = Asked { scenario, autopilot, mode, seeing, controller };
     let prepared = still(scenario, autopilot, mode, seeing)?;
     let small = asked.small(&prepared)?;
-    let (found, largest, doubt) = match sides(&asked, &small)? {
+    let (found, largest) = match sides(&asked, &small)? {
         None => {
             let found = eigenvalues(&small.matrix)?;
             let largest = found.iter().map(|z| modulus(*z)).fold(0.0, f64::max);
-            (found, largest, None)
+            (found, largest)
         }
         Some(Sides { stand, eigenvalues, largest }) => match stand {
-            Stand::Holds => (eigenvalues, largest, None),
-            Stand::Grows { spectral_radius } => (eigenvalues, spectral_radius, None),
-            Stand::Undecided { .. } => (Vec::new(), f64::NAN, Some(Doubt::OuterGains)),
+            Stand::Holds => (eigenvalues, largest),
+            Stand::Grows { spectral_radius } => (eigenvalues, spectral_radius),
+            Stand::Undecided { .. } => {
+                return Ok(ModePoles::undecided(mode, Doubt::OuterGains));
+            }
         },
     };
     let dt_s = scenario.timing.dt_s();
     let poles = found.iter().filter(|z| modulus(**z) > GONE).map(|z| in_s(*z, dt_s)).collect();
     let spectral_radius = a_sample(largest, small.samples);
-    Ok(ModePoles { mode, from_s: 0.0, poles, spectral_radius, doubt })
+    Ok(ModePoles { mode, from_s: 0.0, poles, spectral_radius, doubt: None })
 }
 
 /// What a growth over so many samples is a sample.
@@ -237,6 +246,9 @@ struct Small<'a> {
     matrix: Matrix,
 }
 
+/// A rate of roll or yaw that changes by no more than this in what is asked, by anything, has no forces.
+const NO_FORCES: f64 = 1e-9;
+
 impl<'a> Small<'a> {
     fn of(
         prepared: &'a Prepared,
@@ -259,6 +271,34 @@ impl<'a> Small<'a> {
             }
         }
         Ok(small)
+    }
+
+    /// Without side speed, roll, yaw, bank and their surfaces, where nothing turns the aircraft: of the same pole at 1, three and
+    /// more times, rounding makes poles that are off by its cube root.
+    fn without_free_wings(mut self) -> Result<Self, SimError> {
+        let turning: Vec<usize> = self
+            .places
+            .iter()
+            .enumerate()
+            .filter(|(_, place)| TURNING.iter().any(|&at| **place == Place::Beyond(at)))
+            .map(|(at, _)| at)
+            .collect();
+        let stays = |row: usize| {
+            let mut columns = 0..self.places.len();
+            columns.all(|column| {
+                let kept = if row == column { 1.0 } else { 0.0 };
+                let entry = self.matrix.get(row, column);
+                entry.is_some_and(|entry| (entry - kept).abs() <= NO_FORCES)
+            })
+        };
+        if turning.iter().all(|row| stays(*row)) {
+            let places = self.places.iter().enumerate();
+            let kept: Vec<usize> =
+                places.filter(|(_, place)| !is_of_the_wings(place)).map(|(at, _)| at).collect();
+            self.matrix = part(&self.matrix, &kept)?;
+            self.places = kept.iter().filter_map(|at| self.places.get(*at)).copied().collect();
+        }
+        Ok(self)
     }
 
     /// What becomes of a number that is `value` now.

@@ -215,6 +215,9 @@ pub(crate) const AILERON: usize = 7;
 /// Throttle that is asked for.
 pub(crate) const THROTTLE: usize = 9;
 
+/// Rates of roll and yaw.
+pub(super) const TURNING: [usize; 2] = [ROLLING, 4];
+
 /// True for what moves the wings and the nose aside: no number of an aircraft in the plane of its flight.
 pub(super) fn is_of_the_wings(place: &Place) -> bool {
     matches!(place, Place::Beyond(at) if ![ALTITUDE, POWER, THROTTLE].contains(at))
