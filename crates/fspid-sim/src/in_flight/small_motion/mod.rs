@@ -1,7 +1,8 @@
 //! Small motions of an aircraft with everything around its pitch loop: what one sample makes of them.
 //!
 //! The flying code itself is asked: a flight stands at the trim with one mode engaged for good, each of its numbers is moved
-//! a little either way, and one sample is flown. Limits are left out, gains are those at rest, and the air stands still. Sensors
+//! a little either way, and one sample is flown. Limits are left out, gains are those at rest (what they make of what outer
+//! loops hold is [added](moving)), and the wind is that of the start. Sensors
 //! show late what they show late, that of the pitch loop with their scale. Where one has a clock of its own, samples are flown
 //! until all ages have come, or the largest age is taken, or the smallest ([`Seeing`]). Every target is what the trim has; a beam is level there. The actuator is its lag and its
 //! delay.
