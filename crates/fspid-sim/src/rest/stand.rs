@@ -76,7 +76,8 @@ pub enum Doubt {
     Erection,
     /// The set-point of the end, held on, brings an aircraft to another airspeed, where it grows.
     HeldOn,
-    /// The trim of an aircraft lies on a kink of its data, where no linear model is that of its small motions.
+    /// The trim of an aircraft lies on a kink of its data, or at a jump of its engine, where no linear model is that of its small
+    /// motions.
     Kink,
     /// About the trim of an aircraft something moves so fast that the steps of the integration do not follow.
     FastMotion,

@@ -157,9 +157,9 @@ pub enum Absent {
         /// Spectral radius of the sampled closed loop there.
         spectral_radius: f64,
     },
-    /// The trim lies on a kink of the aircraft's data.
+    /// The trim lies on a kink of the aircraft's data, or at a jump of its engine.
     #[error(
-        "undecided: the trim lies right on a kink of the aircraft's data (a breakpoint of a table, a row of Mach numbers, a corner of a gearing), where each side has slopes of its own: a trim a little beside it has one linear model"
+        "undecided: the trim lies right on a kink of the aircraft's data (a breakpoint of a table, a row of Mach numbers, a corner of a gearing, half the power of an engine that jumps there), where each side has slopes of its own: a trim a little beside it has one linear model"
     )]
     Kink,
     /// The aircraft moves faster than the steps of the integration follow.

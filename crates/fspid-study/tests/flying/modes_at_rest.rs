@@ -1,9 +1,9 @@
-//! What small motions of an autopilot's modes are asked with: the wind, an aircraft that nothing turns.
+//! What small motions of an autopilot's modes are asked with: the wind, an aircraft that nothing turns, an engine that jumps.
 
 use fspid_sim::Doubt;
 use fspid_study::simulation::{ControllerResult, Simulation};
 
-use crate::flying::{column, study};
+use crate::flying::{NAVION, column, study};
 
 const CAPTURE: &str = include_str!("../../../../scenarios/gallery/altitude-capture.toml");
 
@@ -110,3 +110,51 @@ fn an_aircraft_that_nothing_turns_aside_is_not_called_unstable_by_rounding() {
         assert!(flight.at_rest.unstable.is_none(), "{airspeed} {:?}", flight.at_rest.unstable);
     }
 }
+
+/// From either side of half its power this engine is led elsewhere. Differences across that called a Navion of 620 kg unstable at
+/// 127 ft/s and stable at 126.98.
+#[test]
+fn a_trim_at_half_the_power_of_an_engine_that_jumps_there_is_undecided_and_one_beside_it_is_not() {
+    let asked = |airspeed_ft_s: f64, text: &str| {
+        let speed = format!("aircraft.airspeed_ft_s={airspeed_ft_s}");
+        flown(text, &[&speed, "aircraft.mass_kg=620.0"])
+    };
+    let navion = format!("{NAVION}{ENGINE}");
+    for airspeed_ft_s in [126.98, 127.0, 127.02] {
+        let flight = asked(airspeed_ft_s, &navion);
+        assert!(flight.at_rest.unstable.is_none());
+        assert_eq!(doubt(&flight), Some(Doubt::Kink), "{airspeed_ft_s}");
+    }
+    // Above it the engine is five times as quick as below, where so much integral grows.
+    let above = asked(127.5, &navion);
+    assert!(above.at_rest.unstable.is_none() && doubt(&above).is_none());
+    assert!(asked(126.0, &navion).at_rest.unstable.is_some());
+    // And a throttle that nobody moves stays where it is.
+    let alone = navion.split("[[outer_loop]]").next().expect("the aircraft");
+    let alone = asked(127.0, alone);
+    assert!(alone.at_rest.unstable.is_none() && doubt(&alone).is_none());
+}
+
+const ENGINE: &str = r#"
+[engine]
+kind = "stevens-lewis"
+[[outer_loop]]
+name = "altitude"
+kind = "pid"
+holds = "altitude"
+moves = "pitch"
+kp = 0.3
+ki = 0.02
+kd = 0.6
+derivative_filter_s = 0.2
+[[outer_loop]]
+name = "autothrottle"
+kind = "pid"
+holds = "airspeed"
+moves = "throttle"
+kp = 0.2
+ki = 0.6
+[[mode]]
+name = "level"
+engage = ["altitude", "autothrottle"]
+"#;

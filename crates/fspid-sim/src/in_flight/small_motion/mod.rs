@@ -148,6 +148,9 @@ pub(crate) fn poles_of_mode(
     let asked = Asked { scenario, autopilot, mode, seeing, controller };
     let prepared = still(scenario, autopilot, mode, seeing)?;
     let small = asked.small(&prepared)?;
+    if small.jumps {
+        return Ok(ModePoles::undecided(mode, Doubt::Kink));
+    }
     let (found, largest) = match sides(&asked, &small)? {
         None => {
             let found = eigenvalues(&small.matrix)?;
@@ -213,10 +216,15 @@ pub(crate) fn radii_alone(
         places.iter().position(|place| matches!(place, Place::Beyond(at) if *at == beyond))
     };
     let rolls = at(ROLLING).zip(at(AILERON)).and_then(|(row, column)| matrix.get(row, column));
-    let pitching: Vec<usize> =
-        (0..places.len()).filter(|at| !places.get(*at).is_some_and(is_of_the_wings)).collect();
-    let all = rolls.filter(|by_aileron| *by_aileron != 0.0).map(|_| radius(matrix));
-    Ok(Some(Alone { pitching: radius(&part(matrix, &pitching)?)?, all: all.transpose()? }))
+    // Nobody moves the throttle: an engine that would jump comes to the power of the trim by itself.
+    let stands = |place: &Place| small.jumps && matches!(place, Place::Beyond(POWER));
+    let without = |left_out: &dyn Fn(&Place) -> bool| {
+        let kept = places.iter().enumerate().filter(|(_, place)| !left_out(place));
+        radius(&part(matrix, &kept.map(|(at, _)| at).collect::<Vec<_>>())?)
+    };
+    let all = rolls.filter(|by_aileron| *by_aileron != 0.0).map(|_| without(&stands));
+    let pitching = without(&|place| stands(place) || is_of_the_wings(place))?;
+    Ok(Some(Alone { pitching, all: all.transpose()? }))
 }
 
 fn radius(matrix: &Matrix) -> Result<f64, SimError> {
@@ -245,6 +253,8 @@ struct Small<'a> {
     controller: Controller,
     places: Vec<Place>,
     matrix: Matrix,
+    /// An engine was on two sides of a jump of its rate: of a difference across it nothing is known.
+    jumps: bool,
 }
 
 /// A rate of roll or yaw that changes by no more than this in what is asked, by anything, has no forces.
@@ -265,9 +275,11 @@ impl<'a> Small<'a> {
         let places = places(&mut at, mode, &controller);
         let from = at.read(&places);
         let matrix = Matrix::zeros(from.len(), from.len());
-        let mut small = Self { at, samples, controller, places, matrix };
+        let mut small = Self { at, samples, controller, places, matrix, jumps: false };
         for (column, (place, value)) in small.places.clone().into_iter().zip(from).enumerate() {
-            for (row, entry) in small.differences(place, value)?.into_iter().enumerate() {
+            let (column_of, jumps) = small.differences(place, value)?;
+            small.jumps |= jumps;
+            for (row, entry) in column_of.into_iter().enumerate() {
                 small.matrix.set(row, column, entry).map_err(SimError::from)?;
             }
         }
@@ -302,25 +314,30 @@ impl<'a> Small<'a> {
         Ok(self)
     }
 
-    /// What becomes of a number that is `value` now.
-    fn differences(&self, place: Place, value: f64) -> Result<Vec<f64>, Ended> {
+    /// What becomes of a number that is `value` now, and whether an engine was on two sides of a jump.
+    fn differences(&self, place: Place, value: f64) -> Result<(Vec<f64>, bool), Ended> {
         let half = DIFFERENCE * value.abs().max(1.0);
-        let arrive = |by: f64| {
+        let side = self.at.sides_of_half_power();
+        let mut jumps = false;
+        let mut arrive = |by: f64| {
             let mut moved = self.at.clone();
             moved.nudge(place, by);
+            jumps |= moved.sides_of_half_power() != side;
             for _ in 0..self.samples {
                 moved.fly(&self.controller)?;
+                jumps |= moved.sides_of_half_power() != side;
             }
             Ok::<_, Ended>(moved.read(&self.places))
         };
         let (more, less) = (arrive(half)?, arrive(-half)?);
-        Ok(more.iter().zip(&less).map(|(more, less)| (more - less) / (2.0 * half)).collect())
+        let slopes = more.iter().zip(&less).map(|(more, less)| (more - less) / (2.0 * half));
+        Ok((slopes.collect(), jumps))
     }
 
     /// The same of a number that need not be one of the matrix.
     fn column(&self, place: Place) -> Result<Vec<f64>, Ended> {
         let value = self.at.clone().read(&[place]);
-        self.differences(place, value.first().copied().unwrap_or(0.0))
+        Ok(self.differences(place, value.first().copied().unwrap_or(0.0))?.0)
     }
 
     /// What a loop is held at, and what it commands, as its controller counts.

@@ -137,6 +137,11 @@ impl Flying<'_> {
         sensors.each_mut().map(|sensor| (None, sensor)).chain(around)
     }
 
+    /// On which sides of half power the engine is asked and is, where that matters.
+    pub(super) fn sides_of_half_power(&self) -> Option<[bool; 2]> {
+        self.course.propagation().sides_of_half_power(self.course.plant())
+    }
+
     fn seen(&mut self, sensor: usize, samples: usize) -> Option<&mut f64> {
         let k = self.course.k;
         self.sensors_mut().nth(sensor)?.1.past(k, samples)
