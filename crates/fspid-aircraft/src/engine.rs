@@ -64,6 +64,9 @@ impl Spool {
     }
 }
 
+/// The border of the afterburner of the F-16's engine: across it the rate of the power jumps ([`power_rate_per_s`]).
+pub const HALF_POWER: f64 = 0.5;
+
 /// Rate in 1/s at which the power of the F-16's engine follows the one that is asked for, both from 0 to 1.
 ///
 /// Across the border of the afterburner at 0.5 the engine is first led to 0.4 or 0.6.
@@ -75,7 +78,7 @@ impl Spool {
 /// Stevens and Lewis, *Aircraft Control and Simulation*, appendix A, `PDOT` and `RTAU`; NASA TM-2003-212145.
 #[must_use]
 pub fn power_rate_per_s(power: f64, asked: f64) -> f64 {
-    let (target, quick) = match (asked >= 0.5, power >= 0.5) {
+    let (target, quick) = match (asked >= HALF_POWER, power >= HALF_POWER) {
         (true, true) => (asked, true),
         (true, false) => (0.6, false),
         (false, true) => (0.4, true),

@@ -41,7 +41,7 @@ pub use aerodynamics::{ForceModel, Loads};
 pub use aircraft::{Aircraft, Instant, load_factors};
 pub use atmosphere::{Air, AirModel, Environment};
 pub use controls::{CONTROLS, Controls};
-pub use engine::{Gearing, Spool, power_rate_per_s};
+pub use engine::{Gearing, HALF_POWER, Spool, power_rate_per_s};
 pub use envelope::{EnvelopeFlight, EnvelopeGrid, EnvelopeRow};
 pub use error::AircraftError;
 pub use flow::{AirMotion, Flow};

@@ -188,9 +188,13 @@ fn of_modes(
 
 /// One mode, with sensors as they may show its motions.
 fn of_mode(scenario: &Scenario, mode: usize, held: Held<'_>) -> Result<GrowthAtRest, SimError> {
+    let first = poles_of_mode(scenario, held, mode, Seeing::first(scenario))?;
+    let spectral_radius = first.spectral_radius;
+    if let Some(doubt) = first.doubt {
+        return Ok(doubted(doubt));
+    }
     let radius =
         |seeing| poles_of_mode(scenario, held, mode, seeing).map(|poles| poles.spectral_radius);
-    let spectral_radius = radius(Seeing::first(scenario))?;
     for seeing in Seeing::others(scenario) {
         let doubt = of_seeing(seeing, spectral_radius);
         // A loop that grows with every age may hold while it changes: such a one was flown.

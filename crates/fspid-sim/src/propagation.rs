@@ -224,6 +224,14 @@ impl Propagation {
         matches!(self, Self::Aircraft(it) if it.has_lagging_engine())
     }
 
+    /// On which sides of half power an engine is asked and is, where that matters.
+    pub(crate) fn sides_of_half_power(&self, motion: &Motion) -> Option<[bool; 2]> {
+        match (self, motion) {
+            (Self::Aircraft(it), Motion::Aircraft(state)) => it.sides_of_half_power(state),
+            _ => None,
+        }
+    }
+
     /// Moves one of these.
     pub(crate) fn nudge_beyond(&self, motion: &mut Motion, place: usize, by: f64) {
         if let (Self::Aircraft(it), Motion::Aircraft(state)) = (self, motion) {

@@ -119,6 +119,14 @@ impl AutopilotState {
         (self.mode + 1 < autopilot.modes.len()).then_some(self.mode + 1)
     }
 
+    /// What a loop is held at, and what it commands from where it counts, both as its controller counts; none before it is
+    /// engaged.
+    pub(crate) fn held_by(&self, autopilot: &Autopilot, number: usize) -> Option<[f64; 2]> {
+        let memory = self.channels.get(number)?.memory()?;
+        let target = self.targets.get(number)?;
+        Some([autopilot.loops.get(number)?.units.held * target, memory.command_rad])
+    }
+
     /// What the engaged controllers remember.
     pub(crate) fn memories(&self) -> impl Iterator<Item = &State<f64>> {
         self.channels.iter().chain(&self.energy).filter_map(Channel::memory)
@@ -305,10 +313,7 @@ impl AutopilotState {
 
     /// True for a loop whose target an engaged loop moves.
     fn is_moved(&self, autopilot: &Autopilot, number: usize) -> bool {
-        let mode = autopilot.modes.get(self.mode);
-        let engaged = mode.iter().flat_map(|mode| &mode.engaged);
-        let mut movers = engaged.filter_map(|&other| autopilot.loops.get(other));
-        movers.any(|other| other.moves == Moves::Loop(number))
+        autopilot.modes.get(self.mode).is_some_and(|mode| mode.moves_target(autopilot, number))
     }
 
     /// What stands now where a loop moves.

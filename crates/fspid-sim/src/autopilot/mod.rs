@@ -47,6 +47,7 @@ pub use sample::{AUTOPILOT_COLUMNS, AutopilotSample};
 pub use total_energy::TotalEnergy;
 
 use crate::aircraft::AircraftPlant;
+use crate::controller::Controller;
 use crate::timing::Timing;
 use fspid_aircraft::ForceModel;
 
@@ -142,6 +143,15 @@ impl Autopilot {
     #[must_use]
     pub fn modes(&self) -> &[Mode] {
         &self.modes
+    }
+
+    /// The same with another controller in the place of one of its loops.
+    pub(crate) fn with_controller(&self, number: usize, controller: Controller) -> Self {
+        let mut other = self.clone();
+        if let Some(outer) = other.loops.get_mut(number) {
+            outer.controller = controller;
+        }
+        other
     }
 
     /// The beam that is followed.

@@ -1,6 +1,7 @@
 //! Modes: what is engaged, and from when.
 
 use super::quantity::Quantity;
+use super::{Autopilot, Moves};
 
 /// What an engaged loop holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,6 +78,12 @@ pub struct Mode {
 }
 
 impl Mode {
+    /// True for a loop whose target an engaged loop moves.
+    pub(crate) fn moves_target(&self, autopilot: &Autopilot, number: usize) -> bool {
+        let mut movers = self.engaged.iter().filter_map(|&other| autopilot.loops.get(other));
+        movers.any(|other| other.moves == Moves::Loop(number))
+    }
+
     /// The target of a quantity.
     pub(crate) fn target(&self, quantity: Quantity) -> Target {
         let found = self.targets.iter().find(|engagement| engagement.quantity == quantity);

@@ -91,9 +91,10 @@ pub enum Doubt {
     /// A mode of the autopilot leads an aircraft to no flight within its limits.
     #[error("{0}: a longer flight shows it")]
     LedNowhere(Led),
-    /// The trim of an aircraft lies on a kink of its data, where no linear model is that of its small motions.
+    /// The trim of an aircraft lies on a kink of its data, or at a jump of its engine, where no linear model is that of its small
+    /// motions.
     #[error(
-        "the trim lies right on a kink of the aircraft's data (a breakpoint of a table, a row of Mach numbers, a corner of a gearing), where each side has slopes of its own: a trim a little beside it has one linear model"
+        "the trim lies right on a kink of the aircraft's data (a breakpoint of a table, a row of Mach numbers, a corner of a gearing, half the power of an engine that jumps there), where each side has slopes of its own: a trim a little beside it has one linear model"
     )]
     Kink,
     /// About the trim of an aircraft something moves so fast that the steps of the integration do not follow.
@@ -101,6 +102,11 @@ pub enum Doubt {
         "about the trim the airframe has a motion that is too fast for the steps of the integration, which are the sample period and 0.01 s at most: with a shorter period they follow it"
     )]
     FastMotion,
+    /// Gains of a loop around the pitch loop move with its error and multiply what it holds, and what comes of that may grow.
+    #[error(
+        "gains of a loop around the pitch loop move with its error and multiply what it holds (a set-point weight other than 1, the literal integral, no integral), and what comes of that may grow"
+    )]
+    OuterGains,
     /// What is held at the end of the flight takes more than a limit leaves, of a plant that does not come to rest by itself; or
     /// the flight of one ended at a limit with an error that grows.
     #[error(
@@ -128,6 +134,7 @@ impl Doubt {
             | Self::LedNowhere(_)
             | Self::Kink
             | Self::FastMotion
+            | Self::OuterGains
             | Self::BeyondLimits => true,
         }
     }

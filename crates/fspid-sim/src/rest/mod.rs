@@ -44,6 +44,7 @@
 
 mod clocked;
 mod doubt;
+mod outer;
 mod slopes;
 mod stand;
 #[cfg(test)]
@@ -62,6 +63,7 @@ use slopes::{DIRECTIONS, Slopes};
 
 pub use doubt::Doubt;
 pub use stand::Stand;
+pub(crate) use stand::{Found, stand_of_sides};
 
 /// Halvings in which the pitch at rest is looked for, and doublings of how far from the set-point.
 const HALVINGS: usize = 60;
@@ -375,6 +377,17 @@ impl Holding<'_> {
             },
             by_kd: -gain_coupling.rate_gain * rate_rad_s,
         };
+        self.around(at, (gains, held), centre, error_rad)
+    }
+
+    /// Rest with these gains and constants where the supervisor sees this.
+    fn around(
+        &self,
+        at: RestPoint,
+        (gains, held): (Gains<f64>, Held),
+        centre: [f64; 2],
+        error_rad: f64,
+    ) -> Rest {
         let (mut sides, mut known): (Vec<Side>, Vec<Slopes>) = (Vec::new(), Vec::new());
         let around = self.slopes_around(centre, error_rad);
         let of_direction = around.map(|slopes| {

@@ -49,7 +49,7 @@ pub enum Stand {
 
 /// The loop of one side: stable, unstable, or neither for all that is known.
 #[derive(Clone, Copy)]
-pub(super) enum Found {
+pub(crate) enum Found {
     Stable,
     Unstable(f64),
     Blurred(f64),
@@ -65,7 +65,7 @@ struct Phase {
 }
 
 /// What the loops of all sides say together; where one is unstable beside others, motions are followed.
-pub(super) fn stand_of_sides(
+pub(crate) fn stand_of_sides(
     found: &[Found],
     follow: Option<impl FnOnce() -> Option<f64>>,
 ) -> Stand {
@@ -159,6 +159,15 @@ impl Rest {
         let same_states =
             phases.iter().flat_map(|phase| &phase.closed).all(|rows| rows.len() == size);
         if same_states { self.largest_growth(&phases) } else { None }
+    }
+
+    /// The same where one loop for each side is given by its rows, with what its supervisor sees of a state: its two inputs.
+    pub(crate) fn growth_through(
+        &self,
+        closed: Vec<Vec<Vec<f64>>>,
+        seen: [Vec<f64>; 2],
+    ) -> Option<f64> {
+        self.largest_growth(&[Phase { closed, seen }])
     }
 
     /// The loops of one sample, and what the supervisor sees in it.

@@ -153,7 +153,7 @@ impl AnalysedLoop {
     /// How many modes of the autopilot grow for certain.
     #[must_use]
     pub fn growing_modes(&self) -> usize {
-        let growing = self.modes.iter().filter(|mode| mode.stability() != Stability::Stable);
+        let growing = self.modes.iter().filter(|mode| mode.stability() == Stability::Unstable);
         if self.doubt.is_some() { 0 } else { growing.count() }
     }
 

@@ -48,8 +48,10 @@ impl AnalysedMode {
     /// Whether everything decays.
     #[must_use]
     pub fn stability(&self) -> Stability {
+        if self.poles.doubt.is_some() {
+            Stability::Undecided
         // Written so that NaN is unstable.
-        if self.poles.spectral_radius <= MODE_RADIUS {
+        } else if self.poles.spectral_radius <= MODE_RADIUS {
             Stability::Stable
         } else {
             Stability::Unstable
@@ -89,7 +91,8 @@ impl AnalysedMode {
         });
         let word = match self.stability() {
             Stability::Stable => "stable",
-            _ => "UNSTABLE",
+            Stability::Unstable => "UNSTABLE",
+            Stability::Undecided => "UNDECIDED",
         };
         format!("{}: {word} with its outer loops{slowest}{damped}", self.name)
     }
@@ -101,7 +104,7 @@ impl AnalysedMode {
         });
         json!({
             "name": self.name,
-            "stable": self.stability() == Stability::Stable,
+            "stable": self.stability().known(),
             "slowest_pole": self.slowest().map(pole),
             "least_damped": least_damped,
         })

@@ -53,18 +53,25 @@ impl Around {
             );
         }
         let each = self.growing().map(|mode| {
+            if mode.stability() == Stability::Undecided {
+                return (Stability::Undecided, mode.name.clone());
+            }
             let radius = to_digits(mode.poles.spectral_radius, 7);
-            format!("{} (spectral radius {radius})", mode.name)
+            (Stability::Unstable, format!("{} (spectral radius {radius})", mode.name))
         });
-        let each: Vec<String> = each.collect();
-        let modes = if each.len() == 1 { "mode" } else { "modes" };
-        (!each.is_empty())
-            .then(|| format!("UNSTABLE with the outer loops of {modes} {}", each.join(", ")))
+        let each: Vec<(Stability, String)> = each.collect();
+        let worst = Stability::of_all(each.iter().map(|(stability, _)| *stability));
+        let names = each.iter().filter(|(stability, _)| *stability == worst);
+        let names: Vec<&str> = names.map(|(_, name)| name.as_str()).collect();
+        let modes = if names.len() == 1 { "mode" } else { "modes" };
+        let word = worst.word().to_uppercase();
+        (!names.is_empty())
+            .then(|| format!("{word} with the outer loops of {modes} {}", names.join(", ")))
     }
 
     pub(super) fn json(&self) -> Value {
         let mode = |mode: &AnalysedMode| {
-            let is_stable = mode.stability() == Stability::Stable;
+            let is_stable = mode.stability().known();
             json!({ "name": mode.name, "stable": is_stable, "spectral_radius": mode.poles.spectral_radius })
         };
         json!({ "held": self.is_held(), "modes": self.modes.iter().map(mode).collect::<Vec<_>>() })

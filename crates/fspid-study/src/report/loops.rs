@@ -96,7 +96,7 @@ fn around(found: &AnalysedLoop) -> Option<String> {
     if let Some(doubt) = found.doubt {
         return Some(format!("Nobody can tell: {doubt}."));
     }
-    let growing = found.modes.iter().filter(|mode| mode.stability() != Stability::Stable);
+    let growing = found.modes.iter().filter(|mode| mode.stability() == Stability::Unstable);
     let names: Vec<&str> = growing.map(|mode| mode.name.as_str()).collect();
     (!names.is_empty())
         .then(|| format!("With its outer loops it grows in mode {}.", names.join("; ")))

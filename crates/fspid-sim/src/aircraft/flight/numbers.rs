@@ -1,6 +1,6 @@
 //! The numbers of an aircraft's motion, read and moved one by one: what small motions are asked with.
 
-use fspid_aircraft::{EulerAngles, Quaternion, Spool};
+use fspid_aircraft::{EulerAngles, HALF_POWER, Quaternion, Spool};
 
 use super::{AircraftFlight, AircraftMotion, Moving};
 use crate::in_flight::{AILERON, ALTITUDE, BEYOND, HEADING, POWER, THROTTLE};
@@ -42,6 +42,14 @@ impl AircraftFlight {
     /// True for an engine that does not follow its throttle at once.
     pub(crate) fn has_lagging_engine(&self) -> bool {
         self.plant.spool() != Spool::Instant
+    }
+
+    /// Of an engine that is led elsewhere while the power that it is asked for and the power that it has lie on two sides of half
+    /// of it: on which side each is. Nothing of every other engine.
+    pub(crate) fn sides_of_half_power(&self, motion: &AircraftMotion) -> Option<[bool; 2]> {
+        let asked = self.gearing().power(motion.throttle);
+        let sides = [asked, motion.body.power].map(|power| power >= HALF_POWER);
+        (self.plant.spool() == Spool::StevensLewis).then_some(sides)
     }
 
     /// Altitude, heading, v, p, r, bank, power of the engine, aileron, rudder and throttle; SI. The surfaces are held from where

@@ -56,7 +56,7 @@ impl Flying<'_> {
 }
 
 /// A number of a flight.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 pub(super) enum Place {
     /// Of pitching and its actuator.
     Pitching(usize),
@@ -137,6 +137,11 @@ impl Flying<'_> {
         sensors.each_mut().map(|sensor| (None, sensor)).chain(around)
     }
 
+    /// On which sides of half power the engine is asked and is, where that matters.
+    pub(super) fn sides_of_half_power(&self) -> Option<[bool; 2]> {
+        self.course.propagation().sides_of_half_power(self.course.plant())
+    }
+
     fn seen(&mut self, sensor: usize, samples: usize) -> Option<&mut f64> {
         let k = self.course.k;
         self.sensors_mut().nth(sensor)?.1.past(k, samples)
@@ -214,6 +219,9 @@ pub(super) const ROLLING: usize = 3;
 pub(crate) const AILERON: usize = 7;
 /// Throttle that is asked for.
 pub(crate) const THROTTLE: usize = 9;
+
+/// Rates of roll and yaw.
+pub(super) const TURNING: [usize; 2] = [ROLLING, 4];
 
 /// True for what moves the wings and the nose aside: no number of an aircraft in the plane of its flight.
 pub(super) fn is_of_the_wings(place: &Place) -> bool {

@@ -1,8 +1,9 @@
-//! The flights about a trim whose small motions are asked: at rest in still air, nothing limited.
+//! The flights about a trim whose small motions are asked: at rest in air that does not change, nothing limited.
 
 use fspid_core::{Gains, Pid, PidConfig};
 
 use crate::actuator::Actuator;
+use crate::air::{Steady, Wind, sum_at};
 use crate::autopilot::{Autopilot, Entry, GlideSlope, Mode, OuterLoop, TotalEnergy};
 use crate::controller::Controller;
 use crate::error::SimError;
@@ -102,7 +103,15 @@ pub(super) fn still_alone(scenario: &Scenario, seeing: Seeing) -> Result<Scenari
     Ok(still)
 }
 
-/// The scenario at rest in still air with one mode engaged for good, nothing of it limited.
+/// The wind in which a flight begins, as if it stayed: what is counted over the ground moves by it more or less for the same
+/// motion through the air.
+fn wind_of_the_start(weather: &Weather) -> Option<Wind> {
+    let earth_m_s = sum_at(&weather.winds, &weather.course.place(0.0)).earth_m_s;
+    let blows = earth_m_s.iter().any(|part| *part != 0.0);
+    blows.then_some(Wind::Steady(Steady { earth_m_s }))
+}
+
+/// The scenario at rest in the wind of its start with one mode engaged for good, nothing of it limited.
 pub(super) fn still(
     scenario: &Scenario,
     autopilot: &Autopilot,
@@ -110,6 +119,11 @@ pub(super) fn still(
     seeing: Seeing,
 ) -> Result<Prepared, SimError> {
     let mut still = still_alone(scenario, seeing)?;
+    if let Some((air, own)) =
+        still.surroundings.weather.as_mut().zip(scenario.surroundings.weather.as_ref())
+    {
+        air.winds.extend(wind_of_the_start(own));
+    }
     let dt_s = scenario.timing.dt_s();
     // A scale would move the trim of what is not counted from it.
     let late = |sensor: Option<Sensor>| {
@@ -178,7 +192,7 @@ fn sensors(scenario: &Scenario) -> impl Iterator<Item = &Sensor> {
 }
 
 /// The gains that a controller has with everything at zero.
-fn at_rest(controller: &Controller) -> Gains<f64> {
+pub(super) fn at_rest(controller: &Controller) -> Gains<f64> {
     match controller {
         Controller::Fixed(pid) => pid.gains(),
         Controller::SelfTuning(fspid) => fspid.tuner().gains_at_rest(),

@@ -1,0 +1,160 @@
+//! Gains of outer loops that move with their error multiply what the loops hold, as those of the pitch loop do.
+
+use fspid_proof::Effort;
+use fspid_sim::Doubt;
+use fspid_study::analysis::{Analysis, Question, Stability};
+use fspid_study::certify::Certification;
+use fspid_study::simulation::{ControllerResult, Simulation};
+
+use crate::flying::{column, study};
+
+/// A Navion whose altitude is held by a self-tuner, and is to be a hair higher.
+const HOLD: &str = r#"
+schema = 1
+name = "Navion, altitude hold by a self-tuning loop"
+[aircraft]
+name = "navion"
+airspeed_ft_s = 176.0
+altitude_ft = 1000.0
+thrust = "with-speed"
+[actuator]
+time_constant_s = 0.1
+[loop]
+sample_period_s = 0.02
+duration_s = 10.0
+[setpoint]
+kind = "step"
+amplitude_deg = 0.0
+[[outer_loop]]
+name = "altitude"
+kind = "fspid"
+holds = "altitude"
+moves = "vertical speed"
+nominal = { kp = 0.15, ki = 0.005, kd = 0.0 }
+setpoint_weights = { proportional = 0.7 }
+supervisor = { table = "printed", range = 5.0, error_sign = "measurement-minus-setpoint", error_scale = 1.0, change = "rate", change_scale = 1.0, output_scale = { kp = 0.005, ki = 0.0, kd = 0.0 } }
+law = "memoryless"
+least = -5.0
+most = 5.0
+[[outer_loop]]
+name = "vertical speed"
+kind = "pid"
+holds = "vertical-speed"
+moves = "pitch"
+kp = 0.5
+ki = 0.5
+least = -10.0
+most = 10.0
+most_per_s = 2.0
+[[outer_loop]]
+name = "autothrottle"
+kind = "pid"
+holds = "airspeed"
+moves = "throttle"
+kp = 0.2
+ki = 0.02
+[[mode]]
+name = "level"
+engage = ["altitude", "vertical speed", "autothrottle"]
+[[mode]]
+name = "higher"
+at_s = 5.0
+engage = ["altitude", "vertical speed", "autothrottle"]
+target = { altitude_ft = 1000.0000001 }
+[[controller]]
+name = "PID"
+kind = "pid"
+kp = 0.82
+ki = 0.43
+kd = 0.165
+derivative_filter_s = 0.05
+"#;
+
+fn flown(set: &[&str]) -> ControllerResult {
+    let found = Simulation::of(&study(HOLD, set)).expect("it flies");
+    found.results.into_iter().next().expect("a controller")
+}
+
+/// Largest distances from 1000 ft within the 10 s before each of these times, m.
+fn off_m(result: &ControllerResult, before_s: [usize; 2]) -> [f64; 2] {
+    let altitude_m = column(&result.trace, "altitude_m");
+    before_s.map(|s| {
+        let seen = &altitude_m[50 * (s - 10)..50 * s];
+        seen.iter().map(|it| (it - 304.8).abs()).fold(0.0, f64::max)
+    })
+}
+
+fn doubt(result: &ControllerResult) -> Option<Doubt> {
+    result.at_rest.undecided.map(|it| it.doubt)
+}
+
+/// kp falls with the error, and 30 % of 305 m with it: "stable", proved, "stable with its outer loops", while the altitude swings
+/// by 20 m.
+#[test]
+fn a_self_tuner_around_the_pitch_loop_grows_by_the_target_that_its_gains_multiply() {
+    let long = "loop.duration_s=100.0";
+    for set in [&[long][..], &[long, "outer_loop[0].setpoint_weights.proportional=0.8"]] {
+        let flight = flown(set);
+        let unstable = flight.at_rest.unstable.expect("it grows");
+        assert_eq!(unstable.mode, Some(0));
+        let [before, after] = off_m(&flight, [80, 100]);
+        let doubling_s = 20.0 * std::f64::consts::LN_2 / (after / before).ln();
+        let told_s = unstable.doubling_s;
+        assert!((doubling_s / told_s - 1.0).abs() < 0.02, "{doubling_s} {told_s} {after}");
+    }
+    let study = study(HOLD, &[]);
+    let analysis = Analysis::of(&study, Question::default()).expect("a loop");
+    assert_eq!(analysis.stability(), Stability::Unstable);
+    let text = analysis.text();
+    assert!(text.contains("mode level: UNSTABLE with its outer loops"), "{text}");
+    let proofs = Certification::of(&study, None, &Effort::default()).expect("asked");
+    assert!(
+        proofs.text().contains("UNSTABLE with the outer loops of modes level"),
+        "{}",
+        proofs.text()
+    );
+    // With a weight of 1 no constant is multiplied, and with one of 0.95 every side of the rules holds.
+    for weight in ["1.0", "0.95"] {
+        let weight = format!("outer_loop[0].setpoint_weights.proportional={weight}");
+        let flight = flown(&[long, &weight]);
+        assert!(flight.at_rest.unstable.is_none() && doubt(&flight).is_none());
+        let [before, after] = off_m(&flight, [30, 100]);
+        assert!(after < before && after < 1e-6, "{weight} {after}");
+    }
+}
+
+/// What the gains gather follows late, and takes the same constants.
+#[test]
+fn gains_around_the_pitch_loop_that_remember_grow_by_the_target_too() {
+    let remembers = ["outer_loop[0].law=accumulating", "outer_loop[0].leakage_per_s=0.5"];
+    let flight = flown(&[&remembers[..], &["loop.duration_s=60.0"]].concat());
+    assert_eq!(flight.at_rest.unstable.expect("it grows").mode, Some(0));
+    assert!(off_m(&flight, [30, 60])[1] > 1.0);
+    let weak = "outer_loop[0].setpoint_weights.proportional=0.97";
+    let flight = flown(&[&remembers[..], &[weak]].concat());
+    assert!(flight.at_rest.unstable.is_none() && doubt(&flight).is_none());
+}
+
+#[test]
+fn where_nobody_can_tell_what_gains_around_the_pitch_loop_do_it_is_undecided() {
+    // One side of the rules alone grows, and no motion was seen to.
+    let one_side = "outer_loop[0].setpoint_weights.proportional=0.9";
+    // Gains that gather without end, and an error that stays.
+    for set in [one_side, "outer_loop[0].law=accumulating", "outer_loop[0].nominal.ki=0.0"] {
+        let flight = flown(&[set]);
+        assert!(flight.at_rest.unstable.is_none());
+        assert_eq!(doubt(&flight), Some(Doubt::OuterGains), "{set}");
+    }
+    let study = study(HOLD, &[one_side]);
+    let analysis = Analysis::of(&study, Question::default()).expect("a loop");
+    assert_eq!(analysis.stability(), Stability::Undecided);
+    let text = analysis.text();
+    assert!(text.contains("mode level: UNDECIDED with its outer loops"), "{text}");
+    assert!(text.contains("multiply what it holds"), "{text}");
+    let proofs = Certification::of(&study, None, &Effort::default()).expect("asked");
+    assert!(
+        proofs.text().contains("UNDECIDED with the outer loops of modes level"),
+        "{}",
+        proofs.text()
+    );
+}
