@@ -83,9 +83,13 @@ pub enum LimitError {
     },
     /// No travel to ask the limit at.
     #[error(
-        "there is no travel to ask the limit at: no controller of the scenario flew to its end and moved the elevator; give some, e.g. `--travel-deg 8,10,15`"
+        "there is no travel to ask the limit at, since no controller of the scenario has one that counts; give some, e.g. `--travel-deg 8,10,15`:{}",
+        .0.iter().map(|(name, why)| format!("\n    {name}: {why}")).collect::<String>()
     )]
-    NoTravel,
+    NoTravel(
+        /// The controllers, and what each did instead.
+        Vec<(String, String)>,
+    ),
     /// Somebody did not want the answer any more.
     #[error("it was stopped before there was an answer")]
     Stopped,

@@ -95,13 +95,13 @@ pub fn row_at<'a>(rows: &'a [PathRow], path: &str) -> Option<&'a PathRow> {
 
 /// The name of an entry of the list at some steps; none where entries have no names, or too few are there.
 fn name_of_entry(all: &[(Vec<Step>, &PathRow)], list: &[Step], index: usize) -> Option<String> {
-    let names = all.iter().filter_map(|(steps, row)| match steps.strip_prefix(list)? {
+    let mut names = all.iter().filter_map(|(steps, row)| match steps.strip_prefix(list)? {
         [Step::Name(name), Step::Name(key)] if key == "name" => {
             (row.value.as_ref() == Some(&quoted(name))).then_some(name)
         }
         _ => None,
     });
-    names.cloned().nth(index)
+    names.nth(index).cloned()
 }
 
 /// The answer for people.

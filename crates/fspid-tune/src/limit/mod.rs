@@ -48,6 +48,9 @@ pub enum Ladder {
     None,
 }
 
+/// What is told of a controller that took no travel.
+const STILL: &str = "did not move the elevator";
+
 /// A controller's name, and what it reached and took, rad, or why that cannot be compared.
 type Compared = (String, Result<(f64, f64), String>);
 
@@ -132,7 +135,10 @@ impl Answer {
             .collect();
         let travels_rad = ladder(&options.ladder, &flown);
         if travels_rad.is_empty() && options.ladder != Ladder::None {
-            return Err(LimitError::NoTravel);
+            let why = |it: Result<_, String>| it.err().unwrap_or_else(|| STILL.to_owned());
+            return Err(LimitError::NoTravel(
+                flown.into_iter().map(|(name, it)| (name, why(it))).collect(),
+            ));
         }
         let mut asker = Asker::new(study, &question, &options, &flown, stop);
         let (count, whole) = (travels_rad.len(), travels_rad.len() + flown.len());
