@@ -3,6 +3,7 @@
 use fspid_core::Gains;
 use fspid_lti::{eigenvalues, modulus};
 
+use crate::air::{Steady, Wind, sum_at};
 use crate::aircraft::{AircraftPlant, Change, Standing, step_s};
 use crate::controller::Controller;
 use crate::error::SimError;
@@ -50,7 +51,28 @@ pub(crate) fn growth(
         let mut doubts = places.iter().map(|it| of_place(scenario, it, (controller, gains)));
         found.undecided = doubts.find_map(Result::transpose).transpose()?;
     }
+    let last = standings.iter().rfind(|it| it.by != Change::Fuel);
+    if let Some((own, standing)) = in_wind_of_the_end(scenario).zip(last).filter(|_| found.holds())
+    {
+        let of_it =
+            standing.flown_in(&own).map(|own| of_modes(&own, standing, (controller, gains)));
+        let grown = of_it.transpose()?.and_then(|it| it.certain);
+        found.undecided = grown.map(|Unstable { spectral_radius, .. }| {
+            Undecided::at_trim(Doubt::WindOfTheEnd { spectral_radius })
+        });
+    }
     Ok(found)
+}
+
+/// The scenario with an autopilot in the wind of its end as if it stayed, where that is another one than that of the start.
+fn in_wind_of_the_end(scenario: &Scenario) -> Option<Scenario> {
+    let weather = scenario.autopilot.as_ref().and(scenario.surroundings.weather.as_ref())?;
+    let [start, end] = [0.0, scenario.timing.end_s()]
+        .map(|time_s| sum_at(&weather.winds, &weather.course.place(time_s)).earth_m_s);
+    let mut own = scenario.clone();
+    own.surroundings.weather.as_mut()?.winds = vec![Wind::Steady(Steady { earth_m_s: end })];
+    let differs = start.iter().zip(&end).any(|(one, other)| (one - other).abs() > 0.0);
+    differs.then_some(own)
 }
 
 fn doubted(doubt: Doubt) -> GrowthAtRest {

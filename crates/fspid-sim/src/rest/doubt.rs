@@ -91,6 +91,14 @@ pub enum Doubt {
     /// A mode of the autopilot leads an aircraft to no flight within its limits.
     #[error("{0}: a longer flight shows it")]
     LedNowhere(Led),
+    /// In the wind of the end of the flight, if it stays, a mode of the autopilot grows.
+    #[error(
+        "in the wind of the end of the flight, if it stays, a mode of the autopilot is unstable (spectral radius {spectral_radius:.6}): a longer flight shows it"
+    )]
+    WindOfTheEnd {
+        /// Spectral radius of everything that the mode engages.
+        spectral_radius: f64,
+    },
     /// The trim of an aircraft lies on a kink of its data, or at a jump of its engine, where no linear model is that of its small
     /// motions.
     #[error(
@@ -132,6 +140,7 @@ impl Doubt {
             | Self::HeldOn { .. }
             | Self::Led { .. }
             | Self::LedNowhere(_)
+            | Self::WindOfTheEnd { .. }
             | Self::Kink
             | Self::FastMotion
             | Self::OuterGains

@@ -97,6 +97,22 @@ fn a_mode_is_asked_in_the_wind_in_which_the_flight_begins() {
     }
 }
 
+/// It was asked in the wind of the start alone, "stable" of a flight that ends in a headwind in which it grows.
+#[test]
+fn a_mode_is_asked_in_the_wind_in_which_the_flight_ends() {
+    let comes_to = |speed_m_s: f64| {
+        let rows = format!("time_s = [0.0, 10.0, 20.0]\nnorth_m_s = [0.0, 0.0, {}]", -speed_m_s);
+        flown(&format!("{PATH}[wind]\nkind = \"table\"\n{rows}\n"), &[])
+    };
+    let flight = comes_to(15.0);
+    assert!(flight.at_rest.unstable.is_none());
+    let told = doubt(&flight);
+    assert!(matches!(told, Some(Doubt::WindOfTheEnd { .. })), "{told:?}");
+    assert!(swing_rad(&flight, [50, 60]) > swing_rad(&flight, [30, 40]));
+    let flight = comes_to(8.0);
+    assert!(flight.at_rest.unstable.is_none() && doubt(&flight).is_none());
+}
+
 /// Side speed, roll, yaw and bank of an aircraft without lateral derivatives are one pole at 1, four times. Rounding made of them
 /// what doubles in 44800 s, or 30100 with a millionth of a metre a second more.
 #[test]
