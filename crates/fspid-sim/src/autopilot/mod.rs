@@ -3,7 +3,7 @@
 //!
 //! # The cascade
 //! An [`OuterLoop`] holds one [`Quantity`] of the flight and moves the pitch set-point, the throttle, the bank or the target
-//! of another outer loop. It is a [`Controller`](crate::Controller) like the one under test, fixed or self-tuning, in SI
+//! of another outer loop. It is a [`Controller`] like the one under test, fixed or self-tuning, in SI
 //! units of what it holds and moves. [`TotalEnergy`] holds altitude and airspeed together and moves pitch and throttle
 //! together. All answer once a sample, the outermost first, before the pitch controller does.
 //!

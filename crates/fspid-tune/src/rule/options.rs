@@ -101,8 +101,6 @@ pub struct Options {
     pub relay: RelayOptions,
 }
 
-/// One degree.
-
 impl Default for Options {
     /// A derivative filter of Td/10 (2 to 20 are usual, Åström and Hägglund), poles damped like a Butterworth pair, a
     /// degree of pitch error as dear as a degree of command and as an integral of two degree seconds, a relay of 1 deg
