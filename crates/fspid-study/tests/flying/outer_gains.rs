@@ -5,6 +5,8 @@ use fspid_sim::Doubt;
 use fspid_study::analysis::{Analysis, Question, Stability};
 use fspid_study::certify::Certification;
 use fspid_study::simulation::{ControllerResult, Simulation};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use crate::flying::{column, study};
 
@@ -157,4 +159,60 @@ fn where_nobody_can_tell_what_gains_around_the_pitch_loop_do_it_is_undecided() {
         "{}",
         proofs.text()
     );
+}
+
+/// Settings of a self-tuner around the pitch loop, drawn.
+fn drawn(seed: u64) -> Vec<String> {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let mut part = || (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
+    let mut between = |lower: f64, upper: f64| lower + (upper - lower) * part();
+    let [kp, ki] = [between(0.05, 0.3), between(0.002, 0.02)];
+    let [by_kp, by_ki] = [between(-4.0, -2.0), between(-6.0, -4.0)].map(|it| 10_f64.powf(it));
+    let weight = between(0.3, 1.2);
+    let mut set = vec![
+        "loop.duration_s=200.0".to_owned(),
+        format!("outer_loop[0].nominal={{ kp = {kp}, ki = {ki}, kd = 0.0 }}"),
+        format!("outer_loop[0].setpoint_weights.proportional={weight}"),
+        format!("outer_loop[0].supervisor.output_scale={{ kp = {by_kp}, ki = {by_ki}, kd = 0.0 }}"),
+    ];
+    if between(0.0, 1.0) < 0.4 {
+        set.push("outer_loop[0].law=accumulating".to_owned());
+        set.push(format!("outer_loop[0].leakage_per_s={}", between(0.1, 2.0)));
+    }
+    if between(0.0, 1.0) < 0.4 {
+        set.push("outer_loop[0].integral=literal".to_owned());
+    }
+    if between(0.0, 1.0) < 0.3 {
+        set.push(format!("outer_loop[0].supervisor.change_scale={}", between(0.0, 5.0)));
+    }
+    if between(0.0, 1.0) < 0.3 {
+        set.push("outer_loop[0].supervisor.table=mirrored".to_owned());
+    }
+    set
+}
+
+/// From a hair off its target, what is called stable dies out, and what doubles within 20 s has left.
+#[test]
+fn what_is_told_of_drawn_self_tuners_around_the_pitch_loop_is_flown() {
+    let mut told = [0; 2];
+    for seed in 0..60 {
+        let set = drawn(seed);
+        let set: Vec<&str> = set.iter().map(String::as_str).collect();
+        let flight = flown(&set);
+        let [before, after] = off_m(&flight, [140, 200]);
+        match (flight.at_rest.unstable, doubt(&flight)) {
+            (Some(unstable), _) => {
+                told[0] += 1;
+                let is_slow = unstable.doubling_s > 20.0;
+                assert!(is_slow || after > 1e-6, "{set:?}: {before} {after} {unstable:?}");
+            }
+            (None, None) => {
+                told[1] += 1;
+                // The target itself is 3e-8 m away.
+                assert!(after < before.max(1e-7), "{set:?}: {before} {after}");
+            }
+            (None, Some(_)) => {}
+        }
+    }
+    assert_eq!(told, [14, 40]);
 }
