@@ -77,15 +77,15 @@ mod signals {
 fn heard(at_the_keys: bool) {
     // Off the line of the progress.
     note("");
-    let insists = at_the_keys && asked_for() >= PATIENCE;
-    stop("; once more ends at once", insists);
+    let waited = asked_for();
+    stop("; Ctrl-C again ends at once", at_the_keys && waited >= PATIENCE);
 }
 
-/// Stops as Ctrl-C does, for a reason that is told.
+/// Stops as Ctrl-C does, for a reason that is told; where that was asked for already, at once.
 pub(crate) fn ask(reason: String) {
     note("");
     exit::stops_for(reason);
-    stop("", false);
+    stop("", asked());
 }
 
 /// Since when somebody wants to stop.
