@@ -56,10 +56,11 @@ pub(crate) fn growth(
     {
         let of_it =
             standing.flown_in(&own).map(|own| of_modes(&own, standing, (controller, gains)));
-        let grown = of_it.transpose()?.and_then(|it| it.certain);
-        found.undecided = grown.map(|Unstable { spectral_radius, .. }| {
+        let GrowthAtRest { certain, undecided } = of_it.transpose()?.unwrap_or_default();
+        let grown = certain.map(|Unstable { spectral_radius, .. }| {
             Undecided::at_trim(Doubt::WindOfTheEnd { spectral_radius })
         });
+        found.undecided = grown.or(undecided);
     }
     Ok(found)
 }

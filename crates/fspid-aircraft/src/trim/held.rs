@@ -6,8 +6,8 @@ use super::{Search, Trim, TrimPoint, TrimTarget};
 use crate::aerodynamics::ForceModel;
 use crate::aircraft::Aircraft;
 
-/// What is held is moved in steps of no more than this, and shorter ones where it takes them: each begins near where the last one ended. Angles in rad, airspeed as a
-/// part of itself, the throttle in its measure.
+/// What is held is moved in steps of no more than this, and shorter ones where it takes them: each begins near where the last one
+/// ended. Angles in rad, airspeed as a part of itself, the throttle in its measure.
 const STEP: f64 = 0.02;
 /// The same of altitude, m, which moves little beside.
 const STEP_M: f64 = 100.0;

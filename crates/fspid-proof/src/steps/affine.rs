@@ -48,7 +48,7 @@ const SPARE: usize = 64;
 
 thread_local! {
     /// Vectors of numbers that are gone. Each sample makes new numbers of the size of the old ones: to ask for their memory
-    /// anew, and to clear it, was a quarter of a re-check.
+    /// anew, and to clear it, was a fifth of a re-check.
     static VECTORS: RefCell<Vec<Vec<f64>>> = const { RefCell::new(Vec::new()) };
 }
 
