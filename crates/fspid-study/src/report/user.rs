@@ -69,7 +69,11 @@ pub(super) fn drawing<'a>(study: &'a Study, simulation: &'a Simulation) -> Drawi
 
 fn outcome(result: &ControllerResult) -> Outcome {
     let verdict = result.verdict();
+    // Nobody knows what a longer flight of it comes to: the reason stands below, among the warnings.
+    let is_undecided = result.at_rest.undecided.is_some();
     let (class, word) = match verdict {
+        Verdict::Settled if is_undecided => ("fair", "! Settled, stability undecided".to_owned()),
+        Verdict::Flown if is_undecided => ("fair", "! Flown, stability undecided".to_owned()),
         Verdict::Settled => ("good", "\u{2713} Settled".to_owned()),
         Verdict::Flown => ("good", "\u{2713} Flown".to_owned()),
         Verdict::NotSettled { .. } => ("fair", "! Not settled".to_owned()),

@@ -12,16 +12,7 @@ use fspid_study::report;
 use fspid_study::simulation::{ControllerResult, Simulation};
 use serde_json::Value;
 
-use crate::flying::{NAVION, study, trimmed};
-
-fn result(text: &str, set: &[&str]) -> ControllerResult {
-    let found = Simulation::of(&study(text, set)).expect("it flies");
-    found.results.into_iter().next().expect("a controller")
-}
-
-fn doubt(result: &ControllerResult) -> Option<Doubt> {
-    result.at_rest.undecided.map(|it| it.doubt)
-}
+use crate::flying::{NAVION, doubt, result, study, trimmed};
 
 /// A throttle that answers airspeed and its rate.
 const THROTTLE: &str = r#"
@@ -473,6 +464,19 @@ fn a_mode_without_a_throttle_is_asked_at_the_airspeed_that_its_path_makes() {
     assert!(doubt(&limited).is_none() && limited.at_rest.unstable.is_none());
     let airspeed_m_s = limited.trace.column("airspeed_m_s").expect("it has one");
     assert!(airspeed_m_s.iter().all(|it| *it < 52.0) && swing_deg(&limited) < 0.01);
+}
+
+/// A green mark stood beside a flight whose stability nobody knows.
+#[test]
+fn the_card_of_a_flight_that_is_undecided_at_rest_is_no_good_one() {
+    let card = |text: &str| {
+        let study = study(text, &[]);
+        let simulation = Simulation::of(&study).expect("it flies");
+        report::of_simulation(&study, &simulation)
+    };
+    let led = card(&two_modes(true, "airspeed_m_s = 78.0"));
+    assert!(led.contains("! Flown, stability undecided") && !led.contains("\u{2713} Flown"));
+    assert!(card(&two_modes(true, "airspeed_m_s = 48.0")).contains("\u{2713} Flown"));
 }
 
 /// A Navion at 42 m/s with an air brake out, which is drawn in.

@@ -3,7 +3,7 @@
 use fspid_sim::{Doubt, EarlyEnd, EndCause};
 use fspid_study::metrics::Verdict;
 
-use crate::flying::what_is_held::result;
+use crate::flying::result;
 
 /// An unstable plant under a load that it holds with nine tenths of its limit, and to which it comes with a jump.
 const AT_A_LIMIT: &str = r#"

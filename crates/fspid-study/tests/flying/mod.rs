@@ -26,8 +26,8 @@ mod what_is_held;
 mod wind_table;
 
 use fspid_scenario::file::{self, Study};
-use fspid_sim::{AircraftPlant, Plant, Trace};
-use fspid_study::simulation::Simulation;
+use fspid_sim::{AircraftPlant, Doubt, Plant, Trace};
+use fspid_study::simulation::{ControllerResult, Simulation};
 
 /// A quiet flight of the Navion at its reference speed.
 const NAVION: &str = r#"
@@ -77,8 +77,18 @@ fn refusal(set: &[&str]) -> String {
 
 /// The trace of the only controller.
 fn flown(text: &str, set: &[&str]) -> Trace {
-    let simulation = Simulation::of(&study(text, set)).expect("it flies");
-    simulation.results.into_iter().next().expect("there is a controller").trace
+    result(text, set).trace
+}
+
+/// What the first controller's flight comes to.
+fn result(text: &str, set: &[&str]) -> ControllerResult {
+    let found = Simulation::of(&study(text, set)).expect("it flies");
+    found.results.into_iter().next().expect("a controller")
+}
+
+/// Why it is undecided whether a flight holds at rest, where it is.
+fn doubt(result: &ControllerResult) -> Option<Doubt> {
+    result.at_rest.undecided.map(|it| it.doubt)
 }
 
 /// A column that the flight has.

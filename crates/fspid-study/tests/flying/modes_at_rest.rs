@@ -1,20 +1,11 @@
 //! What small motions of an autopilot's modes are asked with: the wind, an aircraft that nothing turns, an engine that jumps.
 
 use fspid_sim::Doubt;
-use fspid_study::simulation::{ControllerResult, Simulation};
+use fspid_study::simulation::ControllerResult;
 
-use crate::flying::{NAVION, column, study};
+use crate::flying::{NAVION, column, doubt, result};
 
 const CAPTURE: &str = include_str!("../../../../scenarios/gallery/altitude-capture.toml");
-
-fn flown(text: &str, set: &[&str]) -> ControllerResult {
-    let found = Simulation::of(&study(text, set)).expect("it flies");
-    found.results.into_iter().next().expect("a controller")
-}
-
-fn doubt(result: &ControllerResult) -> Option<Doubt> {
-    result.at_rest.undecided.map(|it| it.doubt)
-}
 
 /// A small unmanned aircraft that holds its path over the ground.
 const PATH: &str = r#"
@@ -77,7 +68,7 @@ fn swing_rad(result: &ControllerResult, [from_s, to_s]: [usize; 2]) -> f64 {
 fn a_mode_is_asked_in_the_wind_in_which_the_flight_begins() {
     let wind = |wind: &str| format!("{PATH}[wind]\n{wind}\n");
     let head = wind("kind = \"steady\"\nspeed_m_s = 15.0\nfrom_deg = 0.0");
-    let flight = flown(&head, &[]);
+    let flight = result(&head, &[]);
     let told = flight.at_rest.unstable.expect("it grows");
     let [before, after] = [[20, 30], [50, 60]].map(|times| swing_rad(&flight, times));
     let doubling_s = 30.0 * std::f64::consts::LN_2 / (after / before).ln();
@@ -85,13 +76,13 @@ fn a_mode_is_asked_in_the_wind_in_which_the_flight_begins() {
     assert!((doubling_s / told.doubling_s - 1.0).abs() < 0.1, "{doubling_s} {told:?}");
     // So it is of 8.7 m/s near the ground that are 15 m/s at the height of the start.
     let shear = "kind = \"log-shear\"\nw20_m_s = 8.7\nfrom_deg = 0.0\nroughness_m = 0.05";
-    assert!(flown(&wind(shear), &[]).at_rest.unstable.is_some());
+    assert!(result(&wind(shear), &[]).at_rest.unstable.is_some());
     for calm in [
         PATH.to_owned(),
         head.replace("15.0", "8.0"),
         head.replace("from_deg = 0.0", "from_deg = 180.0"),
     ] {
-        let flight = flown(&calm, &[]);
+        let flight = result(&calm, &[]);
         assert!(flight.at_rest.unstable.is_none() && doubt(&flight).is_none());
         assert!(swing_rad(&flight, [50, 60]) < swing_rad(&flight, [20, 30]));
     }
@@ -102,7 +93,7 @@ fn a_mode_is_asked_in_the_wind_in_which_the_flight_begins() {
 fn a_mode_is_asked_in_the_wind_in_which_the_flight_ends() {
     let comes_to = |speed_m_s: f64| {
         let rows = format!("time_s = [0.0, 10.0, 20.0]\nnorth_m_s = [0.0, 0.0, {}]", -speed_m_s);
-        flown(&format!("{PATH}[wind]\nkind = \"table\"\n{rows}\n"), &[])
+        result(&format!("{PATH}[wind]\nkind = \"table\"\n{rows}\n"), &[])
     };
     let flight = comes_to(15.0);
     assert!(flight.at_rest.unstable.is_none());
@@ -122,7 +113,7 @@ fn an_aircraft_that_nothing_turns_aside_is_not_called_unstable_by_rounding() {
     for airspeed in ["60.0", "60.000001", "60.1"] {
         let speed = format!("airspeed_m_s = {airspeed}");
         let text = twin.replace("airspeed_ft_s = 176.0", &speed);
-        let flight = flown(&text, &["loop.duration_s=10.0"]);
+        let flight = result(&text, &["loop.duration_s=10.0"]);
         assert!(flight.at_rest.unstable.is_none(), "{airspeed} {:?}", flight.at_rest.unstable);
     }
 }
@@ -133,7 +124,7 @@ fn an_aircraft_that_nothing_turns_aside_is_not_called_unstable_by_rounding() {
 fn a_trim_at_half_the_power_of_an_engine_that_jumps_there_is_undecided_and_one_beside_it_is_not() {
     let asked = |airspeed_ft_s: f64, text: &str| {
         let speed = format!("aircraft.airspeed_ft_s={airspeed_ft_s}");
-        flown(text, &[&speed, "aircraft.mass_kg=620.0"])
+        result(text, &[&speed, "aircraft.mass_kg=620.0"])
     };
     let navion = format!("{NAVION}{ENGINE}");
     for airspeed_ft_s in [126.98, 127.0, 127.02] {

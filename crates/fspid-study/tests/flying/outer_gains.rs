@@ -4,11 +4,11 @@ use fspid_proof::Effort;
 use fspid_sim::Doubt;
 use fspid_study::analysis::{Analysis, Question, Stability};
 use fspid_study::certify::Certification;
-use fspid_study::simulation::{ControllerResult, Simulation};
+use fspid_study::simulation::ControllerResult;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use crate::flying::{column, study};
+use crate::flying::{column, doubt, result, study};
 
 /// A Navion whose altitude is held by a self-tuner, and is to be a hair higher.
 const HOLD: &str = r#"
@@ -73,8 +73,7 @@ derivative_filter_s = 0.05
 "#;
 
 fn flown(set: &[&str]) -> ControllerResult {
-    let found = Simulation::of(&study(HOLD, set)).expect("it flies");
-    found.results.into_iter().next().expect("a controller")
+    result(HOLD, set)
 }
 
 /// Largest distances from 1000 ft within the 10 s before each of these times, m.
@@ -84,10 +83,6 @@ fn off_m(result: &ControllerResult, before_s: [usize; 2]) -> [f64; 2] {
         let seen = &altitude_m[50 * (s - 10)..50 * s];
         seen.iter().map(|it| (it - 304.8).abs()).fold(0.0, f64::max)
     })
-}
-
-fn doubt(result: &ControllerResult) -> Option<Doubt> {
-    result.at_rest.undecided.map(|it| it.doubt)
 }
 
 /// kp falls with the error, and 30 % of 305 m with it: "stable", proved, "stable with its outer loops", while the altitude swings

@@ -5,12 +5,7 @@ use fspid_sim::Doubt;
 use fspid_study::metrics::Verdict;
 use fspid_study::simulation::{ControllerResult, Simulation};
 
-use crate::flying::study;
-
-pub(super) fn result(text: &str, set: &[&str]) -> ControllerResult {
-    let found = Simulation::of(&study(text, set)).expect("it flies");
-    found.results.into_iter().next().expect("a controller")
-}
+use crate::flying::{result, study};
 
 fn is_unstable(result: &ControllerResult) -> bool {
     matches!(result.metrics.verdict, Verdict::Unstable { .. })

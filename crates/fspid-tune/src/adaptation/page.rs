@@ -118,7 +118,7 @@ impl Answer {
     fn steps_figure(&self) -> Svg {
         let rows = self.steps.iter().map(|step| IntervalRow {
             name: self.called(step).1.to_owned(),
-            words: step.share.map_or(String::new(), |it| format!("{:.0} %", 100.0 * it.value)),
+            words: step.share.map_or(String::new(), |it| share(Estimate { interval: None, ..it })),
             marks: marks(step.iae, step.travel),
         });
         interval_figure("What comes in changes", rows.collect())
