@@ -10,7 +10,7 @@ use crate::error::SimError;
 use crate::in_flight::{Alone, Seeing, poles_of_mode, radii_alone};
 use crate::leads_to::{Place, places};
 use crate::plant::Plant;
-use crate::rest::{Doubt, RestPoint};
+use crate::rest::{Doubt, Rest, RestPoint};
 use crate::scenario::Scenario;
 use crate::stability::{
     GrowthAtRest, MODE_RADIUS, Undecided, Unstable, doubling_s, growth_of_plant,
@@ -89,6 +89,14 @@ fn of_standing(
     let Some(plant) = scenario.plant.aircraft() else { return Ok(GrowthAtRest::default()) };
     let linear = plant.linear()?;
     let mut found = growth_of_plant(scenario, (standing.from_s, &linear), controller, gains)?;
+    if scenario.autopilot.is_some() && found.certain.is_some() {
+        // With a throttle that stays, pitch may run away by itself where the modes hold airspeed and path too. They are asked
+        // below with the gains at rest, so that what more a rest has is asked of pitch alone.
+        let rests = Rest::all(scenario, &linear, controller, gains);
+        if rests.iter().all(|rest| rest.adds_nothing_to(gains)) {
+            found.certain = None;
+        }
+    }
     // Differences about a kink are of no motion.
     if found.certain.is_some() || linear.is_between_slopes() {
         return Ok(found);

@@ -61,7 +61,13 @@ fn verdict(found: &AnalysedLoop) -> String {
         return format!("UNDECIDED {gains}: {doubt}");
     }
     if stability != Stability::Stable {
-        return format!("{}{} {gains}{held}", stability.word().to_uppercase(), plants(bad));
+        let modes_hold = found.modes.iter().all(|it| it.stability() == Stability::Stable);
+        let (alone, with_modes) = match (modes, modes_hold && stability == Stability::Unstable) {
+            (1.., true) => (" by itself", "; stable with the outer loops of each mode"),
+            _ => ("", ""),
+        };
+        let word = stability.word().to_uppercase();
+        return format!("{word}{alone}{} {gains}{held}{with_modes}", plants(bad));
     }
     let unproved = found.plants.iter().filter(|plant| plant.margins.is_err()).count();
     if unproved > 0 {

@@ -1,9 +1,10 @@
 //! What small motions of an autopilot's modes are asked with: the wind, an aircraft that nothing turns, an engine that jumps.
 
 use fspid_sim::Doubt;
+use fspid_study::analysis::{Analysis, Question};
 use fspid_study::simulation::ControllerResult;
 
-use crate::flying::{NAVION, column, doubt, result};
+use crate::flying::{NAVION, column, doubt, result, study};
 
 const CAPTURE: &str = include_str!("../../../../scenarios/gallery/altitude-capture.toml");
 
@@ -165,3 +166,22 @@ ki = 0.6
 name = "level"
 engage = ["altitude", "autothrottle"]
 "#;
+
+/// Pitch that is held in a climb with a throttle that stays runs away in minutes. The modes hold the path and the airspeed, too,
+/// and fly for half an hour; the flight used to be called unstable, and its requirements not met.
+#[test]
+fn a_pitch_loop_that_grows_by_itself_is_flown_as_its_modes_hold_it() {
+    let climbing = ["aircraft.climb_angle_deg=2.716"];
+    let flight = result(CAPTURE, &climbing);
+    assert_eq!((flight.at_rest.unstable, flight.at_rest.undecided), (None, None));
+    let long = result(CAPTURE, &[climbing[0], "loop.duration_s=1800.0"]);
+    let path_rad = column(&long.trace, "flight_path_rad");
+    let late = &path_rad[path_rad.len() / 2..];
+    let ends = |ends: [f64; 2], it: &f64| [ends[0].min(*it), ends[1].max(*it)];
+    let [least, most] = late.iter().fold([f64::INFINITY, f64::NEG_INFINITY], ends);
+    assert!(most - least < 1e-6, "{least} to {most}");
+    let asked = study(CAPTURE, &climbing);
+    let text = Analysis::of(&asked, Question::default()).expect("a loop").text();
+    let told = "UNSTABLE by itself with kp 0.8200, ki 0.4300, kd 0.1650; stable with the outer loops of each mode";
+    assert!(text.contains(told), "{text}");
+}
