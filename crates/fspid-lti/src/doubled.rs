@@ -2,6 +2,8 @@
 //!
 //! A number is the unevaluated sum of two 64-bit ones. Only plain additions and multiplications: no fused operation.
 
+use fspid_numeric::rounding;
+
 use crate::complex::Complex;
 use crate::matrix::Matrix;
 
@@ -12,31 +14,19 @@ pub(crate) struct Doubled {
     pub(crate) low: f64,
 }
 
-/// 2^27 + 1: multiplying by it splits 53 bits into 26 and 26.
-const SPLITTER: f64 = 134_217_729.0;
-
 impl Doubled {
     pub(crate) const ZERO: Self = Self { high: 0.0, low: 0.0 };
 
     /// Exact sum of two numbers.
-    ///
-    /// # Source
-    /// D. E. Knuth, The Art of Computer Programming, volume 2, section 4.2.2, theorem B.
     pub(crate) fn exact_sum(left: f64, right: f64) -> Self {
-        let high = left + right;
-        let part = high - left;
-        Self { high, low: (left - (high - part)) + (right - part) }
+        let (high, low) = rounding::exact_sum(left, right);
+        Self { high, low }
     }
 
     /// Exact product of two numbers below 2^996.
-    ///
-    /// # Source
-    /// T. J. Dekker, A floating-point technique for extending the available precision, Numer. Math. 18 (1971) 224.
     fn exact_product(left: f64, right: f64) -> Self {
-        let high = left * right;
-        let (a, b) = split(left);
-        let (c, d) = split(right);
-        Self { high, low: ((a * c - high) + a * d + b * c) + b * d }
+        let (high, low) = rounding::exact_product(left, right);
+        Self { high, low }
     }
 
     /// Sum, to about 2^-104 of the larger term.
@@ -132,12 +122,6 @@ impl From<f64> for Doubled {
     fn from(high: f64) -> Self {
         Self { high, low: 0.0 }
     }
-}
-
-fn split(value: f64) -> (f64, f64) {
-    let scaled = SPLITTER * value;
-    let high = scaled - (scaled - value);
-    (high, value - high)
 }
 
 /// A complex number of two [`Doubled`] parts.

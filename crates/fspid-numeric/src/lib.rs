@@ -7,6 +7,7 @@
 //! - [`lanes`]: numbers side by side.
 //! - [`matrix`](mod@matrix): triangles, rotations and balancing of small matrices, over slices.
 //! - [`quadrature`]: integrals with bounds that are proved.
+//! - [`rounding`]: what a sum and a product lose, and which float lies above or below.
 //! - [`straight`]: elementary functions that a loop over lanes makes vectors of.
 //! - [`sums`]: weighted sums of long vectors.
 //! - [`units`]: what a foot, a pound, a knot and a degree are.
@@ -32,6 +33,7 @@ pub mod lanes;
 pub mod matrix;
 pub mod quadrature;
 mod real;
+pub mod rounding;
 pub mod scalar;
 pub mod straight;
 pub mod sums;

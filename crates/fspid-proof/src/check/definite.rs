@@ -2,11 +2,12 @@
 
 use fspid_lti::Matrix;
 
+use fspid_numeric::rounding::sum_up;
+
 use super::error::NotProved;
 use super::exponential::{require_bounded, require_finite};
 use super::factor::{cholesky, inverse};
 use super::matrix::IntervalMatrix;
-use super::rounding::sum_up;
 
 /// Proves that every symmetric matrix inside a square one is positive definite.
 ///

@@ -1,13 +1,13 @@
 //! Enclosures of the matrix exponential and of a sampled system.
 
 use fspid_lti::{LtiError, Matrix};
+use fspid_numeric::rounding::sum_up;
 use fspid_numeric::scalar::Interval;
 
 use super::balance::balance;
 use super::error::NotProved;
 use super::matrix::IntervalMatrix;
 use super::product::square_beyond_identity;
-use super::rounding::sum_up;
 
 /// Terms of the Taylor series. With a norm of at most 1/4 the rest is below
 /// $0.25^{18} / 19! < 10^{-27}$ of what is expanded.

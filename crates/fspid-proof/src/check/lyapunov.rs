@@ -2,13 +2,13 @@
 
 use fspid_lti::{LtiError, Matrix};
 use fspid_numeric::Scalar;
+use fspid_numeric::rounding::sum_up;
 use fspid_numeric::scalar::Interval;
 
 use super::definite::{basis, dominant, form, prove_named, symmetric};
 use super::error::{NotProved, positive};
 use super::exponential::require_bounded;
 use super::matrix::IntervalMatrix;
-use super::rounding::sum_up;
 
 /// Proves that P is positive definite.
 ///

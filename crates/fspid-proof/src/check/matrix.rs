@@ -1,10 +1,10 @@
 //! Matrices whose entries are known within bounds.
 
 use fspid_lti::{LtiError, Matrix};
+use fspid_numeric::rounding::{exact_sum, sum_up, times_power};
 use fspid_numeric::scalar::Interval;
 
 use super::product;
-use super::rounding::{exact_sum, sum_up, times_power};
 
 /// A dense matrix of intervals: all real matrices whose entries lie within a radius of a middle.
 ///

@@ -25,7 +25,6 @@ mod packed;
 mod plant;
 mod plant_set;
 mod product;
-mod rounding;
 
 pub use balance::balance;
 pub use definite::prove_positive_definite;

@@ -21,13 +21,11 @@
 //! 1955, algorithm 5.3; T. J. Dekker, *A floating-point technique for extending the available
 //! precision*, Numer. Math. 18 (1971) 224, for the exact product.
 
+use fspid_numeric::rounding::{exact_sum, halves, product_error, sum_up};
 use fspid_numeric::scalar::Interval;
 
 use super::matrix::{IntervalMatrix, bounded};
-use super::rounding::{exact_sum, sum_up};
 
-/// 2^27 + 1: multiplying by it splits 53 bits into 26 and 26.
-const SPLITTER: f64 = 134_217_729.0;
 /// Middles are zero or within these powers of two, 2^-400 to 2^400: no product of two, and no part
 /// of one, leaves the range of normal numbers.
 const MIDDLES: [f64; 2] = [exact_power(-400), exact_power(400)];
@@ -118,16 +116,9 @@ struct Parts {
 
 impl Parts {
     fn of(values: &[f64]) -> Self {
-        let (high, low) = values.iter().map(|&value| split(value)).unzip();
+        let (high, low) = values.iter().map(|&value| halves(value)).unzip();
         Self { value: values.to_vec(), high, low }
     }
-}
-
-#[inline]
-fn split(value: f64) -> (f64, f64) {
-    let scaled = SPLITTER * value;
-    let high = scaled - (scaled - value);
-    (high, value - high)
 }
 
 /// One row of a product while it is summed up.
@@ -164,16 +155,14 @@ impl ProductRow {
     #[inline]
     fn add(&mut self, factor: f64, right: &Parts, from: usize) {
         let columns = self.sum.len();
-        let (factor_high, factor_low) = split(factor);
+        let factor_halves = halves(factor);
         let value = &right.value[from..from + columns];
         let high = &right.high[from..from + columns];
         let low = &right.low[from..from + columns];
         let (rest, absolute) = (&mut self.rest[..columns], &mut self.absolute[..columns]);
         for (j, sum) in self.sum.iter_mut().enumerate() {
             let product = factor * value[j];
-            let beyond =
-                ((factor_high * high[j] - product) + factor_high * low[j] + factor_low * high[j])
-                    + factor_low * low[j];
+            let beyond = product_error(product, factor_halves, (high[j], low[j]));
             let (next, lost) = exact_sum(*sum, product);
             *sum = next;
             rest[j] += lost + beyond;

@@ -3,7 +3,7 @@
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::Interval;
-use super::rounding::{product_down, product_up, quotient_down, quotient_up, sum_down, sum_up};
+use crate::rounding::{product_down, product_up, quotient_down, quotient_up, sum_down, sum_up};
 
 impl Neg for Interval {
     type Output = Self;

@@ -1,8 +1,8 @@
 //! Elementary functions of intervals, piece by monotone piece.
 
 use super::Interval;
-use super::rounding::{positive_down, positive_up, root_down, root_up, steps_down, steps_up};
 use crate::exp::exp_one_f64;
+use crate::rounding::{positive_down, positive_up, root_down, root_up, steps_down, steps_up};
 use crate::scalar::{Base, Scalar};
 
 /// How far the project's exponential moves outward: its error of 1 unit in the last place at the

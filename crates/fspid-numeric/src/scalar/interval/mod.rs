@@ -23,7 +23,8 @@
 
 mod arithmetic;
 mod functions;
-mod rounding;
+
+use crate::rounding;
 
 /// The closed interval from `lower` to `upper`.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,4 +1,5 @@
-//! Sums, products, quotients and roots rounded down or up, in a processor that rounds to nearest.
+//! What rounding takes away, and sums, products, quotients and roots rounded down or up, in a processor that rounds to
+//! nearest.
 //!
 //! A result that is not exact moves one float outward. Whether a sum is exact tells the error-free
 //! transformation of Knuth and Møller; whether a product is, the number of its factors' digits.
@@ -7,7 +8,9 @@
 //! # Source
 //! D. E. Knuth, *The Art of Computer Programming*, volume 2, section 4.2.2, theorem B; that its
 //! error term is exact wherever the sum does not overflow: Boldo, Graillat and Muller, *On the
-//! robustness of the 2Sum and Fast2Sum algorithms*, ACM Trans. Math. Softw. 44 (2017) 4.
+//! robustness of the 2Sum and Fast2Sum algorithms*, ACM Trans. Math. Softw. 44 (2017) 4. Products:
+//! T. J. Dekker, *A floating-point technique for extending the available precision*, Numer. Math. 18
+//! (1971) 224.
 
 /// The place below the last digit of the mantissa.
 const BELOW_MANTISSA: u64 = 1 << 52;
@@ -33,25 +36,63 @@ fn ordinary(value: f64) -> bool {
     value.abs() > f64::MIN_POSITIVE && value.abs() < f64::INFINITY
 }
 
-/// The sum, rounded down.
+/// The exact sum of two numbers as `(sum, error)`; the error is NaN after an overflow.
 #[inline]
-pub(super) fn sum_down(left: f64, right: f64) -> f64 {
+#[must_use]
+pub fn exact_sum(left: f64, right: f64) -> (f64, f64) {
     let sum = left + right;
     let part = sum - left;
-    let error = (left - (sum - part)) + (right - part);
+    (sum, (left - (sum - part)) + (right - part))
+}
+
+/// 2^27 + 1: multiplying by it splits 53 bits into 26 and 26.
+const SPLITTER: f64 = 134_217_729.0;
+
+/// The upper and the lower half of the digits of a number below 2^996.
+#[inline]
+#[must_use]
+pub fn halves(value: f64) -> (f64, f64) {
+    let scaled = SPLITTER * value;
+    let high = scaled - (scaled - value);
+    (high, value - high)
+}
+
+/// The exact product of two numbers as `(product, error)`, where neither is above 2^996 and no part of it below the normal
+/// numbers.
+#[inline]
+#[must_use]
+pub fn exact_product(left: f64, right: f64) -> (f64, f64) {
+    let product = left * right;
+    (product, product_error(product, halves(left), halves(right)))
+}
+
+/// What rounding took from a product of two numbers, given by their [`halves`].
+#[inline]
+#[must_use]
+pub fn product_error(product: f64, left: (f64, f64), right: (f64, f64)) -> f64 {
+    let ((a, b), (c, d)) = (left, right);
+    ((a * c - product) + a * d + b * c) + b * d
+}
+
+/// The sum, rounded down.
+#[inline]
+#[must_use]
+pub fn sum_down(left: f64, right: f64) -> f64 {
+    let (sum, error) = exact_sum(left, right);
     // After an overflow the error is NaN, and a step is right: from infinity to the largest number.
     if error >= 0.0 { sum } else { sum.next_down() }
 }
 
 /// The sum, rounded up.
 #[inline]
-pub(super) fn sum_up(left: f64, right: f64) -> f64 {
+#[must_use]
+pub fn sum_up(left: f64, right: f64) -> f64 {
     -sum_down(-left, -right)
 }
 
 /// The product, rounded down; nothing times infinity is nothing.
 #[inline]
-pub(super) fn product_down(left: f64, right: f64) -> f64 {
+pub(crate) fn product_down(left: f64, right: f64) -> f64 {
     let product = left * right;
     if !ordinary(product) {
         return extreme_down(left == 0.0 || right == 0.0, product);
@@ -61,13 +102,13 @@ pub(super) fn product_down(left: f64, right: f64) -> f64 {
 
 /// The product, rounded up.
 #[inline]
-pub(super) fn product_up(left: f64, right: f64) -> f64 {
+pub(crate) fn product_up(left: f64, right: f64) -> f64 {
     -product_down(-left, right)
 }
 
 /// The quotient by a divisor that is not zero, rounded down.
 #[inline]
-pub(super) fn quotient_down(left: f64, right: f64) -> f64 {
+pub(crate) fn quotient_down(left: f64, right: f64) -> f64 {
     let quotient = left / right;
     if !ordinary(quotient) {
         return extreme_down(left == 0.0, quotient);
@@ -78,18 +119,18 @@ pub(super) fn quotient_down(left: f64, right: f64) -> f64 {
 
 /// The quotient, rounded up.
 #[inline]
-pub(super) fn quotient_up(left: f64, right: f64) -> f64 {
+pub(crate) fn quotient_up(left: f64, right: f64) -> f64 {
     -quotient_down(-left, right)
 }
 
 /// The square root, rounded down. `libm::sqrt` rounds to nearest.
-pub(super) fn root_down(value: f64) -> f64 {
+pub(crate) fn root_down(value: f64) -> f64 {
     let root = libm::sqrt(value);
     if root_is_exact(value, root) { root } else { root.next_down() }
 }
 
 /// The square root, rounded up.
-pub(super) fn root_up(value: f64) -> f64 {
+pub(crate) fn root_up(value: f64) -> f64 {
     let root = libm::sqrt(value);
     if root_is_exact(value, root) { root } else { root.next_up() }
 }
@@ -113,25 +154,38 @@ fn extreme_down(zero: bool, rounded: f64) -> f64 {
 
 /// `steps` floats below a value that is not negative, but not below zero.
 #[inline]
-pub(super) const fn positive_down(value: f64, steps: u64) -> f64 {
+pub(crate) const fn positive_down(value: f64, steps: u64) -> f64 {
     f64::from_bits(value.to_bits().saturating_sub(steps))
 }
 
 /// `steps` floats above a value that is not negative, at most infinity.
 #[inline]
-pub(super) const fn positive_up(value: f64, steps: u64) -> f64 {
+pub(crate) const fn positive_up(value: f64, steps: u64) -> f64 {
     let bits = value.to_bits() + steps;
     f64::from_bits(if bits < INFINITY_BITS { bits } else { INFINITY_BITS })
 }
 
 /// `steps` floats below; zero stays.
-pub(super) fn steps_down(value: f64, steps: u64) -> f64 {
+pub(crate) fn steps_down(value: f64, steps: u64) -> f64 {
     if value >= 0.0 { positive_down(value.abs(), steps) } else { -positive_up(-value, steps) }
 }
 
 /// `steps` floats above; zero stays.
-pub(super) fn steps_up(value: f64, steps: u64) -> f64 {
+pub(crate) fn steps_up(value: f64, steps: u64) -> f64 {
     -steps_down(-value, steps)
+}
+
+/// `value` times a power of two, and by how much it can be off: 0 wherever the result is in range.
+#[must_use]
+pub fn times_power(value: f64, exponent: i32) -> (f64, f64) {
+    let scaled = libm::scalbn(value, exponent);
+    if !scaled.is_finite() {
+        return (0.0, f64::INFINITY);
+    }
+    let back = libm::scalbn(scaled, -exponent);
+    // What went below the normal numbers lost less than the least of them.
+    let exact = back.to_bits() == value.to_bits();
+    (scaled, if exact { 0.0 } else { f64::MIN_POSITIVE })
 }
 
 #[cfg(test)]
@@ -180,5 +234,34 @@ mod tests {
         assert_eq!((steps_down(-0.0, 4), steps_up(0.0, 4)), (0.0, 0.0));
         assert_eq!(steps_down(-1.0, 1), (-1.0_f64).next_down());
         assert_eq!(steps_up(-1.0, 1), (-1.0_f64).next_up());
+    }
+
+    #[test]
+    fn a_sum_and_what_rounding_takes_from_it_are_the_terms() {
+        assert_eq!(exact_sum(1.0, 1e-30), (1.0, 1e-30));
+        assert_eq!(exact_sum(1e-30, -1.0), (-1.0, 1e-30));
+        assert!(exact_sum(f64::MAX, f64::MAX).1.is_nan());
+    }
+
+    #[test]
+    fn a_product_and_what_rounding_takes_from_it_have_all_digits() {
+        // (1 + 2^-30)^2 = 1 + 2^-29 + 2^-60.
+        let factor = 1.0 + libm::exp2(-30.0);
+        assert_eq!(exact_product(factor, factor), (1.0 + libm::exp2(-29.0), libm::exp2(-60.0)));
+        let (high, low) = halves(factor);
+        assert_eq!((high + low, exact_product(-3.0, 7.0)), (factor, (-21.0, 0.0)));
+        assert!([high, low].iter().all(|half| trailing_zeros(*half) >= 26));
+    }
+
+    #[test]
+    fn a_power_of_two_is_exact_or_says_how_far_it_is_off() {
+        assert_eq!(times_power(0.1, -40), (libm::ldexp(0.1, -40), 0.0));
+        assert_eq!(times_power(0.0, 40), (0.0, 0.0));
+        let (value, error) = times_power(1.0 + f64::EPSILON, -1060);
+        assert!(value < f64::MIN_POSITIVE && error >= f64::MIN_POSITIVE);
+        let (value, error) = times_power(1e-300, -1060);
+        assert!(value.abs() <= error);
+        assert!(times_power(1e300, 100).1.is_infinite());
+        assert!(times_power(f64::NAN, 0).1.is_infinite());
     }
 }
