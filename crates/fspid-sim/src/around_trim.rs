@@ -47,9 +47,7 @@ pub(crate) fn growth(
     }
     // Where a flight comes to later is in doubt at most.
     if found.holds() {
-        let places = places(scenario, aircraft, &standings);
-        let mut doubts = places.iter().map(|it| of_place(scenario, it, (controller, gains)));
-        found.undecided = doubts.find_map(Result::transpose).transpose()?;
+        found.undecided = of_places(scenario, (aircraft, &standings), (controller, gains))?;
     }
     let last = standings.iter().rfind(|it| it.by != Change::Fuel);
     if let Some((own, standing)) = in_wind_of_the_end(scenario).zip(last).filter(|_| found.holds())
@@ -61,8 +59,22 @@ pub(crate) fn growth(
             Undecided::at_trim(Doubt::WindOfTheEnd { spectral_radius })
         });
         found.undecided = grown.or(undecided);
+        if found.holds() {
+            found.undecided = of_places(&own, (aircraft, &standings), (controller, gains))?;
+        }
     }
     Ok(found)
+}
+
+/// The first doubt of where a flight comes to.
+fn of_places(
+    scenario: &Scenario,
+    (aircraft, standings): (&AircraftPlant, &[Standing]),
+    held: Held<'_>,
+) -> Result<Option<Undecided>, SimError> {
+    let places = places(scenario, aircraft, standings, held);
+    let mut doubts = places.iter().map(|it| of_place(scenario, it, held));
+    doubts.find_map(Result::transpose).transpose()
 }
 
 /// The scenario with an autopilot in the wind of its end as if it stayed, where that is another one than that of the start.

@@ -93,31 +93,13 @@ impl Held {
         controller: &Controller,
         gains: Gains<f64>,
     ) -> Vec<Self> {
-        let setpoint = &scenario.setpoint;
-        let setpoint_rad = match setpoint.is_sine() {
-            true => 0.0,
-            false => setpoint.sampled(scenario.timing).0.last().copied().unwrap_or(0.0),
+        let [at_servo_rad, at_elevator_rad] = loads_at_the_end_rad(scenario);
+        let held = |pitch_rad: f64| {
+            let elevator_rad = pitch_rad / plant.steady_gain();
+            Self { elevator_rad, at_servo_rad, at_elevator_rad }
         };
-        let sensor = scenario.surroundings.pitch_sensor;
-        let scale = 1.0 + sensor.map_or(0.0, |it| it.model().scale_error);
-        let bias_rad = sensor.map_or(0.0, |it| it.bias());
-        let load = |entry| last_load_rad(scenario, entry);
-        let offset_rad = load(Entry::Measurement) + bias_rad;
-        let at_servo_rad = load(Entry::Servo);
-        let at_elevator_rad = load(Entry::Elevator) + scenario.actuator.bias_rad();
-        let elevator_rad = |seen_rad: f64| (seen_rad - offset_rad) / (scale * plant.steady_gain());
-        let held =
-            |seen_rad| Self { elevator_rad: elevator_rad(seen_rad), at_servo_rad, at_elevator_rad };
-        if gains.ki != 0.0 {
-            return vec![held(setpoint_rad)];
-        }
-        // What the command is with nothing seen.
-        let load_rad = elevator_rad(0.0) - at_servo_rad - at_elevator_rad;
-        let at = RestPoint { setpoint_rad, load_rad };
-        pitches_without_integral(scenario, plant, controller, gains, at)
-            .into_iter()
-            .map(held)
-            .collect()
+        let pitches_rad = pitches_at_the_end(scenario, plant, controller, gains);
+        pitches_rad.into_iter().map(held).collect()
     }
 
     fn exceeds(&self, scenario: &Scenario, controller: &Controller) -> bool {
@@ -129,6 +111,37 @@ impl Held {
             || travel_of_airframe(scenario).is_some_and(|it| beyond(it, self.elevator_rad))
             || controller.config().limits.as_ref().is_some_and(|it| beyond(ends(it), commanded_rad))
     }
+}
+
+/// Pitches, rad from the trim, at which set-point, loads and errors of the pitch sensor at the last sample, held on, let a plant
+/// rest: one with an integral, several where there may be.
+pub(crate) fn pitches_at_the_end(
+    scenario: &Scenario,
+    plant: &LinearPlant,
+    controller: &Controller,
+    gains: Gains<f64>,
+) -> Vec<f64> {
+    let setpoint_rad = scenario.held_at_the_end_rad();
+    let sensor = scenario.surroundings.pitch_sensor;
+    let scale = 1.0 + sensor.map_or(0.0, |it| it.model().scale_error);
+    let bias_rad = sensor.map_or(0.0, |it| it.bias());
+    let offset_rad = last_load_rad(scenario, Entry::Measurement) + bias_rad;
+    let pitch_rad = |seen_rad: f64| (seen_rad - offset_rad) / scale;
+    if gains.ki != 0.0 {
+        return vec![pitch_rad(setpoint_rad)];
+    }
+    // What the command is with nothing seen.
+    let [at_servo_rad, at_elevator_rad] = loads_at_the_end_rad(scenario);
+    let load_rad = pitch_rad(0.0) / plant.steady_gain() - at_servo_rad - at_elevator_rad;
+    let at = RestPoint { setpoint_rad, load_rad };
+    let seen = pitches_without_integral(scenario, plant, controller, gains, at);
+    seen.into_iter().map(pitch_rad).collect()
+}
+
+/// What acts at servo and elevator at the last sample, rad.
+fn loads_at_the_end_rad(scenario: &Scenario) -> [f64; 2] {
+    let at_elevator_rad = last_load_rad(scenario, Entry::Elevator) + scenario.actuator.bias_rad();
+    [last_load_rad(scenario, Entry::Servo), at_elevator_rad]
 }
 
 /// What acts at a place at the last sample, rad; what never stands still counts by its mean, 0.

@@ -306,6 +306,14 @@ fn is_the_same_everywhere(fspid: &Fspid<f64>, rate_rad_s: f64) -> bool {
     plain && integrates(fspid)
 }
 
+/// True for a controller whose integral acts, at rest or elsewhere.
+pub(crate) fn has_integral(controller: &Controller) -> bool {
+    match controller {
+        Controller::Fixed(pid) => pid.gains().ki != 0.0,
+        Controller::SelfTuning(fspid) => integrates(fspid),
+    }
+}
+
 /// True where the gain of the integral may be other than zero.
 fn integrates(fspid: &Fspid<f64>) -> bool {
     let settings = fspid.tuner().settings();

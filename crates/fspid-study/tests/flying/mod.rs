@@ -23,6 +23,7 @@ mod outer_loops;
 mod requirements;
 mod six_dof;
 mod what_is_held;
+mod where_it_leads;
 mod wind_table;
 
 use fspid_scenario::file::{self, Study};

@@ -1,0 +1,302 @@
+//! What the modes of a flight hold, one after another.
+
+use fspid_aircraft::Trim;
+use fspid_aircraft::trim::Power;
+
+use super::targets::{Targets, true_ones, written};
+use super::wanted::{Air, Nowhere, Seeker, Wanted, Way};
+use super::{Led, Place, is_same, pitch_rad};
+use crate::aircraft::{AircraftPlant, Standing};
+use crate::autopilot::{Autopilot, Mode, Moves, OuterLoop, Quantity};
+use crate::controller::Controller;
+use crate::rest::has_integral;
+use crate::scenario::Scenario;
+
+/// A way that lasts no longer is flown through, s: the time in which the airspeed of an aircraft begins to follow its path.
+const LASTS_S: f64 = 30.0;
+
+/// Whether a place is one on the way to what is held.
+type IsOnItsWay = bool;
+
+/// A scenario, the trim that it starts from, and what its modes are to hold.
+pub(super) struct Walk<'a> {
+    scenario: &'a Scenario,
+    start: Trim,
+    /// Pitch that is held where no loop moves it, rad.
+    base_rad: f64,
+    air: Air,
+    written: Vec<Targets>,
+    targets: Vec<Targets>,
+}
+
+impl<'a> Walk<'a> {
+    /// With the pitch, rad from the trim, that the end of the flight holds.
+    pub(super) fn new(scenario: &'a Scenario, aircraft: &AircraftPlant, pitch_rad: f64) -> Self {
+        let start = *aircraft.trim();
+        let autopilot = scenario.autopilot.as_ref();
+        Self {
+            scenario,
+            start,
+            base_rad: super::pitch_rad(&start) + pitch_rad,
+            air: Air::of(scenario),
+            written: autopilot.map(written).unwrap_or_default(),
+            targets: autopilot.map(true_ones).unwrap_or_default(),
+        }
+    }
+
+    pub(super) fn modes(&self) -> usize {
+        self.scenario.autopilot.as_ref().map_or(0, |it| it.modes().len())
+    }
+
+    fn mode(&self, number: usize) -> Option<(&Autopilot, &Mode)> {
+        let autopilot = self.scenario.autopilot.as_ref()?;
+        Some((autopilot, autopilot.modes().get(number)?))
+    }
+
+    pub(super) fn begins_s(&self, number: usize) -> f64 {
+        self.mode(number).map_or(0.0, |(_, mode)| mode.entry.at_s)
+    }
+
+    /// What is asked of where a mode leads; nothing where it was asked already or is not flown with that aircraft.
+    pub(super) fn place(
+        &self,
+        (standing_number, standing): (usize, &Standing),
+        number: usize,
+        (there, is_on_its_way): (Result<Trim, Nowhere>, IsOnItsWay),
+    ) -> Option<Place> {
+        let plant = standing.plant.as_ref()?;
+        let is_mode = self.mode(number).is_some();
+        if is_mode && standing.modes(self.scenario).iter().all(|(other, _)| *other != number) {
+            return None;
+        }
+        let led = |airspeed_m_s: Option<f64>| {
+            let target = self.most_telling(number);
+            is_mode.then(|| Led { mode: number, target, airspeed_m_s, is_on_its_way })
+        };
+        let place = |led, plant| Some(Place { standing: standing_number, led, plant });
+        match there {
+            Ok(trim) if is_same(&trim.target, &plant.trim().target) => None,
+            Ok(trim) => place(led(Some(trim.target.airspeed_m_s)), Some(plant.at(trim))),
+            Err(Nowhere::NoFlight) => place(led(None), None),
+            Err(Nowhere::NotAsked) => None,
+        }
+    }
+
+    /// The target of a mode that tells most of where it leads.
+    fn most_telling(&self, number: usize) -> Option<(Quantity, f64)> {
+        use Quantity::{Airspeed, Altitude, FlightPath, VerticalSpeed};
+        let targets = self.written.get(number)?;
+        [Airspeed, VerticalSpeed, FlightPath, Altitude]
+            .into_iter()
+            .find_map(|quantity| Some((quantity, (*targets.get(quantity.place())?)?)))
+    }
+
+    /// Where a mode leads an aircraft from where the one before it led, or from the start: first where it ends if it holds what
+    /// it is to hold, then where else it may come to.
+    pub(super) fn leads_to(
+        &self,
+        standing: &Standing,
+        number: usize,
+        from: Option<&Trim>,
+    ) -> Vec<(Result<Trim, Nowhere>, IsOnItsWay)> {
+        let Some(plant) = &standing.plant else { return vec![(Err(Nowhere::NotAsked), false)] };
+        let seeker = Seeker { plant, air: self.air };
+        let from = from.copied();
+        let Some((autopilot, mode)) = self.mode(number) else {
+            return vec![(seeker.end(&self.untouched(from.as_ref(), &seeker)), false)];
+        };
+        let engaged = Engaged { autopilot, mode };
+        let held = self.held(&engaged, number, from.as_ref(), &seeker);
+        let ends = held.iter().map(|wanted| (seeker.end(wanted), false));
+        let on_the_way = held.iter().filter_map(|wanted| {
+            let way = self.on_the_way(&engaged, wanted, from.as_ref())?;
+            let there = seeker.end(&Wanted { way, ..*wanted });
+            let left_m = wanted.altitude_m - from.as_ref().unwrap_or(&self.start).target.altitude_m;
+            let climb_m_s = match (&there, way) {
+                (Ok(trim), _) => seeker.climb_m_s(trim),
+                (Err(_), Way::Climb(climb_m_s)) => climb_m_s,
+                (Err(_), Way::OverGround(path_rad)) => {
+                    self.start.target.airspeed_m_s * libm::tan(path_rad)
+                }
+                (Err(_), _) => return None,
+            };
+            let lasts = left_m.abs() > LASTS_S * climb_m_s.abs();
+            // Who goes the other way does not come there, which another question sees.
+            (lasts && left_m * climb_m_s > 0.0).then_some((there, true))
+        });
+        ends.chain(on_the_way).collect()
+    }
+
+    /// What is held with nobody at throttle and pitch.
+    fn untouched(&self, from: Option<&Trim>, seeker: &Seeker<'_>) -> Wanted {
+        let theta_rad = from.map_or(self.base_rad, pitch_rad);
+        let from = from.unwrap_or(&self.start);
+        Wanted {
+            power: Power::Throttle(from.point.throttle),
+            way: Way::Pitch(theta_rad),
+            altitude_m: from.target.altitude_m,
+            throttle: seeker.throttle(),
+            pitch_rad: None,
+        }
+    }
+
+    /// What is held in a mode, all that it may be where loops have no integral.
+    fn held(
+        &self,
+        engaged: &Engaged<'_>,
+        number: usize,
+        from: Option<&Trim>,
+        seeker: &Seeker<'_>,
+    ) -> Vec<Wanted> {
+        let untouched = self.untouched(from, seeker);
+        let start = from.unwrap_or(&self.start).target;
+        let written = |quantity: Quantity, or: f64| {
+            let targets = self.targets.get(number);
+            targets.and_then(|it| *it.get(quantity.place())?).unwrap_or(or)
+        };
+        let airspeed_m_s = written(Quantity::Airspeed, start.airspeed_m_s);
+        let mut powers = vec![untouched.power];
+        let mut throttle = untouched.throttle;
+        if let Some(mover) = engaged.throttle() {
+            powers.insert(0, Power::Airspeed(airspeed_m_s));
+            throttle = mover.within(throttle, self.start.point.throttle);
+            // Without an integral the airspeed ends somewhere between the one that is held and that of a throttle that stays.
+            powers.truncate(if has_integral(mover.controller) { 1 } else { 2 });
+        }
+        let climb_m_s = start.airspeed_m_s * libm::sin(start.flight_path_rad) + self.air.up_m_s;
+        let outermost = engaged.outermost();
+        let holds = match engaged.mode.total_energy {
+            true => Some(Quantity::Altitude),
+            false => outermost.map(|it| it.holds),
+        };
+        let way = match holds {
+            None | Some(Quantity::Heading) => untouched.way,
+            Some(Quantity::Altitude) => Way::OverGround(0.0),
+            Some(Quantity::VerticalSpeed) => {
+                Way::Climb(written(Quantity::VerticalSpeed, climb_m_s))
+            }
+            Some(Quantity::FlightPath) => self.path(number, start.flight_path_rad),
+            Some(Quantity::GlideSlope) => {
+                let beam = engaged.autopilot.glide_slope();
+                Way::OverGround(beam.map_or(0.0, |beam| -beam.angle_rad))
+            }
+            Some(Quantity::Airspeed) if engaged.throttle().is_some() => {
+                Way::Through(start.flight_path_rad)
+            }
+            Some(Quantity::Airspeed) => Way::Airspeed(airspeed_m_s),
+        };
+        let mut ways = vec![way];
+        // Likewise of a path, but for altitudes, which gather by themselves.
+        let gathers = matches!(holds, Some(Quantity::Altitude | Quantity::GlideSlope));
+        if let Some(outer) = outermost.filter(|it| !gathers && !has_integral(&it.controller)) {
+            ways.push(match outer.moves {
+                Moves::Loop(_) => Way::Through(start.flight_path_rad),
+                Moves::Pitch | Moves::Throttle | Moves::Bank => untouched.way,
+            });
+        }
+        let altitude_m = written(Quantity::Altitude, untouched.altitude_m);
+        let ends = engaged.pitch().and_then(|it| it.ends());
+        let range = ends.map(|ends| ends.map(|end| self.base_rad + end));
+        let pitch_rad = range.filter(|_| holds.is_some());
+        let with = |power| {
+            ways.iter().map(move |&way| Wanted { power, way, altitude_m, throttle, pitch_rad })
+        };
+        powers.into_iter().flat_map(with).collect()
+    }
+
+    /// The path of a mode that holds one: what is written over the ground, or that of the flight before.
+    fn path(&self, number: usize, before_rad: f64) -> Way {
+        let targets = self.targets.get(number);
+        let written = targets.and_then(|it| *it.get(Quantity::FlightPath.place())?);
+        written.map_or(Way::Through(before_rad), Way::OverGround)
+    }
+
+    /// How an altitude is come to that is far: as fast as the loop that holds it commands.
+    fn on_the_way(
+        &self,
+        engaged: &Engaged<'_>,
+        wanted: &Wanted,
+        from: Option<&Trim>,
+    ) -> Option<Way> {
+        let left_m = wanted.altitude_m - from.unwrap_or(&self.start).target.altitude_m;
+        if engaged.mode.total_energy {
+            let most_rad = engaged.autopilot.total_energy()?.most_path_rad;
+            return Some(Way::OverGround(most_rad.copysign(left_m)));
+        }
+        let outer = engaged.outermost().filter(|it| it.holds == Quantity::Altitude)?;
+        let mover = Mover { controller: &outer.controller, per_unit: outer.units.moved };
+        let by_gain = outer.units.held * outer.controller.nominal().kp * left_m / mover.per_unit;
+        let [least, most] = mover.ends().unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+        let command = by_gain.max(least).min(most);
+        match outer.moves {
+            Moves::Pitch => Some(Way::Pitch(self.base_rad + command)),
+            Moves::Loop(below) => match engaged.autopilot.loops().get(below)?.holds {
+                Quantity::VerticalSpeed => Some(Way::Climb(command)),
+                Quantity::FlightPath => Some(Way::OverGround(command)),
+                _ => None,
+            },
+            Moves::Throttle | Moves::Bank => None,
+        }
+    }
+}
+
+/// What a mode engages.
+struct Engaged<'a> {
+    autopilot: &'a Autopilot,
+    mode: &'a Mode,
+}
+
+/// A controller and what it answers for one SI unit of what it moves.
+#[derive(Clone, Copy)]
+struct Mover<'a> {
+    controller: &'a Controller,
+    per_unit: f64,
+}
+
+impl Mover<'_> {
+    /// Ends of its command, counted from the trim, in SI units.
+    fn ends(&self) -> Option<[f64; 2]> {
+        let limits = self.controller.config().limits?;
+        Some([limits.lower() / self.per_unit, limits.upper() / self.per_unit])
+    }
+
+    /// As far as it goes within a travel, counted from where the trim has what it moves.
+    fn within(&self, [least, most]: [f64; 2], trim: f64) -> [f64; 2] {
+        let [lower, upper] = self.ends().unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+        [least.max(trim + lower), most.min(trim + upper)]
+    }
+}
+
+impl Engaged<'_> {
+    fn loops(&self) -> impl Iterator<Item = (usize, &OuterLoop)> {
+        let loops = self.autopilot.loops();
+        self.mode.engaged.iter().filter_map(|&number| Some((number, loops.get(number)?)))
+    }
+
+    /// What moves the throttle.
+    fn throttle(&self) -> Option<Mover<'_>> {
+        let total = self.autopilot.total_energy().filter(|_| self.mode.total_energy);
+        let by_energy = total.map(|it| Mover { controller: &it.energy, per_unit: 1.0 });
+        by_energy.or_else(|| self.mover(Moves::Throttle))
+    }
+
+    /// What moves pitch.
+    fn pitch(&self) -> Option<Mover<'_>> {
+        let total = self.autopilot.total_energy().filter(|_| self.mode.total_energy);
+        let by_energy = total.map(|it| Mover { controller: &it.distribution, per_unit: 1.0 });
+        by_energy.or_else(|| self.mover(Moves::Pitch))
+    }
+
+    fn mover(&self, moves: Moves) -> Option<Mover<'_>> {
+        let found = self.loops().map(|(_, it)| it).find(|it| it.moves == moves)?;
+        Some(Mover { controller: &found.controller, per_unit: found.units.moved })
+    }
+
+    /// The loop that moves pitch in the end and that no other loop moves.
+    fn outermost(&self) -> Option<&OuterLoop> {
+        let is_moved = |number: usize| self.loops().any(|(_, it)| it.moves == Moves::Loop(number));
+        let of_path = |it: &OuterLoop| matches!(it.moves, Moves::Pitch | Moves::Loop(_));
+        let mut found = self.loops().filter(|(number, it)| of_path(it) && !is_moved(*number));
+        found.next().map(|(_, it)| it)
+    }
+}
