@@ -1,10 +1,9 @@
 //! What is certified beside what a scenario flies, field by field.
 
+use super::around::not_held_in_words;
 use super::comparison::{Comparison, Difference};
-use fspid_diagnostics::digits::to_digits;
 use fspid_proof::{Asked, LeftOut, LoopDescription, Way, ways_of};
-use fspid_sim::stability::Unstable;
-use fspid_sim::{Scenario, SimError};
+use fspid_sim::SimError;
 use serde_json::{Value, json};
 
 use super::checked::CheckedFile;
@@ -13,8 +12,7 @@ use super::loop_file::LoopFile;
 use super::nonlinear_file::AircraftFile;
 use super::scope::commands_in_words;
 use super::{asked, cases, family, nonlinear};
-use crate::analysis::{AtRest, held_in_words, lasting_plants};
-use crate::metrics::{Absent, short};
+use crate::analysis::lasting_plants;
 use fspid_scenario::file::{Study, Template};
 
 /// What stands in for something that is not there.
@@ -186,34 +184,12 @@ impl CheckedFile {
     }
 }
 
-/// That the flight grows at rest, with a plant or an aircraft of later or with the outer loops around the certified one, of
-/// which the certificate does not speak; that this is not known counts as well.
+/// What the flight does at rest of which the certificate does not speak.
 fn not_held(study: &Study, controller: &str) -> Option<Difference> {
     let scenario = &study.scenario;
     let named = scenario.controllers.iter().find(|named| named.name == controller)?;
-    let at_rest = AtRest::stability(scenario, &named.controller);
-    let beyond = at_rest.undecided.filter(|it| it.doubt.is_beyond_the_loop());
-    let flown = match (at_rest.unstable, beyond) {
-        (Some(unstable), _) => grows_in_words(scenario, &unstable),
-        (None, Some(undecided)) => Absent::Undecided(undecided.doubt).to_string(),
-        (None, None) => return None,
-    };
+    let flown = not_held_in_words(scenario, &named.controller)?;
     Some(Difference { path: "at_rest".to_owned(), certified: "stable".to_owned(), flown })
-}
-
-/// Where a flight grows at rest.
-fn grows_in_words(scenario: &Scenario, unstable: &Unstable) -> String {
-    let mode = unstable.mode.and_then(|mode| scenario.autopilot.as_ref()?.modes().get(mode));
-    let with = match mode {
-        Some(mode) => format!("with the outer loops of mode {}", mode.name),
-        None => held_in_words(unstable.at),
-    };
-    let from = match unstable.from_s {
-        0.0 => String::new(),
-        from_s => format!(", with the plant from {} s on", short(from_s)),
-    };
-    let radius = to_digits(unstable.spectral_radius, 7);
-    format!("UNSTABLE {with}{from} (spectral radius {radius})")
 }
 
 /// What a scenario has and a claim neither covers nor leaves out.

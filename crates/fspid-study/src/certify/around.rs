@@ -1,10 +1,40 @@
-//! What flies around the loop that a certificate is about: the outer loops of an autopilot.
+//! What flies around the loop that a certificate is about: the outer loops of an autopilot, the rest of an aircraft, what it
+//! comes to later.
 
 use fspid_diagnostics::digits::to_digits;
+use fspid_sim::stability::Unstable;
 use fspid_sim::{Controller, Scenario, SimError};
 use serde_json::{Value, json};
 
-use crate::analysis::{AnalysedMode, Stability, equilibrium};
+use crate::analysis::{AnalysedMode, AtRest, Stability, equilibrium, held_in_words};
+use crate::metrics::{Absent, short};
+
+/// That a flight grows at rest, with a plant or an aircraft of later, by what is no pitching or with the outer loops around the
+/// certified one, of which a certificate does not speak; that this is not known counts as well. None where everything holds.
+pub(super) fn not_held_in_words(scenario: &Scenario, controller: &Controller) -> Option<String> {
+    let at_rest = AtRest::stability(scenario, controller);
+    let beyond = at_rest.undecided.filter(|it| it.doubt.is_beyond_the_loop());
+    match (at_rest.unstable, beyond) {
+        (Some(unstable), _) => Some(grows_in_words(scenario, &unstable)),
+        (None, Some(undecided)) => Some(Absent::Undecided(undecided.doubt).to_string()),
+        (None, None) => None,
+    }
+}
+
+/// Where a flight grows at rest.
+fn grows_in_words(scenario: &Scenario, unstable: &Unstable) -> String {
+    let mode = unstable.mode.and_then(|mode| scenario.autopilot.as_ref()?.modes().get(mode));
+    let with = match mode {
+        Some(mode) => format!("with the outer loops of mode {}", mode.name),
+        None => held_in_words(unstable.at),
+    };
+    let from = match unstable.from_s {
+        0.0 => String::new(),
+        from_s => format!(", with the plant from {} s on", short(from_s)),
+    };
+    let radius = to_digits(unstable.spectral_radius, 7);
+    format!("UNSTABLE {with}{from} (spectral radius {radius})")
+}
 
 /// The modes of a scenario's autopilot around one controller, each around the trim with all that it engages.
 ///
@@ -69,11 +99,12 @@ impl Around {
             .then(|| format!("{word} with the outer loops of {modes} {}", names.join(", ")))
     }
 
-    pub(super) fn json(&self) -> Value {
+    /// With whether everything is known to hold.
+    pub(super) fn json(&self, held: bool) -> Value {
         let mode = |mode: &AnalysedMode| {
             let is_stable = mode.stability().known();
             json!({ "name": mode.name, "stable": is_stable, "spectral_radius": mode.poles.spectral_radius })
         };
-        json!({ "held": self.is_held(), "modes": self.modes.iter().map(mode).collect::<Vec<_>>() })
+        json!({ "held": held, "modes": self.modes.iter().map(mode).collect::<Vec<_>>() })
     }
 }

@@ -4,10 +4,10 @@ use fspid_proof::{AirPart, Disturbed, Extent, LeftOut, Quantity, Scope, Way};
 use serde_json::{Value, json};
 
 use crate::json::merged;
-use crate::metrics::short;
 use fspid_scenario::units::degrees;
 
 use super::scope::told_deg;
+use super::told::{at_least, at_most};
 
 /// What came of looking for bounds of a loop.
 #[derive(Clone, Debug)]
@@ -50,24 +50,6 @@ fn named(way: &Way, at_servo: bool) -> &'static str {
         Way::Air { part: AirPart::Vertical, .. } => "a vertical gust",
         Way::Air { part: AirPart::Turning, .. } => "air that turns in pitch",
     }
-}
-
-/// Rounded up at the third digit, so that what is told is a bound as well.
-fn at_most(value: f64) -> String {
-    if !(value > 0.0 && value.is_finite()) {
-        return short(value);
-    }
-    let size = libm::pow(10.0, 2.0 - libm::floor(libm::log10(value)));
-    short(libm::ceil(value * size) / size)
-}
-
-/// Rounded down likewise.
-fn at_least(value: f64) -> String {
-    if !(value > 0.0 && value.is_finite()) {
-        return short(value);
-    }
-    let size = libm::pow(10.0, 2.0 - libm::floor(libm::log10(value)));
-    short(libm::floor(value * size) / size)
 }
 
 /// Degrees per unit of what disturbs.

@@ -7,8 +7,8 @@ use serde_json::{Value, json};
 use super::scope::{Told, told_deg};
 use super::text::found;
 use super::{
-    Around, Certification, Certified, CheckedFile, Comparison, DisturbanceAnswer, NotProvable,
-    Seal, family, nonlinear,
+    Certification, Certified, CheckedFile, Comparison, DisturbanceAnswer, NotProvable, Seal,
+    family, nonlinear,
 };
 use crate::json::{merged, present, with_null_reasons};
 
@@ -72,28 +72,33 @@ fn result(certified: &Certified) -> Value {
     let refused =
         |reason: &NotProvable| json!({ "verdict": "not provable", "reason": reason.to_string() });
     let family = certified.family.as_ref().map(family::in_json);
-    let around = certified.around.as_ref().map(Around::json);
+    let trouble = certified.trouble();
+    let around = certified.around.as_ref().map(|it| it.json(trouble.is_none()));
     let not_bounded = certified.disturbances.as_ref().and_then(DisturbanceAnswer::trouble);
     let nonlinear = certified.nonlinear.as_ref().map(nonlinear::in_json);
     let besides = present(json!({
         "family": family,
         "nonlinear": nonlinear,
         "outer_loops": around,
+        "not_held": trouble,
         "disturbances_not_bounded": not_bounded,
     }));
-    let proved = |found: &Outcome| outcome(found, certified.around.as_ref());
+    let proved = |found: &Outcome| outcome(found, trouble.is_none());
     merged([of, certified.outcome.as_ref().map_or_else(refused, proved), besides])
 }
 
-fn outcome(outcome: &Outcome, around: Option<&Around>) -> Value {
+fn outcome(outcome: &Outcome, is_held: bool) -> Value {
     let verdict = match &outcome.verdict {
-        Verdict::Proved(..) if around.is_some_and(|it| !it.is_held()) => "not proved as it flies",
+        Verdict::Proved(..) if !is_held => "not proved as it flies",
         Verdict::Proved(..) => "proved",
         Verdict::Refuted(..) => "refuted",
         Verdict::Open => "open",
     };
     let claim = |(certificate, rechecked): (&Certificate, &Rechecked)| {
-        let bearing = certificate.bearing(rechecked);
+        let bearing = match certificate.bearing(rechecked) {
+            Bearing::Stable if !is_held => Bearing::PitchLoopStable,
+            bearing => bearing,
+        };
         json!({
             // Of an open answer the claim is one about less than the scenario asks.
             "claim_is_for_less": matches!(outcome.verdict, Verdict::Open),

@@ -36,6 +36,7 @@ mod steps_file;
 #[cfg(test)]
 mod tests;
 mod text;
+mod told;
 
 use fspid_proof::{
     Asked, Certificate, LeftOut, LoopDescription, NotProvable, Outcome, Unbounded, Verdict,
@@ -50,6 +51,7 @@ use fspid_scenario::file::{Study, Template};
 pub use fspid_proof::Effort;
 
 pub use around::Around;
+use around::not_held_in_words;
 pub use cases::{Cases, CasesError, CertifiedCase, CertifiedCases, Change, MOST_CASES, NoCases};
 pub use certificate_files::{CertificateFile, NotWritable};
 pub use checked::{Answer, CheckedFile, check_text, check_text_until};
@@ -81,13 +83,15 @@ pub struct Certified {
     pub nonlinear: Option<NonlinearAnswer>,
     /// What flies around the loop, where that is an autopilot.
     pub around: Option<Around>,
+    /// What the flight does at rest, or may do, of which no claim speaks; none where everything holds.
+    pub not_held: Option<String>,
     /// Where its certificates come from.
     pub origin: Origin,
 }
 
 impl Certified {
     /// True if stability is proved, of the whole family, of the nonlinear aircraft and with bounds of disturbances where that was
-    /// asked, and outer loops around it are held at rest.
+    /// asked, and the flight around it is held at rest.
     #[must_use]
     pub fn is_proved(&self) -> bool {
         let itself =
@@ -96,7 +100,13 @@ impl Certified {
             && self.family.as_ref().is_none_or(FamilyAnswer::is_proved)
             && self.disturbances.as_ref().is_none_or(DisturbanceAnswer::is_bounded)
             && self.nonlinear.as_ref().is_none_or(NonlinearAnswer::is_proved)
-            && self.around.as_ref().is_none_or(Around::is_held)
+            && self.trouble().is_none()
+    }
+
+    /// Why a flight may not hold though the loop is proved: outer loops around it, what is no pitching, what it comes to later.
+    fn trouble(&self) -> Option<String> {
+        let of_modes = self.around.as_ref().and_then(Around::trouble);
+        of_modes.or_else(|| self.not_held.clone())
     }
 
     /// The certificate of the verdict: of stability, or of growth; where the answer is neither for what the
@@ -169,6 +179,7 @@ impl Certification {
         for named in scenario.controllers.iter().filter(|named| wanted(&named.name)) {
             tell(&named.name);
             let around = Around::of(scenario, &named.controller)?;
+            let not_held = not_held_in_words(scenario, &named.controller);
             for (from_s, plant) in &plants {
                 let described = LoopDescription::of(scenario, plant, &named.controller);
                 results.push(Certified {
@@ -179,6 +190,7 @@ impl Certification {
                     disturbances: None,
                     nonlinear: None,
                     around: around.clone(),
+                    not_held: not_held.clone(),
                     origin: Origin {
                         program: env!("CARGO_PKG_VERSION").to_owned(),
                         scenario: scenario.name.clone(),

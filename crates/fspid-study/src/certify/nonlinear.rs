@@ -12,6 +12,7 @@ use fspid_sim::Plant;
 use fspid_sim::aircraft::Forces;
 use serde_json::{Value, json};
 
+use super::told::at_most;
 use crate::metrics::short;
 
 /// Heights above and below the trim over which the air is enclosed, the first that is proved and whose flights come nearer to
@@ -279,7 +280,8 @@ fn decay(certificate: &Certificate, claim: &Nonlinear) -> String {
     let dt_s = certificate.description.controller.config().dt_s;
     match claim.rate {
         rate if rate < 1.0 => {
-            format!(" at least as fast as with a time constant of {:.1} s", -dt_s / libm::log(rate))
+            let time_s = at_most(-dt_s / libm::log(rate));
+            format!(" at least as fast as with a time constant of {time_s} s")
         }
         _ => String::new(),
     }

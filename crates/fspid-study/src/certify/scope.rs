@@ -7,6 +7,7 @@ use fspid_proof::{
 use serde_json::{Value, json};
 
 use super::text::is_fixed;
+use super::told::{at_least, at_most};
 use super::{disturbances, family, nonlinear};
 use crate::json::merged;
 use crate::metrics::short;
@@ -196,14 +197,13 @@ fn rest_error(scope: &Scope) -> String {
 }
 
 fn remains(scope: &Scope) -> String {
-    let angle = |most: f64| if most < 1e-3 { format!("{most:.1e}") } else { short(most) };
     let rest = match scope.rest_error_rad {
         0.0 => "rest",
         _ => "rest, which without an integral is not the set-point",
     };
     match degrees(scope.remains_rad) {
         0.0 => format!("nothing: every deviation dies out towards {rest}"),
-        most => format!("the pitch angle may stay up to {} deg off {rest}", angle(most)),
+        most => format!("the pitch angle may stay up to {} deg off {rest}", at_most(most)),
     }
 }
 
@@ -213,8 +213,8 @@ fn limits(scope: &Scope) -> String {
     match (named.as_str(), scope.pitch_within_rad, scope.limits_left_out) {
         ("", ..) => "there are none in this loop".to_owned(),
         (_, Some(pitch_rad), _) => format!(
-            "none acts where the pitch angle begins up to {:.3} deg off rest and nothing else is off, at {}: {named}",
-            degrees(pitch_rad),
+            "none acts where the pitch angle begins up to {} deg off rest and nothing else is off, at {}: {named}",
+            at_least(degrees(pitch_rad)),
             held(scope.range)
         ),
         (_, None, Some(reason)) => format!("SATURATION IS NOT COVERED: {named}; {reason}"),

@@ -5,6 +5,7 @@ use fspid_proof::{Bearing, BoundedRate, Certificate, Claim, Outcome, Rechecked, 
 use fspid_sim::Controller;
 
 use super::scope::{Told, asked_in_words};
+use super::told::at_most;
 use super::{Certification, Certified, DisturbanceAnswer};
 use crate::metrics::short;
 
@@ -48,15 +49,15 @@ fn push(out: &mut String, certified: &Certified) {
 
 fn headline(certified: &Certified, outcome: &Outcome) -> String {
     match (&outcome.verdict, &outcome.instead) {
-        (Verdict::Proved(certificate, _), _) => match &certified.around {
-            None => format!("PROVED: {}", sentence(certificate)),
-            Some(around) => match around.trouble() {
-                None => format!("PROVED for the pitch loop alone: {}", sentence(certificate)),
-                Some(trouble) => format!(
-                    "NOT PROVED as it flies: {trouble}; proved is the pitch loop alone: {}",
-                    sentence(certificate)
-                ),
-            },
+        (Verdict::Proved(certificate, _), _) => match (certified.trouble(), &certified.around) {
+            (Some(trouble), _) => format!(
+                "NOT PROVED as it flies: {trouble}; proved is the pitch loop alone: {}",
+                sentence(certificate)
+            ),
+            (None, None) => format!("PROVED: {}", sentence(certificate)),
+            (None, Some(_)) => {
+                format!("PROVED for the pitch loop alone: {}", sentence(certificate))
+            }
         },
         (Verdict::Refuted(certificate, rechecked), _) => {
             let bearing = certificate.bearing(rechecked);
@@ -199,10 +200,10 @@ pub(super) fn push_claim(
 
 fn push_rate(out: &mut String, rate: f64, dt_s: f64, remains: bool) {
     if rate < 1.0 {
-        let time_s = -dt_s / libm::log(rate);
+        let time_s = at_most(-dt_s / libm::log(rate));
         let down = if remains { ", down to what remains," } else { "" };
         out.push_str(&format!(
-            "  decay              every deviation falls{down} at least as fast as with a time constant of {time_s:.2} s ({rate:.8} a sample)\n"
+            "  decay              every deviation falls{down} at least as fast as with a time constant of {time_s} s ({rate:.8} a sample)\n"
         ));
     } else {
         out.push_str("  decay              proved without a rate\n");
