@@ -4,6 +4,7 @@ mod abuse;
 mod data_file;
 mod flight;
 mod jsbsim;
+mod jsbsim_twice;
 mod law;
 mod refused;
 mod toy;

@@ -236,6 +236,32 @@ fn files_from_before_version_6_are_read_and_told() {
 }
 
 #[test]
+fn a_bisector_says_how_far_that_of_fuzzylite_may_be_away() {
+    let told = |text: &str| notes(&fll::read(text).unwrap()).join("\n");
+    let expected = "`tip`: fuzzylite bisects samples by a rule of its own, which changed with its versions: its answer may be \
+                    a cell (0.3) away";
+    let bisected = told(&TIPPER.replace("Centroid 200", "Bisector 100"));
+    assert!(bisected.contains(expected), "{bisected}");
+    assert!(!told(TIPPER).contains("bisects"), "{}", told(TIPPER));
+}
+
+#[test]
+fn a_set_below_1_that_is_turned_round_says_what_happens_above_its_height() {
+    let told = |text: &str| notes(&fll::read(text).unwrap()).join("\n");
+    let low = TSUKAMOTO.replace("down Ramp 10 0", "down Ramp 10 0 0.336");
+    assert!(
+        told(&low)
+            .contains("`y`, `down`: a strength above its height of 0.336 counts as that height"),
+        "{}",
+        told(&low)
+    );
+    assert!(!told(TSUKAMOTO).contains("height"), "{}", told(TSUKAMOTO));
+    // Asked for its grade, as where not every set rises or falls, a height changes nothing of that.
+    let graded = low.replace("up Sigmoid 5 2", "up Triangle 0 5 10");
+    assert!(!told(&graded).contains("height"), "{}", told(&graded));
+}
+
+#[test]
 fn norms_that_are_missing_are_told_only_where_they_are_used() {
     for (norm, word) in [("conjunction", "and"), ("disjunction", "or")] {
         let without = |text: &str| text.replace(&format!("{norm}: M"), &format!("{norm}: none # "));

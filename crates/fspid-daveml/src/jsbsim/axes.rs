@@ -21,6 +21,16 @@ const WIND: [&str; 3] = ["DRAG", "SIDE", "LIFT"];
 const BODY: [&str; 3] = ["X", "Y", "Z"];
 const MOMENTS: [&str; 3] = ["ROLL", "PITCH", "YAW"];
 
+/// Coefficients along and about the axes of the body, and their names in the standard.
+const COEFFICIENTS: [(&str, &str); 6] = [
+    ("CX", "aeroBodyForceCoefficient_X"),
+    ("CY", "aeroBodyForceCoefficient_Y"),
+    ("CZ", "aeroBodyForceCoefficient_Z"),
+    ("Cl", "aeroBodyMomentCoefficient_Roll"),
+    ("Cm", "aeroBodyMomentCoefficient_Pitch"),
+    ("Cn", "aeroBodyMomentCoefficient_Yaw"),
+];
+
 /// What the box of a flight has.
 const BOXED: [&str; 4] = [ALPHA, BETA, MACH, ALTITUDE];
 
@@ -72,12 +82,23 @@ fn entering(document: &Document) -> Vec<String> {
 
 /// Every function, with those that it names.
 fn pieces<'a, 'i>(part: Element<'a, 'i>, builder: &mut Builder<'_>) -> Vec<Piece<'a, 'i>> {
-    let mut pieces = Vec::new();
+    let (mut pieces, mut axes) = (Vec::new(), Vec::new());
     for child in part.children(builder.findings) {
         match child.name() {
             "function" => pieces.push(piece(child, None, pieces.len())),
             "axis" => {
                 let Some(axis) = axis(child, builder.findings) else { continue };
+                if axes.contains(&axis) {
+                    let message =
+                        "a second axis of this name, of which JSBSim flies the last alone";
+                    builder.findings.problem(
+                        child.origin(),
+                        axis,
+                        message,
+                        "one axis of each name",
+                    );
+                }
+                axes.push(axis);
                 for function in child.children(builder.findings) {
                     match function.name() {
                         "function" => pieces.push(piece(function, Some(axis), pieces.len())),
@@ -194,7 +215,8 @@ fn function(piece: &Piece<'_, '_>, builder: &mut Builder<'_>) {
         }
     };
     let Some(term) = term else { return builder.refuse(&piece.id) };
-    if !is_name(&piece.id) || builder.document.variables.iter().any(|it| it.id == piece.id) {
+    let is_free = is_name(&piece.id) && piece.id != LIFT_AT_REST;
+    if !is_free || builder.document.variables.iter().any(|it| it.id == piece.id) {
         let message = "this name cannot be that of a function, or is used already";
         builder.findings.problem(element.origin(), &piece.id, message, "another name");
         return builder.refuse(&piece.id);
@@ -233,9 +255,10 @@ fn coefficients(pieces: &[Piece<'_, '_>], part: Element<'_, '_>, builder: &mut B
         return;
     }
     let forces = if wind { WIND } else { BODY };
+    let own = own(builder);
     for axis in forces.into_iter().chain(MOMENTS) {
         let ids = pieces.iter().filter(|piece| piece.axis == Some(axis)).map(|it| it.id.as_str());
-        sum(&format!("axis/{axis}"), ids.collect(), builder);
+        sum(&format!("axis/{axis}{own}"), ids.collect(), builder);
     }
     at_rest(pieces, part, builder);
     let origin = Origin(None);
@@ -243,34 +266,53 @@ fn coefficients(pieces: &[Piece<'_, '_>], part: Element<'_, '_>, builder: &mut B
         // The angles stand in the formulas below even where no function asks for them.
         let _ = (builder.property(ALPHA, origin), builder.property(BETA, origin));
     }
-    let [x, y, z] = if wind {
-        [
-            "minus(minus(times(axis/LIFT, sin(aero/alpha-rad)), times(axis/DRAG, cos(aero/alpha-rad), cos(aero/beta-rad))), \
-             times(axis/SIDE, cos(aero/alpha-rad), sin(aero/beta-rad)))",
-            "minus(times(axis/SIDE, cos(aero/beta-rad)), times(axis/DRAG, sin(aero/beta-rad)))",
-            "minus(minus(minus(times(axis/LIFT, cos(aero/alpha-rad))), times(axis/DRAG, sin(aero/alpha-rad), cos(aero/beta-rad))), \
-             times(axis/SIDE, sin(aero/alpha-rad), sin(aero/beta-rad)))",
-        ]
-    } else {
-        ["axis/X", "axis/Y", "axis/Z"]
-    };
-    let rows = [
-        ("CX", "aeroBodyForceCoefficient_X", format!("divide({x}, {AREA})")),
-        ("CY", "aeroBodyForceCoefficient_Y", format!("divide({y}, {AREA})")),
-        ("CZ", "aeroBodyForceCoefficient_Z", format!("divide({z}, {AREA})")),
-        ("Cl", "aeroBodyMomentCoefficient_Roll", moment("ROLL", SPAN)),
-        ("Cm", "aeroBodyMomentCoefficient_Pitch", moment("PITCH", CHORD)),
-        ("Cn", "aeroBodyMomentCoefficient_Yaw", moment("YAW", SPAN)),
+    let [x, y, z] =
+        if wind { along_the_body(&own) } else { BODY.map(|it| format!("axis/{it}{own}")) };
+    let moment =
+        |axis: &str, length: &str| format!("divide(axis/{axis}{own}, times({AREA}, {length}))");
+    let texts = [
+        format!("divide({x}, {AREA})"),
+        format!("divide({y}, {AREA})"),
+        format!("divide({z}, {AREA})"),
+        moment("ROLL", SPAN),
+        moment("PITCH", CHORD),
+        moment("YAW", SPAN),
     ];
-    for (id, name, text) in rows {
-        let formula = parse(&text).ok();
-        let variable = Variable { formula, roles: vec![Role::Output], ..named(id, name, "nd") };
+    for ((id, name), text) in COEFFICIENTS.into_iter().zip(texts) {
+        let (id, formula) = (format!("{id}{own}"), parse(&text).ok());
+        let variable = Variable { formula, roles: vec![Role::Output], ..named(&id, name, "nd") };
         builder.document.variables.push(variable);
     }
 }
 
-fn moment(axis: &str, length: &str) -> String {
-    format!("divide(axis/{axis}, times({AREA}, {length}))")
+/// Forces along the axes of the body from those along the flow.
+fn along_the_body(own: &str) -> [String; 3] {
+    [
+        format!(
+            "minus(minus(times(axis/LIFT{own}, sin({ALPHA})), times(axis/DRAG{own}, cos({ALPHA}), cos({BETA}))), \
+             times(axis/SIDE{own}, cos({ALPHA}), sin({BETA})))"
+        ),
+        format!("minus(times(axis/SIDE{own}, cos({BETA})), times(axis/DRAG{own}, sin({BETA})))"),
+        format!(
+            "minus(minus(minus(times(axis/LIFT{own}, cos({ALPHA}))), times(axis/DRAG{own}, sin({ALPHA}), cos({BETA}))), \
+             times(axis/SIDE{own}, sin({ALPHA}), sin({BETA})))"
+        ),
+    ]
+}
+
+/// What follows the names of sums and coefficients, so that no function or property of the file has one of them.
+fn own(builder: &Builder<'_>) -> String {
+    let coefficients = COEFFICIENTS.map(|(id, _)| id.to_owned());
+    let axes = [WIND, BODY, MOMENTS].concat().into_iter().map(|axis| format!("axis/{axis}"));
+    let ids: Vec<_> = coefficients.into_iter().chain(axes).collect();
+    let variables = &builder.document.variables;
+    let mut own = String::new();
+    while variables.iter().any(|it| {
+        it.id.strip_suffix(own.as_str()).is_some_and(|id| ids.iter().any(|taken| taken == id))
+    }) {
+        own.push('_');
+    }
+    own
 }
 
 /// A variable that is the sum of others; 0 without any.

@@ -2,7 +2,7 @@
 
 use crate::document::{Document, Variable};
 use crate::finding::Findings;
-use crate::jsbsim::metrics::Metrics;
+use crate::jsbsim::metrics::{self, Metrics};
 use crate::jsbsim::{answer, required, unit};
 use crate::xml::element::Element;
 
@@ -34,6 +34,13 @@ pub(super) fn read(root: Element<'_, '_>, metrics: &Metrics, findings: &mut Find
         if let Some(form) = element.child("form") {
             form.leave_out("the mass is taken as a point", findings);
         }
+        for name in ["weight", "location"] {
+            if element.child(name).is_none() {
+                let message = format!("no <{name}>");
+                let expected = "<weight> and <location>";
+                findings.problem(element.origin(), element.name(), message, expected);
+            }
+        }
         points.push(point(element, "weight", findings));
     }
     points.extend(fuel(root, findings));
@@ -60,9 +67,7 @@ fn at(place: [f64; 3], axis: usize) -> f64 {
 
 /// The empty aircraft as a point; its own inertia is [`own`].
 fn empty(part: Element<'_, '_>, findings: &mut Findings) -> Point {
-    let centre = part
-        .elements()
-        .find(|it| it.name() == "location" && it.optional("name").eq_ignore_ascii_case("CG"));
+    let centre = metrics::place(part, "CG", findings);
     let pounds = part.child("emptywt").map_or(0.0, |it| unit::number(it, unit::WEIGHT, findings));
     let good = centre.is_some() && pounds > 0.0;
     if !good {
@@ -92,13 +97,35 @@ fn fuel(root: Element<'_, '_>, findings: &mut Findings) -> Vec<Point> {
         part.leave_out("it is in a file of its own, and its fuel is no part of the mass", findings);
     }
     let tanks = part.elements().filter(|it| it.name() == "tank");
-    let points: Vec<_> = tanks.map(|tank| point(tank, "contents", findings)).collect();
+    let points: Vec<_> = tanks.map(|tank| filled(tank, findings)).collect();
     let pounds = points.iter().map(|point| point.slugs).sum::<f64>() * unit::SLUG_LB;
     if pounds > 0.0 {
         let message = format!("{pounds:.0} lb of fuel stay in the tanks, each a point");
         findings.note(part.origin(), message);
     }
     points
+}
+
+/// What is in a tank, at its place.
+fn filled(tank: Element<'_, '_>, findings: &mut Findings) -> Point {
+    // With each of these JSBSim has another centre of mass or inertia than that of a point.
+    for name in ["drain_location", "grain_config", "inertia_factor"] {
+        if let Some(part) = tank.child(name) {
+            part.refuse("tank", "<location>, at which the contents are a point", findings);
+        }
+    }
+    let point = point(tank, "contents", findings);
+    let pounds = point.slugs * unit::SLUG_LB;
+    let capacity = tank.child("capacity").filter(|_| pounds > 0.0);
+    let capacity_lb = capacity.map_or(0.0, |it| unit::number(it, unit::WEIGHT, findings));
+    // Units are rounded in JSBSim, so that a full tank may be so in one unit and not in another.
+    if pounds > capacity_lb * (1.0 + 1e-6) {
+        let message = format!(
+            "its contents of {pounds:.2} lb are more than its capacity of {capacity_lb:.2} lb"
+        );
+        findings.problem(tank.origin(), tank.name(), message, "a capacity for the contents");
+    }
+    point
 }
 
 /// Inertia of the empty aircraft about its own centre of mass.

@@ -49,8 +49,7 @@ pub(super) fn read(root: Element<'_, '_>, findings: &mut Findings) -> Metrics {
             None => {}
         }
     }
-    let mut places = part.elements().filter(|it| it.name() == "location");
-    match places.find(|it| it.optional("name").eq_ignore_ascii_case("AERORP")) {
+    match place(part, "AERORP", findings) {
         Some(place) => metrics.reference_ft = unit::place_ft(place, findings),
         None => {
             let message = "nothing says where the loads of the air act";
@@ -59,4 +58,21 @@ pub(super) fn read(root: Element<'_, '_>, findings: &mut Findings) -> Metrics {
         }
     }
     metrics
+}
+
+/// The place of that name; JSBSim takes the last of several, so that a second one is refused.
+pub(super) fn place<'a, 'i>(
+    part: Element<'a, 'i>,
+    name: &str,
+    findings: &mut Findings,
+) -> Option<Element<'a, 'i>> {
+    let mut places = part
+        .elements()
+        .filter(|it| it.name() == "location" && it.optional("name").eq_ignore_ascii_case(name));
+    let found = places.next();
+    if let Some(second) = places.next() {
+        let message = "a second place of this name, of which JSBSim takes the last";
+        findings.problem(second.origin(), name, message, "one place of each name");
+    }
+    found
 }

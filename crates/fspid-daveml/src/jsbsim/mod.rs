@@ -16,6 +16,7 @@ mod engine;
 mod expression;
 mod metrics;
 mod property;
+mod reach;
 mod surface;
 mod table;
 mod unit;

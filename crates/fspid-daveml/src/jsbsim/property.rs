@@ -304,6 +304,11 @@ impl<'a> Builder<'a> {
         }
     }
 
+    /// True where a value is asked for at which a property is held.
+    pub(super) fn is_held(&self, name: &str) -> bool {
+        self.held.iter().any(|(held, _)| held == name)
+    }
+
     /// True where the model asks for the square of the lift.
     pub(super) fn squares_lift(&self) -> bool {
         self.classes.contains_key(LIFT_SQUARED)

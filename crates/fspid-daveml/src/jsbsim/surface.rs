@@ -7,6 +7,7 @@ use fspid_numeric::units::RADIAN_DEG;
 use crate::data::parse;
 use crate::expression::Expression;
 use crate::finding::{Findings, Origin};
+use crate::jsbsim::reach::{Untold, reach};
 use crate::xml::element::Element;
 
 /// Stops of a surface whose file has none, deg: wide enough for most, and said in a note.
@@ -30,51 +31,89 @@ impl Default for Stops {
 }
 
 pub(super) fn stops(root: Element<'_, '_>, findings: &mut Findings) -> Stops {
-    let mut stop = |surface: &str| {
-        let rad = format!("fcs/{surface}-pos-rad");
-        let deg = format!("fcs/{surface}-pos-deg");
-        let scale = [(rad.as_str(), RADIAN_DEG), (deg.as_str(), 1.0)];
-        let found = scale.iter().find_map(|&(name, unit)| {
-            parts(root).find_map(|part| makes(part, name).then(|| range(part, "range", unit))?)
-        });
+    let mut stop = |surface: &str| stop(root, surface, findings);
+    Stops { elevator: stop("elevator"), aileron: stop("left-aileron"), rudder: stop("rudder") }
+}
+
+/// Stops of one surface, deg: where the component that makes its position ends.
+fn stop(root: Element<'_, '_>, surface: &str, findings: &mut Findings) -> (f64, f64) {
+    let rad = format!("fcs/{surface}-pos-rad");
+    let deg = format!("fcs/{surface}-pos-deg");
+    // Both are the same position, so that a second maker of either takes it from the first.
+    let makers = parts(root).flat_map(|part| {
+        let made = made(part);
+        let units = [(&rad, RADIAN_DEG), (&deg, 1.0)];
+        units
+            .into_iter()
+            .filter_map(move |(name, unit)| made.contains(name).then_some((part, unit)))
+    });
+    let found = match makers.collect::<Vec<_>>().as_slice() {
+        [] => None,
+        [(part, unit)] => match reach(root, *part) {
+            Ok(ends) => ends.map(|(min, max)| (*part, min * unit, max * unit)),
+            Err(Untold { at, message }) => {
+                let expected = "a component with ends that are numbers";
+                findings.problem(at, &rad, message, expected);
+                return ASSUMED_DEG;
+            }
+        },
+        [_, (part, _), ..] => {
+            let message = "a second component of the flight control system makes it, or makes it in other units, and the \
+                           last one counts";
+            findings.problem(part.origin(), &rad, message, "one component");
+            return ASSUMED_DEG;
+        }
+    };
+    match found {
+        Some((part, min, max)) if !(min < max) => {
+            let message = format!("it stays at {min} deg whatever is commanded");
+            findings.problem(part.origin(), &rad, message, "two ends that are apart");
+            ASSUMED_DEG
+        }
         // To a millionth of a degree: gains such as 0.01745 have no more.
-        let rounded = |value: f64| (value * 1e6).round() / 1e6;
-        found.map(|(min, max)| (rounded(min), rounded(max))).unwrap_or_else(|| {
+        Some((_, min, max)) if min >= -90.0 && max <= 90.0 => {
+            ((min * 1e6).round() / 1e6, (max * 1e6).round() / 1e6)
+        }
+        _ => {
             let (min, max) = ASSUMED_DEG;
             let message = format!("no range of {rad} is found: {min} to {max} deg are assumed");
             findings.note(Origin(None), message);
             ASSUMED_DEG
-        })
-    };
-    Stops { elevator: stop("elevator"), aileron: stop("left-aileron"), rudder: stop("rudder") }
+        }
+    }
 }
 
 /// Every element of the flight control system.
-fn parts<'a, 'i>(root: Element<'a, 'i>) -> impl Iterator<Item = Element<'a, 'i>> {
+pub(super) fn parts<'a, 'i>(root: Element<'a, 'i>) -> impl Iterator<Item = Element<'a, 'i>> {
     let systems = root.elements().filter(|part| matches!(part.name(), "flight_control" | "system"));
     systems.flat_map(Element::descendants)
 }
 
-/// True for a component that makes a property.
-fn makes(part: Element<'_, '_>, property: &str) -> bool {
-    part.elements().any(|child| child.name() == "output" && child.prose() == property)
-}
-
 /// The ends of a child as they are written, of which the first may be the larger; `None` where they are not numbers.
-fn ends(part: Element<'_, '_>, name: &str) -> Option<(f64, f64)> {
+pub(super) fn ends(part: Element<'_, '_>, name: &str) -> Option<(f64, f64)> {
     let ends = part.child(name)?;
     let end =
         |name: &str| ends.child(name)?.prose().parse::<f64>().ok().filter(|it| it.is_finite());
     end("min").zip(end("max"))
 }
 
-/// The ends of a child, times its gain and in order; `None` where they are not numbers or not apart.
-fn range(part: Element<'_, '_>, name: &str, unit: f64) -> Option<(f64, f64)> {
-    let (one, other) = ends(part, name)?;
-    let gain = part.child("gain").map_or(Some(1.0), |gain| gain.prose().parse::<f64>().ok())?;
-    let (one, other) = (one * gain * unit, other * gain * unit);
-    let (min, max) = (one.min(other), one.max(other));
-    (min < max && min >= -90.0 && max <= 90.0).then_some((min, max))
+/// True for what has both ends; JSBSim leaves out what has one.
+pub(super) fn is_whole(ends: Element<'_, '_>) -> bool {
+    ends.child("min").is_some() && ends.child("max").is_some()
+}
+
+/// The domain of a scale, -1 to 1 where none is whole; `None` where its ends are not numbers.
+pub(super) fn domain(part: Element<'_, '_>) -> Option<(f64, f64)> {
+    match part.child("domain").filter(|domain| is_whole(*domain)) {
+        Some(_) => ends(part, "domain"),
+        None => Some((-1.0, 1.0)),
+    }
+}
+
+/// True for a scale that takes what is above 0 to its upper end, and what is below to its lower.
+pub(super) fn is_zero_centered(part: Element<'_, '_>) -> bool {
+    let word = part.child("zero_centered").map(Element::prose);
+    word.is_none_or(|word| matches!(word.as_str(), "1" | "true"))
 }
 
 /// What an `<aerosurface_scale>` makes of a surface's angle, or why that is not known here.
@@ -106,7 +145,7 @@ pub(super) fn scaled(root: Element<'_, '_>) -> BTreeMap<String, Scaled> {
 }
 
 /// Properties that a component makes: its outputs, and the one of its own name.
-fn made(part: Element<'_, '_>) -> BTreeSet<String> {
+pub(super) fn made(part: Element<'_, '_>) -> BTreeSet<String> {
     let outputs = part.elements().filter(|it| it.name() == "output").map(Element::prose);
     let mut made: BTreeSet<_> = outputs.collect();
     if part.child("input").is_some() {
@@ -125,18 +164,11 @@ fn scale(part: Element<'_, '_>, input: &str) -> Scaled {
             return Err(format!("its <aerosurface_scale> has <{name}>, which is not known here"));
         }
     }
-    if let Some(word) = part.child("zero_centered").map(Element::prose)
-        && !matches!(word.as_str(), "1" | "true")
-    {
+    if !is_zero_centered(part) {
+        let word = part.prose_of("zero_centered");
         return Err(format!("<zero_centered> of its <aerosurface_scale> is {word}"));
     }
-    // JSBSim has -1 and 1 for a domain that is not whole.
-    let is_whole = |it: &Element<'_, '_>| it.child("min").is_some() && it.child("max").is_some();
-    let domain = match part.child("domain").filter(is_whole) {
-        Some(_) => ends(part, "domain"),
-        None => Some((-1.0, 1.0)),
-    };
-    let slopes = domain.zip(ends(part, "range")).map(|(domain, range)| {
+    let slopes = domain(part).zip(ends(part, "range")).map(|(domain, range)| {
         // Each end belongs to the one of its name, whichever is the larger: a range from 1 to -1 turns the sign.
         (range.0 / domain.0, range.1 / domain.1)
     });

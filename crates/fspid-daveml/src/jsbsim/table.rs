@@ -37,7 +37,9 @@ impl Builder<'_> {
         }?;
         let axes = entered.into_iter().zip(points);
         let axes = axes.map(|((name, variable, _), points)| {
-            let (variable, scale) = in_radians(variable);
+            // What is held is no angle of the flight.
+            let is_held = self.is_held(&variable);
+            let (variable, scale) = if is_held { (variable, 1.0) } else { in_radians(variable) };
             let points = points.into_iter().map(|point| scale * point).collect();
             Axis { name, variable, points }
         });

@@ -1,6 +1,9 @@
 //! Reading.
 
-use fspid_fuzzy::system::{Input, Parts, Rule, RuleBlock, Term};
+use fspid_fuzzy::system::{
+    Conclusion, Defuzzifier, Input, Membership, Output, Parts, Rule, RuleBlock, Sampling,
+    SetReading, Term,
+};
 use fspid_fuzzy::{OutOfRange, SNormKind, TNormKind};
 
 use super::lines::{self};
@@ -47,6 +50,45 @@ fn tell(parts: &Parts, report: &mut Report) {
         if weighted && !output.aggregation.is(SNormKind::UnboundedSum) {
             let note = "a weighted method adds equal conclusions up, whatever the aggregation";
             report.note_whole(format!("`{}`: {note}", output.name));
+        }
+        bisected(output, report);
+        inverted(output, report);
+    }
+}
+
+/// Tells how far the bisector of fuzzylite may be from the one that is computed here.
+///
+/// Seen of pyfuzzylite 8.0.6 over 4000 sets at random; it answers with the middle or an end of a cell.
+fn bisected(output: &Output, report: &mut Report) {
+    if let (Defuzzifier::Bisector(Sampling::Midpoint(count)), Some(universe)) =
+        (output.defuzzifier, output.universe)
+    {
+        let cell = universe.span() / f64::from(count);
+        report.note_whole(format!(
+            "`{}`: fuzzylite bisects samples by a rule of its own, which changed with its versions: its answer may be a cell \
+             ({cell}) away, and more where the set is as narrow as a cell or has a gap in its middle",
+            output.name
+        ));
+    }
+}
+
+/// Tells of sets that are asked above their height.
+fn inverted(output: &Output, report: &mut Report) {
+    let (Defuzzifier::WeightedAverage(SetReading::Tsukamoto)
+    | Defuzzifier::WeightedSum(SetReading::Tsukamoto)) = output.defuzzifier
+    else {
+        return;
+    };
+    for term in &output.terms {
+        if let Conclusion::Set { membership: Membership::Shape { height, .. }, .. } =
+            &term.conclusion
+            && *height < 1.0
+        {
+            report.note_whole(format!(
+                "`{}`, `{}`: a strength above its height of {height} counts as that height; fuzzylite goes on beyond the \
+                 set, or has no answer",
+                output.name, term.name
+            ));
         }
     }
 }
