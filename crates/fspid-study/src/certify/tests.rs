@@ -552,21 +552,22 @@ name = "dive"
 [aircraft]
 name = "navion"
 airspeed_m_s = 40.0
-altitude_m = 1000.0
+altitude_ft = 3000.0
 [actuator]
 time_constant_s = 0.1
 [loop]
-sample_period_s = 0.01
+sample_period_s = 0.02
 duration_s = 10.0
 [setpoint]
 kind = "step"
 amplitude_deg = -6.0
+at_s = 1.0
 [[controller]]
 name = "PID"
 kind = "pid"
 kp = 7.0
-ki = 0.43
-kd = 0.165
+ki = 0.5
+kd = 0.9
 derivative_filter_s = 0.05
 "#;
 
