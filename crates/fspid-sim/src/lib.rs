@@ -69,7 +69,7 @@ pub use flown::{AllPass, Perturbation};
 pub use in_flight::{InFlight, ModePoles, Seen, mode_poles};
 pub use inflow::Inflow;
 pub use instant::Instant;
-pub use leads_to::Led;
+pub use leads_to::{Led, Leg};
 pub use longitudinal::{LongitudinalDerivatives, LongitudinalModel};
 pub use plant::{ElevatorSign, LinearPlant, Plant, PlantChange};
 pub use rest::{Doubt, Rest, RestPoint, Side, Stand};

@@ -18,6 +18,17 @@ use crate::held_limits::pitches_at_the_end;
 use crate::scenario::Scenario;
 use walk::Walk;
 
+/// Which part of the flight of a mode.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Leg {
+    /// What it comes to in time.
+    End,
+    /// The way there, which lasts.
+    OnTheWay,
+    /// A turn with nobody at the throttle: the airspeed falls to one of its own, which is not known.
+    Turn,
+}
+
 /// A mode that leads an aircraft away from where it started.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Led {
@@ -27,8 +38,8 @@ pub struct Led {
     pub target: Option<(Quantity, f64)>,
     /// The airspeed to which it leads, m/s; none where it leads to no straight flight within the limits.
     pub airspeed_m_s: Option<f64>,
-    /// True for the airspeed on the way there, which lasts.
-    pub is_on_its_way: bool,
+    /// On which part of its flight.
+    pub leg: Leg,
 }
 
 impl fmt::Display for Led {
@@ -44,7 +55,15 @@ impl fmt::Display for Led {
             let value = libm::round(value * 1e6) / 1e6;
             write!(f, ", which holds {} at {value} {unit},", quantity.in_words())?;
         }
-        let when = if self.is_on_its_way { "on the way there" } else { "in time" };
+        let when = match self.leg {
+            Leg::End => "in time",
+            Leg::OnTheWay => "on the way there",
+            Leg::Turn => {
+                return f.write_str(
+                    " turns with nobody at the throttle, and so comes to an airspeed of its own, which is not asked",
+                );
+            }
+        };
         match self.airspeed_m_s {
             Some(airspeed_m_s) => write!(
                 f,

@@ -5,7 +5,7 @@ use fspid_aircraft::trim::Power;
 
 use super::targets::{Targets, true_ones, written};
 use super::wanted::{Air, Nowhere, Seeker, Wanted, Way};
-use super::{Led, Place, is_same, pitch_rad};
+use super::{Led, Leg, Place, is_same, pitch_rad};
 use crate::aircraft::{AircraftPlant, Standing};
 use crate::autopilot::{Autopilot, Mode, Moves, OuterLoop, Quantity};
 use crate::controller::Controller;
@@ -15,8 +15,8 @@ use crate::scenario::Scenario;
 /// A way that lasts no longer is flown through, s: the time in which the airspeed of an aircraft begins to follow its path.
 const LASTS_S: f64 = 30.0;
 
-/// Whether a place is one on the way to what is held.
-type IsOnItsWay = bool;
+/// Lift over weight of a bank that is passed over: the airspeed that a turn takes differs by a fortieth then.
+const SLIGHT_LOAD: f64 = 1.05;
 
 /// A scenario, the trim that it starts from, and what its modes are to hold.
 pub(super) struct Walk<'a> {
@@ -62,7 +62,7 @@ impl<'a> Walk<'a> {
         &self,
         (standing_number, standing): (usize, &Standing),
         number: usize,
-        (there, is_on_its_way): (Result<Trim, Nowhere>, IsOnItsWay),
+        (there, leg): (Result<Trim, Nowhere>, Leg),
     ) -> Option<Place> {
         let plant = standing.plant.as_ref()?;
         let is_mode = self.mode(number).is_some();
@@ -71,7 +71,7 @@ impl<'a> Walk<'a> {
         }
         let led = |airspeed_m_s: Option<f64>| {
             let target = self.most_telling(number);
-            is_mode.then(|| Led { mode: number, target, airspeed_m_s, is_on_its_way })
+            is_mode.then(|| Led { mode: number, target, airspeed_m_s, leg })
         };
         let place = |led, plant| Some(Place { standing: standing_number, led, plant });
         match there {
@@ -98,16 +98,19 @@ impl<'a> Walk<'a> {
         standing: &Standing,
         number: usize,
         from: Option<&Trim>,
-    ) -> Vec<(Result<Trim, Nowhere>, IsOnItsWay)> {
-        let Some(plant) = &standing.plant else { return vec![(Err(Nowhere::NotAsked), false)] };
+    ) -> Vec<(Result<Trim, Nowhere>, Leg)> {
+        let Some(plant) = &standing.plant else { return vec![(Err(Nowhere::NotAsked), Leg::End)] };
         let seeker = Seeker { plant, air: self.air };
         let from = from.copied();
         let Some((autopilot, mode)) = self.mode(number) else {
-            return vec![(seeker.end(&self.untouched(from.as_ref(), &seeker)), false)];
+            return vec![(seeker.end(&self.untouched(from.as_ref(), &seeker)), Leg::End)];
         };
         let engaged = Engaged { autopilot, mode };
+        if engaged.turns() && engaged.throttle().is_none() {
+            return vec![(Err(Nowhere::NoFlight), Leg::Turn)];
+        }
         let held = self.held(&engaged, number, from.as_ref(), &seeker);
-        let ends = held.iter().map(|wanted| (seeker.end(wanted), false));
+        let ends = held.iter().map(|wanted| (seeker.end(wanted), Leg::End));
         let on_the_way = held.iter().filter_map(|wanted| {
             let way = self.on_the_way(&engaged, wanted, from.as_ref())?;
             let there = seeker.end(&Wanted { way, ..*wanted });
@@ -122,7 +125,7 @@ impl<'a> Walk<'a> {
             };
             let lasts = left_m.abs() > LASTS_S * climb_m_s.abs();
             // Who goes the other way does not come there, which another question sees.
-            (lasts && left_m * climb_m_s > 0.0).then_some((there, true))
+            (lasts && left_m * climb_m_s > 0.0).then_some((there, Leg::OnTheWay))
         });
         ends.chain(on_the_way).collect()
     }
@@ -290,6 +293,12 @@ impl Engaged<'_> {
     fn mover(&self, moves: Moves) -> Option<Mover<'_>> {
         let found = self.loops().map(|(_, it)| it).find(|it| it.moves == moves)?;
         Some(Mover { controller: &found.controller, per_unit: found.units.moved })
+    }
+
+    /// True where it flies a bank that is more than slight.
+    fn turns(&self) -> bool {
+        let load = 1.0 / libm::cos(self.mode.bank_rad);
+        self.mover(Moves::Bank).is_none() && load > SLIGHT_LOAD
     }
 
     /// The loop that moves pitch in the end and that no other loop moves.

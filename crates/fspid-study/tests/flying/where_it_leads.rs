@@ -1,8 +1,8 @@
 //! Flights that go on to another airspeed than that of their start: where limits of the throttle, air that rises, errors of
 //! sensors, loads, and the way to an altitude lead, which the pitch loop at 42 m/s says nothing of.
 
-use fspid_sim::Doubt;
 use fspid_sim::autopilot::Quantity;
+use fspid_sim::{Doubt, Leg};
 use fspid_study::simulation::ControllerResult;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -216,7 +216,30 @@ fn the_way_to_an_altitude_is_asked_where_it_lasts() {
     };
     let told = told_and_flown([&to(500.0), &to(3960.0)]);
     let Some(Doubt::Led { led, .. }) = told else { panic!("{told:?}") };
-    assert_eq!((led.is_on_its_way, led.target), (true, Some((Quantity::Altitude, 500.0))));
+    assert_eq!((led.leg, led.target), (Leg::OnTheWay, Some((Quantity::Altitude, 500.0))));
+}
+
+/// "flown", stable, after 20 s of a turn that takes more power than there is: it ends at the stall, after a minute.
+#[test]
+fn a_turn_with_nobody_at_the_throttle_is_in_doubt() {
+    let turn = |bank_deg: f64, second: &str| {
+        let loops = autopilot(
+            second,
+            &format!("vertical_speed_m_s = 0.0 }}\nbank_deg = {bank_deg:?}\n#{{"),
+        );
+        let text =
+            flight([1.0, 0.43], &loops).replace("airspeed_m_s = 42.0", "airspeed_m_s = 50.0");
+        text.replace("altitude_m = 4000.0", "altitude_m = 1000.0")
+    };
+    let told = doubt(&result(&turn(45.0, ""), &[]));
+    let Some(Doubt::LedNowhere(led)) = told else { panic!("{told:?}") };
+    assert_eq!((led.mode, led.leg), (1, Leg::Turn));
+    assert!(led.to_string().contains("turns with nobody at the throttle"), "{led}");
+    let alpha_rad = result(&turn(45.0, ""), &LONG).trace;
+    let most_rad = column(&alpha_rad, "alpha_rad").iter().copied().fold(0.0, f64::max);
+    assert!(most_rad.to_degrees() > 10.0, "{}", most_rad.to_degrees());
+    assert_eq!(doubt(&result(&turn(10.0, ""), &[])), None);
+    assert_eq!(doubt(&result(&turn(45.0, &throttle([0.2, 0.02], [-0.5, 0.5], "")), &[])), None);
 }
 
 /// Drawn flights, with limits and gains of everything around: what is not in doubt after half a minute is calm after seven.
