@@ -248,7 +248,7 @@ impl Walk<'_> {
             Some(Quantity::GlideSlope) => {
                 Path::FlightPath(autopilot.glide_slope().map_or(0.0, |beam| -beam.angle_rad))
             }
-            Some(Quantity::Airspeed) if by_throttle => Path::FlightPath(flight_path_rad),
+            // Nobody holds it by throttle as well: no mode holds anything twice.
             Some(Quantity::Airspeed) => Path::Airspeed(airspeed_m_s),
         };
         let altitude_m = written(Quantity::Altitude, altitude_m);
@@ -290,3 +290,6 @@ fn limits_rad(autopilot: &Autopilot, mode: &Mode) -> Option<[f64; 2]> {
     let limits = controller.config().limits?;
     Some([limits.lower() / per_rad, limits.upper() / per_rad])
 }
+
+#[cfg(test)]
+mod tests;
