@@ -460,7 +460,7 @@ fn a_supervisor_sees_the_change_of_the_error_or_the_error_twice() {
     {
         let tuner = tuned_by_itself();
         let settings = TunerSettings { second_input, ..*tuner.tuner().settings() };
-        let supervisor = tuner.tuner().supervisor().clone();
+        let supervisor = *tuner.tuner().supervisor();
         let other = SelfTuner::new(tuner.tuner().nominal(), supervisor, settings);
         let fspid = Fspid::new(other.expect("allowed"), *tuner.config()).expect("allowed");
         let gains = fspid.tuner().gains_at_rest();
