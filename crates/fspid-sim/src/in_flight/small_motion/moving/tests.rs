@@ -215,6 +215,27 @@ fn sides_of_two_loops_add_what_two_fixed_controllers_have() {
     }
 }
 
+/// A metre above its target is a metre of error, and a metre a second that is commanded a sample's worth of the integral below.
+#[test]
+fn a_loop_sees_its_error_and_acts_in_units_of_what_it_holds_and_commands() {
+    for integral in [IntegralForm::Bumpless, IntegralForm::Literal] {
+        let config = PidConfig { integral, ..PidConfig::sampled_every(DT_S) };
+        let base = flight(with(loops(), &[(ALTITUDE_LOOP, pid(OF_ALTITUDE, config))]));
+        let question = Question::of(&base, 0);
+        let small = question.small();
+        let acting = acting(&question.asked, ALTITUDE_LOOP, &[side(OF_ALTITUDE)]);
+        let Reach { by_command, error } = reach_of(&question, &small, &acting);
+        let [_, ki_of_path, _] = OF_PATH;
+        for (at, place) in small.places.iter().enumerate() {
+            let expected = if *place == Place::Beyond(ALTITUDE) { -1.0 } else { 0.0 };
+            assert!((error[at] - expected).abs() < 1e-3, "{integral:?} {at}: {}", error[at]);
+            if *place == Place::Remembered(1 + PATH, 0) {
+                assert!((by_command[at] / (ki_of_path * DT_S) - 1.0).abs() < 1e-3, "{integral:?}");
+            }
+        }
+    }
+}
+
 /// Of a loop whose target another one moves: its error is that target less what is measured, whatever weight the target has in
 /// what it commands.
 #[test]
