@@ -254,3 +254,6 @@ fn of_mode(scenario: &Scenario, mode: usize, held: Held<'_>) -> Result<GrowthAtR
     let certain = Unstable { spectral_radius, from_s, doubling_s, at, mode };
     Ok(GrowthAtRest { certain: grows(spectral_radius).then_some(certain), undecided: None })
 }
+
+#[cfg(test)]
+mod tests;

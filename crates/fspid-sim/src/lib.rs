@@ -35,6 +35,8 @@ mod gust_entry;
 mod gust_response;
 mod held_limits;
 mod in_flight;
+#[cfg(test)]
+mod in_tests;
 mod inflow;
 mod instant;
 mod law;

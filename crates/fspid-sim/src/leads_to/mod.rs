@@ -2,6 +2,8 @@
 //! lead, with the throttle as it is where nobody moves it, and the way there where that lasts.
 
 mod targets;
+#[cfg(test)]
+mod tests;
 mod walk;
 mod wanted;
 

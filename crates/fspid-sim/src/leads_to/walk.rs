@@ -21,7 +21,7 @@ const SLIGHT_LOAD: f64 = 1.05;
 /// A scenario, the trim that it starts from, and what its modes are to hold.
 pub(super) struct Walk<'a> {
     scenario: &'a Scenario,
-    start: Trim,
+    pub(super) start: Trim,
     /// Pitch that is held where no loop moves it, rad.
     base_rad: f64,
     air: Air,
@@ -48,7 +48,7 @@ impl<'a> Walk<'a> {
         self.scenario.autopilot.as_ref().map_or(0, |it| it.modes().len())
     }
 
-    fn mode(&self, number: usize) -> Option<(&Autopilot, &Mode)> {
+    pub(super) fn mode(&self, number: usize) -> Option<(&Autopilot, &Mode)> {
         let autopilot = self.scenario.autopilot.as_ref()?;
         Some((autopilot, autopilot.modes().get(number)?))
     }
@@ -144,7 +144,7 @@ impl<'a> Walk<'a> {
     }
 
     /// What is held in a mode, all that it may be where loops have no integral.
-    fn held(
+    pub(super) fn held(
         &self,
         engaged: &Engaged<'_>,
         number: usize,
@@ -182,9 +182,6 @@ impl<'a> Walk<'a> {
             Some(Quantity::GlideSlope) => {
                 let beam = engaged.autopilot.glide_slope();
                 Way::OverGround(beam.map_or(0.0, |beam| -beam.angle_rad))
-            }
-            Some(Quantity::Airspeed) if engaged.throttle().is_some() => {
-                Way::Through(start.flight_path_rad)
             }
             Some(Quantity::Airspeed) => Way::Airspeed(airspeed_m_s),
         };
@@ -244,21 +241,21 @@ impl<'a> Walk<'a> {
 }
 
 /// What a mode engages.
-struct Engaged<'a> {
-    autopilot: &'a Autopilot,
-    mode: &'a Mode,
+pub(super) struct Engaged<'a> {
+    pub(super) autopilot: &'a Autopilot,
+    pub(super) mode: &'a Mode,
 }
 
 /// A controller and what it answers for one SI unit of what it moves.
 #[derive(Clone, Copy)]
-struct Mover<'a> {
+pub(super) struct Mover<'a> {
     controller: &'a Controller,
     per_unit: f64,
 }
 
 impl Mover<'_> {
     /// Ends of its command, counted from the trim, in SI units.
-    fn ends(&self) -> Option<[f64; 2]> {
+    pub(super) fn ends(&self) -> Option<[f64; 2]> {
         let limits = self.controller.config().limits?;
         Some([limits.lower() / self.per_unit, limits.upper() / self.per_unit])
     }
@@ -284,7 +281,7 @@ impl Engaged<'_> {
     }
 
     /// What moves pitch.
-    fn pitch(&self) -> Option<Mover<'_>> {
+    pub(super) fn pitch(&self) -> Option<Mover<'_>> {
         let total = self.autopilot.total_energy().filter(|_| self.mode.total_energy);
         let by_energy = total.map(|it| Mover { controller: &it.distribution, per_unit: 1.0 });
         by_energy.or_else(|| self.mover(Moves::Pitch))
@@ -302,7 +299,7 @@ impl Engaged<'_> {
     }
 
     /// The loop that moves pitch in the end and that no other loop moves.
-    fn outermost(&self) -> Option<&OuterLoop> {
+    pub(super) fn outermost(&self) -> Option<&OuterLoop> {
         let is_moved = |number: usize| self.loops().any(|(_, it)| it.moves == Moves::Loop(number));
         let of_path = |it: &OuterLoop| matches!(it.moves, Moves::Pitch | Moves::Loop(_));
         let mut found = self.loops().filter(|(number, it)| of_path(it) && !is_moved(*number));

@@ -58,3 +58,6 @@ impl Rest {
         matches!(self.second_input, SecondInput::Change)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -10,32 +10,32 @@ use fspid_fuzzy::{Defuzzifier, OutOfRange, Supervisor};
 
 use super::{Holding, RestPoint, Side, slopes};
 
-const DT_S: f64 = 0.02;
+pub(super) const DT_S: f64 = 0.02;
 const RANGE: f64 = 5.0;
-const LEAKAGE_PER_S: f64 = 4.0;
+pub(super) const LEAKAGE_PER_S: f64 = 4.0;
 /// Beside rest by so much, in the supervisor's units.
-const BESIDE: f64 = 1e-6;
+pub(super) const BESIDE: f64 = 1e-6;
 
 /// A linear congruence, for numbers that are the same each time.
-struct Dice(u64);
+pub(super) struct Dice(pub(super) u64);
 
 impl Dice {
-    fn between(&mut self, low: f64, high: f64) -> f64 {
+    pub(super) fn between(&mut self, low: f64, high: f64) -> f64 {
         self.0 =
             self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         low + (high - low) * ((self.0 >> 11) as f64 / (1_u64 << 53) as f64)
     }
 
-    fn one_of<T: Copy>(&mut self, values: &[T]) -> T {
+    pub(super) fn one_of<T: Copy>(&mut self, values: &[T]) -> T {
         values[(self.between(0.0, values.len() as f64) as usize).min(values.len() - 1)]
     }
 }
 
-fn supervisor() -> Supervisor<f64> {
+pub(super) fn supervisor() -> Supervisor<f64> {
     Supervisor::new(&paper::rules(), RANGE, Defuzzifier::Exact, OutOfRange::Clamp).expect("allowed")
 }
 
-fn controller(dice: &mut Dice) -> Fspid<f64> {
+pub(super) fn controller(dice: &mut Dice) -> Fspid<f64> {
     let model = ReferenceModel { bandwidth_rad_s: 1.5, damping: 0.8 };
     let settings = TunerSettings {
         error_sign: dice
@@ -74,15 +74,15 @@ fn controller(dice: &mut Dice) -> Fspid<f64> {
 }
 
 /// A sample beside rest.
-struct Moved {
-    error_rad: f64,
-    last_error_rad: f64,
-    rate_off_rad_s: f64,
+pub(super) struct Moved {
+    pub(super) error_rad: f64,
+    pub(super) last_error_rad: f64,
+    pub(super) rate_off_rad_s: f64,
 }
 
 impl Moved {
     /// What the linear loop on a side adds to the command there.
-    fn command_rad(&self, side: &Side, config: &PidConfig<f64>) -> f64 {
+    pub(super) fn command_rad(&self, side: &Side, config: &PidConfig<f64>) -> f64 {
         let Self { error_rad, last_error_rad, rate_off_rad_s } = *self;
         let change_rad = error_rad - last_error_rad;
         let by_derivative = side.gains.kd / (config.derivative.filter_s + DT_S);

@@ -323,6 +323,11 @@ fn a_trim_right_on_a_kink_of_the_aircrafts_data_is_undecided_and_one_beside_it_i
         assert_eq!(asked(0.0, &text), ((Some(Doubt::Kink), false), false));
         assert_eq!(asked(1e-4, &text), ((None, true), true));
     }
+    // Nor is it certain of a mode that differences across the kink call growing.
+    let growing =
+        |by: f64| result(&format!("{NAVION}{THROTTLE}"), &[&rows(by), "aircraft.validity=warn"]);
+    assert_eq!(doubt(&growing(0.0)), Some(Doubt::Kink));
+    assert!(growing(1e-4).at_rest.unstable.is_some_and(|it| it.mode == Some(0)));
 }
 
 /// A dive of 14 deg at the throttle of 40 m/s ends at 76 m/s, where the elevator has four times its power.

@@ -136,8 +136,9 @@ fn reach(
     }
     let more = acting.largest_more().copysign(gains.kp);
     let weight = config.setpoint_weights.proportional;
+    // Of the same sign, so that their sum is no zero.
     let kp = gains.kp + more;
-    let proportional = if kp == 0.0 { weight } else { (gains.kp * weight + more) / kp };
+    let proportional = (gains.kp * weight + more) / kp;
     let setpoint_weights = SetpointWeights { proportional, ..config.setpoint_weights };
     let Controller::Fixed(fixed) = unlimited(acting.controller, gains)? else { return Ok(None) };
     let config = PidConfig { setpoint_weights, ..*fixed.config() };
@@ -298,3 +299,6 @@ fn seen(small: &Small<'_>, reach: &Reach, rest: &Rest) -> [Vec<f64>; 2] {
     }
     [error, beside]
 }
+
+#[cfg(test)]
+mod tests;
