@@ -60,6 +60,11 @@ struct Reach {
 /// rest.
 pub(super) fn sides(asked: &Asked<'_>, small: &Small<'_>) -> Result<Option<Sides>, SimError> {
     let Some(mode) = asked.mode() else { return Ok(None) };
+    let energy = asked.autopilot.total_energy().filter(|_| mode.total_energy);
+    let mut energy = energy.iter().flat_map(|total| [&total.energy, &total.distribution]);
+    if energy.any(|controller| at_rest(controller).is_none()) {
+        return Ok(Some(Sides::undecided()));
+    }
     let mut acting = Vec::new();
     for &number in asked.autopilot.outermost_first(asked.mode) {
         match acting_loop(asked, small, mode, number) {
@@ -93,7 +98,7 @@ fn acting_loop<'a>(
 ) -> Option<Acting<'a>> {
     let autopilot = asked.autopilot;
     let outer = autopilot.loops().get(number)?;
-    let gains = at_rest(&outer.controller);
+    let gains = at_rest(&outer.controller)?;
     let Controller::SelfTuning(fspid) = &outer.controller else {
         return Some(Acting { number, controller: &outer.controller, gains, rests: Vec::new() });
     };

@@ -52,7 +52,7 @@ struct Question<'a> {
 impl<'a> Question<'a> {
     fn of(scenario: &'a Scenario, mode: usize) -> Self {
         let autopilot = scenario.autopilot.as_ref().expect("an autopilot");
-        let controller = unlimited(&pitch(), at_rest(&pitch())).expect("allowed");
+        let controller = unlimited(&pitch(), pitch().nominal()).expect("allowed");
         let seeing = Seeing::Latest;
         let prepared = still(scenario, autopilot, mode, seeing).expect("it flies");
         Self { asked: Asked { scenario, autopilot, mode, seeing, controller }, prepared }
@@ -66,7 +66,7 @@ impl<'a> Question<'a> {
 /// One loop that is said to have these sides at its one target.
 fn acting<'a>(asked: &Asked<'a>, number: usize, sides: &[Side]) -> Acting<'a> {
     let controller = &asked.autopilot.loops()[number].controller;
-    let gains = at_rest(controller);
+    let gains = at_rest(controller).expect("they stand still");
     let mut rest = Rest::still(gains);
     rest.sides = sides.to_vec();
     Acting { number, controller, gains, rests: vec![rest] }
