@@ -231,7 +231,7 @@ fn a_loop_sees_its_error_and_acts_in_units_of_what_it_holds_and_commands() {
         let question = Question::of(&base, 0);
         let small = question.small();
         let acting = acting(&question.asked, ALTITUDE_LOOP, &[side(OF_ALTITUDE)]);
-        let Reach { by_command, error } = reach_of(&question, &small, &acting);
+        let Reach { by_command, error, .. } = reach_of(&question, &small, &acting);
         let [_, ki_of_path, _] = OF_PATH;
         for (at, place) in small.places.iter().enumerate() {
             let expected = if *place == Place::Beyond(ALTITUDE) { -1.0 } else { 0.0 };
