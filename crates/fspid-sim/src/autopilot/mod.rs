@@ -145,6 +145,11 @@ impl Autopilot {
         &self.modes
     }
 
+    /// Numbers of the loops that a mode engages, the outermost first.
+    pub(crate) fn outermost_first(&self, mode: usize) -> &[usize] {
+        self.order.get(mode).map_or(&[], Vec::as_slice)
+    }
+
     /// The same with another controller in the place of one of its loops.
     pub(crate) fn with_controller(&self, number: usize, controller: Controller) -> Self {
         let mut other = self.clone();

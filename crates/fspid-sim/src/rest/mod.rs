@@ -251,6 +251,28 @@ fn leakage_per_s(fspid: &Fspid<f64>) -> Option<f64> {
     }
 }
 
+/// The gains that a self-tuner comes to with everything at zero; none where they gather without end.
+pub(crate) fn settled(fspid: &Fspid<f64>) -> Option<Gains<f64>> {
+    let tuner = fspid.tuner();
+    let Some(leakage_per_s) = leakage_per_s(fspid) else { return Some(tuner.gains_at_rest()) };
+    let is_silent = tuner.settings().dead_zone.is_some();
+    let added = tuner.increments_where_seen(0.0, 0.0).filter(|_| !is_silent);
+    let (added, nominal) = (added.unwrap_or(Gains::ZERO), tuner.nominal());
+    // Nothing gathers to nothing, without leakage too.
+    let free = |nominal: f64, added: f64| match added {
+        0.0 => nominal,
+        added => nominal + added / leakage_per_s,
+    };
+    let [kp, ki, kd] =
+        [free(nominal.kp, added.kp), free(nominal.ki, added.ki), free(nominal.kd, added.kd)];
+    let gains = tuner.settings().gain_limits.map_or(Gains { kp, ki, kd }, |limits| Gains {
+        kp: limits.kp.clamp(kp),
+        ki: limits.ki.clamp(ki),
+        kd: limits.kd.clamp(kd),
+    });
+    gains.checked().ok()
+}
+
 /// What the command has to be per rad of seen pitch.
 fn command_per_pitch(scenario: &Scenario, plant: &LinearPlant) -> f64 {
     let sensor = scenario.surroundings.pitch_sensor;

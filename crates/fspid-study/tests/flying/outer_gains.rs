@@ -211,3 +211,26 @@ fn what_is_told_of_drawn_self_tuners_around_the_pitch_loop_is_flown() {
     }
     assert_eq!(told, [14, 40]);
 }
+
+/// With gains of the first second at rest this mode was "stable", and `stable` was met. They gather to 5.6, and the altitude swings.
+#[test]
+fn a_mode_is_asked_with_the_gains_that_a_self_tuner_around_the_pitch_loop_comes_to() {
+    let gathers = [
+        "outer_loop[0].setpoint_weights.proportional=1.0",
+        "outer_loop[0].supervisor.error_scale=0.001",
+        "outer_loop[0].supervisor.change_scale=0.001",
+        "outer_loop[0].supervisor.output_scale.kp=0.5",
+        "outer_loop[0].law=accumulating",
+        "outer_loop[0].least=-50.0",
+        "outer_loop[0].most=50.0",
+    ];
+    let leaks = [&gathers[..], &["outer_loop[0].leakage_per_s=0.02", "loop.duration_s=200.0"]];
+    let flight = flown(&leaks.concat());
+    assert_eq!(flight.at_rest.unstable.expect("it grows").mode, Some(0));
+    let [before, after] = off_m(&flight, [120, 200]);
+    assert!(after > 1.0 && after > 2.0 * before, "{before} {after}");
+    // Without a leak they never stand still.
+    let flight = flown(&gathers);
+    assert!(flight.at_rest.unstable.is_none());
+    assert_eq!(doubt(&flight), Some(Doubt::OuterGains));
+}

@@ -52,14 +52,21 @@ struct Acting<'a> {
 struct Reach {
     by_command: Vec<f64>,
     error: Vec<f64>,
+    /// Where what its integral remembers stands among them, and what a unit of that commands.
+    memory: (usize, f64),
 }
 
 /// Of a mode in which outer loops are self-tuners that hold something; none where nothing is added to the matrix of the gains at
 /// rest.
 pub(super) fn sides(asked: &Asked<'_>, small: &Small<'_>) -> Result<Option<Sides>, SimError> {
     let Some(mode) = asked.mode() else { return Ok(None) };
+    let energy = asked.autopilot.total_energy().filter(|_| mode.total_energy);
+    let mut energy = energy.iter().flat_map(|total| [&total.energy, &total.distribution]);
+    if energy.any(|controller| at_rest(controller).is_none()) {
+        return Ok(Some(Sides::undecided()));
+    }
     let mut acting = Vec::new();
-    for &number in &mode.engaged {
+    for &number in asked.autopilot.outermost_first(asked.mode) {
         match acting_loop(asked, small, mode, number) {
             None => return Ok(Some(Sides::undecided())),
             Some(it) if it.rests.iter().all(|rest| rest.adds_nothing_to(it.gains)) => {}
@@ -91,7 +98,7 @@ fn acting_loop<'a>(
 ) -> Option<Acting<'a>> {
     let autopilot = asked.autopilot;
     let outer = autopilot.loops().get(number)?;
-    let gains = at_rest(&outer.controller);
+    let gains = at_rest(&outer.controller)?;
     let Controller::SelfTuning(fspid) = &outer.controller else {
         return Some(Acting { number, controller: &outer.controller, gains, rests: Vec::new() });
     };
@@ -128,6 +135,7 @@ fn reach(
         Place::Remembered(1 + before.count(), 0)
     });
     let Some(memory) = memory.filter(|_| command_per_memory != 0.0) else { return Ok(None) };
+    let Some(at) = small.places.iter().position(|place| *place == memory) else { return Ok(None) };
     let mut by_command = small.column(memory).map_err(|ended| ended.of(asked.mode))?;
     for (by_command, place) in by_command.iter_mut().zip(&small.places) {
         // The integral stays as well as it acts.
@@ -157,7 +165,8 @@ fn reach(
         along.sum::<f64>() / (size * more)
     });
     let error = error.collect();
-    Ok((size > 0.0).then_some(Reach { by_command, error }))
+    let memory = (at, command_per_memory);
+    Ok((size > 0.0).then_some(Reach { by_command, error, memory }))
 }
 
 /// One loop: at each target what its sides say together.
@@ -253,7 +262,8 @@ fn radius(rows: &[Vec<f64>]) -> Result<(f64, Vec<Complex>), SimError> {
 /// Numbers beside those of the flight for each loop: its error of the sample before, and what its gains gather.
 const BESIDE: usize = 2;
 
-/// The rows of a matrix with what these sides add to the commands of their loops.
+/// The rows of a matrix with what these sides add to the commands of their loops, the outermost first: what is added to one that
+/// moves the target of another is an error of that at the same sample.
 fn closed(small: &Small<'_>, sides: &[(&Reach, &Side, Gains<f64>)]) -> Vec<Vec<f64>> {
     let count = small.places.len();
     let size = count + BESIDE * sides.len();
@@ -263,10 +273,15 @@ fn closed(small: &Small<'_>, sides: &[(&Reach, &Side, Gains<f64>)]) -> Vec<Vec<f
             *value = small.matrix.get(row, column).unwrap_or(0.0);
         }
     }
+    let mut commands: Vec<(usize, f64, Vec<f64>)> = Vec::new();
     for (place, (reach, side, gains)) in sides.iter().enumerate() {
         let (previous, gathers) = (count + BESIDE * place, count + BESIDE * place + 1);
         let mut error = reach.error.clone();
         error.resize(size, 0.0);
+        for (memory, per_memory, command) in &commands {
+            let moves = reach.error[*memory] / per_memory;
+            error.iter_mut().zip(command).for_each(|(error, command)| *error += moves * command);
+        }
         let mut change = error.clone();
         change[previous] -= 1.0;
         let by = |of_error: f64, of_change: f64| -> Vec<f64> {
@@ -284,6 +299,7 @@ fn closed(small: &Small<'_>, sides: &[(&Reach, &Side, Gains<f64>)]) -> Vec<Vec<f
                 .for_each(|(value, command)| *value += by_command * command);
         }
         rows[previous].clone_from(&error);
+        commands.push((reach.memory.0, reach.memory.1, command));
     }
     rows
 }

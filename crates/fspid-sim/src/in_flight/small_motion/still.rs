@@ -8,6 +8,7 @@ use crate::autopilot::{Autopilot, Entry, GlideSlope, Mode, OuterLoop, TotalEnerg
 use crate::controller::Controller;
 use crate::error::SimError;
 use crate::loop_model::{Sensing, comes_again_after};
+use crate::rest::settled;
 use crate::scenario::{Prepared, Scenario};
 use crate::sensor::Sensor;
 use crate::surroundings::{Surroundings, Weather};
@@ -141,15 +142,14 @@ pub(super) fn still(
         }
     });
     let loops = autopilot.loops().iter().map(|outer| {
-        let gains = at_rest(&outer.controller);
-        let controller = unlimited(&outer.controller, gains)?;
+        let controller = resting(&outer.controller)?;
         Ok(OuterLoop { controller, sensor: late(outer.sensor), ..outer.clone() })
     });
     let loops = loops.collect::<Result<Vec<_>, SimError>>()?;
     let energy = autopilot.total_energy().map(|total| {
         Ok::<_, SimError>(TotalEnergy {
-            energy: unlimited(&total.energy, at_rest(&total.energy))?,
-            distribution: unlimited(&total.distribution, at_rest(&total.distribution))?,
+            energy: resting(&total.energy)?,
+            distribution: resting(&total.distribution)?,
             ..*total
         })
     });
@@ -191,12 +191,17 @@ fn sensors(scenario: &Scenario) -> impl Iterator<Item = &Sensor> {
     [pitch_sensor, rate_sensor].into_iter().chain(of_loops).chain(of_beam).flatten()
 }
 
-/// The gains that a controller has with everything at zero.
-pub(super) fn at_rest(controller: &Controller) -> Gains<f64> {
+/// The gains that a controller comes to with everything at zero; none where they gather without end.
+pub(super) fn at_rest(controller: &Controller) -> Option<Gains<f64>> {
     match controller {
-        Controller::Fixed(pid) => pid.gains(),
-        Controller::SelfTuning(fspid) => fspid.tuner().gains_at_rest(),
+        Controller::Fixed(pid) => Some(pid.gains()),
+        Controller::SelfTuning(fspid) => settled(fspid),
     }
+}
+
+/// A controller with the gains that it comes to, or begins with where they never stand still, and no limits.
+fn resting(controller: &Controller) -> Result<Controller, SimError> {
+    unlimited(controller, at_rest(controller).unwrap_or_else(|| controller.nominal()))
 }
 
 /// A controller with these gains that no limit acts on.

@@ -5,6 +5,7 @@ use fspid_core::{
     SecondInput, SelfTuner, State, TunerSettings,
 };
 
+use super::super::settled;
 use super::super::slopes;
 use super::super::tests::{BESIDE, DT_S, Dice, LEAKAGE_PER_S, Moved, controller, supervisor};
 use super::Rest;
@@ -107,7 +108,11 @@ fn a_held_target_adds_what_the_flown_controller_of_an_outer_loop_answers_beside_
             IntegralForm::Literal => dice.between(-20.0, 20.0),
         };
         let rested = fspid.step(&mut { state }, at_rest);
-        let (held, gains) = (rested.command_rad, rested.gains);
+        let held = rested.command_rad;
+        // Gains that gather come to more or less than what the rules add in a second.
+        let gains = settled(&fspid).expect("they stand still");
+        let apart = [gains.kp - rested.gains.kp, gains.ki - rested.gains.ki];
+        assert!(apart.iter().all(|apart| apart.abs() < 1e-9), "{round}: {apart:?}");
         let rest = Rest::of_outer_loop(&fspid, gains, [target, held]);
         // Of a rate nobody knows what it is there.
         let second_input = fspid.tuner().settings().second_input;

@@ -52,7 +52,7 @@ struct Question<'a> {
 impl<'a> Question<'a> {
     fn of(scenario: &'a Scenario, mode: usize) -> Self {
         let autopilot = scenario.autopilot.as_ref().expect("an autopilot");
-        let controller = unlimited(&pitch(), at_rest(&pitch())).expect("allowed");
+        let controller = unlimited(&pitch(), pitch().nominal()).expect("allowed");
         let seeing = Seeing::Latest;
         let prepared = still(scenario, autopilot, mode, seeing).expect("it flies");
         Self { asked: Asked { scenario, autopilot, mode, seeing, controller }, prepared }
@@ -66,7 +66,7 @@ impl<'a> Question<'a> {
 /// One loop that is said to have these sides at its one target.
 fn acting<'a>(asked: &Asked<'a>, number: usize, sides: &[Side]) -> Acting<'a> {
     let controller = &asked.autopilot.loops()[number].controller;
-    let gains = at_rest(controller);
+    let gains = at_rest(controller).expect("they stand still");
     let mut rest = Rest::still(gains);
     rest.sides = sides.to_vec();
     Acting { number, controller, gains, rests: vec![rest] }
@@ -91,6 +91,12 @@ struct Added {
 }
 
 impl Added {
+    fn times(self, by: f64) -> Self {
+        let late =
+            self.late.map(|[keeps, by_error, by_change]| [keeps, by * by_error, by * by_change]);
+        Self { kp: by * self.kp, change: by * self.change, late }
+    }
+
     fn side(self, gains: [f64; 3]) -> Side {
         let mut side = side(gains);
         side.gains.kp += self.kp;
@@ -173,11 +179,7 @@ fn a_side_adds_to_a_mode_what_a_fixed_controller_with_as_much_has() {
             let question = Question::of(&base, 0);
             let small = question.small();
             for added in ADDED {
-                let added = Added {
-                    kp: added.kp * small_ones,
-                    change: added.change * small_ones,
-                    late: added.late.map(|[keeps, a, b]| [keeps, a * small_ones, b * small_ones]),
-                };
+                let added = added.times(small_ones);
                 let side = added.side(gains);
                 let acting = acting(&question.asked, number, &[side]);
                 let reach = reach_of(&question, &small, &acting);
@@ -192,16 +194,21 @@ fn a_side_adds_to_a_mode_what_a_fixed_controller_with_as_much_has() {
     }
 }
 
-/// Numbers of one loop do not mix with those of another.
+/// Numbers of one loop do not mix with those of another, but by what the outer one of two commands: with both gains larger the
+/// loops of a cascade were asked without the product of what is added to them, and were stable where they grow.
 #[test]
 fn sides_of_two_loops_add_what_two_fixed_controllers_have() {
     let plain = PidConfig::sampled_every(DT_S);
-    let gains = [(ALTITUDE_LOOP, OF_ALTITUDE), (THROTTLE, [0.2, 0.02, 0.0])];
     let base = flight(loops());
     let question = Question::of(&base, 0);
     let small = question.small();
-    for [one, other] in [[0, 1], [2, 3], [1, 4], [3, 2]] {
-        let added = [ADDED[one], ADDED[other]];
+    let pairs = [(THROTTLE, [0.2, 0.02, 0.0]), (PATH, OF_PATH)];
+    for ([one, other], inner) in
+        [[0, 1], [2, 3], [1, 4], [3, 2]].into_iter().flat_map(|it| pairs.map(|inner| (it, inner)))
+    {
+        let gains = [(ALTITUDE_LOOP, OF_ALTITUDE), inner];
+        let small_ones = if inner.0 == PATH { 0.1 } else { 1.0 };
+        let added = [ADDED[one], ADDED[other].times(small_ones)];
         let sides = [0, 1].map(|at| added[at].side(gains[at].1));
         let acting = [0, 1].map(|at| acting(&question.asked, gains[at].0, &[sides[at]]));
         let reach = [0, 1].map(|at| reach_of(&question, &small, &acting[at]));
@@ -224,7 +231,7 @@ fn a_loop_sees_its_error_and_acts_in_units_of_what_it_holds_and_commands() {
         let question = Question::of(&base, 0);
         let small = question.small();
         let acting = acting(&question.asked, ALTITUDE_LOOP, &[side(OF_ALTITUDE)]);
-        let Reach { by_command, error } = reach_of(&question, &small, &acting);
+        let Reach { by_command, error, .. } = reach_of(&question, &small, &acting);
         let [_, ki_of_path, _] = OF_PATH;
         for (at, place) in small.places.iter().enumerate() {
             let expected = if *place == Place::Beyond(ALTITUDE) { -1.0 } else { 0.0 };
@@ -472,7 +479,7 @@ fn a_supervisor_sees_the_change_of_the_error_or_the_error_twice() {
     let small = question.small();
     let count = small.places.len();
     let error: Vec<f64> = (0..count).map(|place| 1.0 + place as f64).collect();
-    let reach = Reach { by_command: vec![0.0; count], error: error.clone() };
+    let reach = Reach { by_command: vec![0.0; count], error: error.clone(), memory: (0, 1.0) };
     // The error of the sample before, and what gathers, stand behind the numbers of the flight.
     let row = |before: f64| [error.as_slice(), &[before, 0.0]].concat();
     let model = ReferenceModel { bandwidth_rad_s: 1.0, damping: 0.7 };
