@@ -7,6 +7,7 @@ use fspid_aircraft::ForceModel;
 use fspid_core::{Gains, Limits};
 
 use crate::controller::Controller;
+use crate::flown_on;
 use crate::plant::LinearPlant;
 use crate::rest::{RestPoint, pitches_without_integral};
 use crate::scenario::Scenario;
@@ -72,8 +73,22 @@ fn last_plant(scenario: &Scenario) -> Option<LinearPlant> {
 
 /// True for a plant that does not come to rest under a command that stands still: it is unstable, or integrates.
 fn moves_by_itself(plant: &LinearPlant) -> bool {
+    has_pole_from(plant, -AT_REST)
+}
+
+/// True where one of its poles is at least so far to the right, as a share of one and its size.
+fn has_pole_from(plant: &LinearPlant, share: f64) -> bool {
     let poles = plant.transfer_function().poles().unwrap_or_default();
-    poles.iter().any(|pole| pole.re > -AT_REST * (1.0 + pole.norm()))
+    poles.iter().any(|pole| pole.re > share * (1.0 + pole.norm()))
+}
+
+/// How a plant moves under a command that stands still.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Moves {
+    /// It runs away: a pole lies to the right of the axis.
+    Away,
+    /// It goes on: a pole lies on the axis.
+    On,
 }
 
 /// What a rest takes, rad of elevator, nose up positive.
@@ -154,26 +169,79 @@ fn last_load_rad(scenario: &Scenario, entry: Entry) -> f64 {
 }
 
 /// True where a flight of a plant that does not come to rest by itself ends at a limit of controller or servo with an error
-/// that grows: through the last tenth of it, at every sample.
+/// that grows, through the last tenth of it, at every sample; or where a linear plant's, flown on, meets limits in a swing that
+/// does not shrink, or is lost.
 #[must_use]
 pub fn is_lost_at_a_limit(scenario: &Scenario, controller: &Controller, trace: &Trace) -> bool {
+    let moves = || {
+        let plant = last_plant(scenario).filter(moves_by_itself)?;
+        Some(if has_pole_from(&plant, AT_REST) { Moves::Away } else { Moves::On })
+    };
+    if runs_away(scenario, controller, trace) {
+        return moves().is_some();
+    }
+    flown_on::is_lost(scenario, controller, trace, moves)
+}
+
+/// True where each sample of the last tenth is at a limit, and further off than the one before.
+fn runs_away(scenario: &Scenario, controller: &Controller, trace: &Trace) -> bool {
     let rows = trace.rows();
     let tail = rows / 10;
-    let is_cut = |command_rad: &f64| is_at_a_limit(scenario, controller, *command_rad);
+    let ends = Ends::of(scenario, controller);
+    let is_cut = |command_rad: &f64| ends.are_met(*command_rad, 0.0);
     if tail < LEAST_TAIL || !trace.command_rad.last().is_some_and(is_cut) {
         return false;
     }
     let errors: Vec<f64> =
         trace.setpoint_rad.iter().zip(&trace.theta_rad).map(|(r, y)| (r - y).abs()).collect();
     let grows = errors.iter().skip(rows - tail).is_sorted_by(|one, next| one < next);
-    grows
-        && trace.command_rad.iter().rev().take(tail).all(is_cut)
-        && last_plant(scenario).is_some_and(|plant| moves_by_itself(&plant))
+    grows && trace.command_rad.iter().rev().take(tail).all(is_cut)
 }
 
-fn is_at_a_limit(scenario: &Scenario, controller: &Controller, command_rad: f64) -> bool {
-    let own = controller.config().limits.as_ref().map(|it| (it.lower(), it.upper()));
-    let at_end = |(least, most): (f64, f64)| command_rad <= least || command_rad >= most;
-    let of_airframe = travel_of_airframe(scenario);
-    own.into_iter().chain(limits_of_servo(scenario)).chain(of_airframe).any(at_end)
+/// What limits a command and what moves the elevator.
+#[derive(Clone, Debug)]
+pub(crate) struct Ends {
+    /// Of the controller's command, rad.
+    own: Option<(f64, f64)>,
+    /// Of what the servo is told and where it and the airframe let the elevator go, rad.
+    of_servo: Vec<(f64, f64)>,
+    /// Most that a command, and the elevator, move in a sample, rad.
+    by_sample: [Option<f64>; 2],
+}
+
+impl Ends {
+    pub(crate) fn of(scenario: &Scenario, controller: &Controller) -> Self {
+        let config = controller.config();
+        let dt_s = scenario.timing.dt_s();
+        let rates_rad_s = [config.slew_rad_s, scenario.actuator.rate_limit_rad_s()];
+        Self {
+            own: config.limits.as_ref().map(|it| (it.lower(), it.upper())),
+            of_servo: limits_of_servo(scenario).chain(travel_of_airframe(scenario)).collect(),
+            by_sample: rates_rad_s.map(|it| it.map(|rate_rad_s| rate_rad_s * dt_s)),
+        }
+    }
+
+    /// True where nothing has a limit.
+    pub(crate) fn are_none(&self) -> bool {
+        self.own.is_none() && self.of_servo.is_empty() && self.by_sample == [None; 2]
+    }
+
+    /// True where a command, or with what acts at the servo what it is told, is at a limit.
+    pub(crate) fn are_met(&self, command_rad: f64, at_servo_rad: f64) -> bool {
+        let at_end = |value: f64, (least, most): (f64, f64)| value <= least || value >= most;
+        let told_rad = command_rad + at_servo_rad;
+        self.own.is_some_and(|it| at_end(command_rad, it))
+            || self.of_servo.iter().any(|it| at_end(told_rad, *it))
+    }
+
+    /// True where command or elevator move in a sample by at least this share of the most that they may.
+    pub(crate) fn are_met_by_moving(
+        &self,
+        share: f64,
+        command_rad: f64,
+        elevator_rad: f64,
+    ) -> bool {
+        let moved = self.by_sample.iter().zip([command_rad, elevator_rad]);
+        moved.into_iter().any(|(most, by)| most.is_some_and(|most| by.abs() >= share * most))
+    }
 }

@@ -29,6 +29,7 @@ pub mod external;
 pub mod external_plant;
 pub mod flight_stack;
 pub mod flown;
+mod flown_on;
 mod generator;
 pub mod gradient;
 mod gust_entry;

@@ -21,6 +21,15 @@ pub struct Surroundings {
     pub rate_sensor: Option<Sensor>,
 }
 
+impl Surroundings {
+    /// True where a sensor shows noise or drift.
+    pub(crate) fn is_noisy(&self) -> bool {
+        let sensors = self.pitch_sensor.iter().chain(&self.rate_sensor);
+        let mut models = sensors.map(Sensor::model);
+        models.any(|it| it.noise_density > 0.0 || it.drift > 0.0)
+    }
+}
+
 /// The path that a linear plant is taken to fly: straight, at constant airspeed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Course {

@@ -6,6 +6,7 @@ mod clocks;
 mod closed_loop;
 mod describing;
 mod empirical;
+mod flown_on;
 mod gradient;
 mod held_limits;
 mod in_flight;

@@ -16,7 +16,8 @@ pub enum Doubt {
     },
     /// A side of a kink is unstable, and no motion was seen to grow.
     #[error(
-        "unstable on one side of a kink that the rules have where the loop rests (spectral radius {spectral_radius:.6} there), and no motion was seen to grow"
+        "unstable on one side of a kink that the rules have where the loop rests ({} there), and no motion was seen to grow",
+        in_words(*spectral_radius)
     )]
     OneSide {
         /// Spectral radius on that side.
@@ -24,7 +25,8 @@ pub enum Doubt {
     },
     /// A side of a kink is unstable, and so much is on its way that no motion is followed through the sides.
     #[error(
-        "unstable on one side of a kink that the rules have where the loop rests (spectral radius {spectral_radius:.6} there), and motions are not followed through so many samples on their way"
+        "unstable on one side of a kink that the rules have where the loop rests ({} there), and motions are not followed through so many samples on their way",
+        in_words(*spectral_radius)
     )]
     LongWay {
         /// Spectral radius on that side.
@@ -41,7 +43,8 @@ pub enum Doubt {
     LongMode,
     /// It grows at a set-point that the loops around the pitch loop may command.
     #[error(
-        "at a set-point that the loops around the pitch loop may command the loop is unstable (spectral radius {spectral_radius:.6})"
+        "at a set-point that the loops around the pitch loop may command the loop is unstable ({})",
+        in_words(*spectral_radius)
     )]
     Commanded {
         /// Spectral radius there.
@@ -55,7 +58,8 @@ pub enum Doubt {
     ChangedAircraft,
     /// About the trim of an aircraft something grows that is no pitching.
     #[error(
-        "about the trim something grows that is no pitching (spectral radius {spectral_radius:.6}): roll, yaw or bank, with leveller and damper as they are"
+        "about the trim something grows that is no pitching ({}): roll, yaw or bank, with leveller and damper as they are",
+        in_words(*spectral_radius)
     )]
     Wings {
         /// Spectral radius of all small motions, sample to sample.
@@ -63,7 +67,8 @@ pub enum Doubt {
     },
     /// A gyro's erection makes small motions grow, until its bounded rate holds them.
     #[error(
-        "with the erection of the vertical gyro small motions grow (spectral radius {spectral_radius:.6}) until its bounded rate holds them, so that an oscillation stays"
+        "with the erection of the vertical gyro small motions grow ({}) until its bounded rate holds them, so that an oscillation stays",
+        in_words(*spectral_radius)
     )]
     Erection {
         /// Spectral radius of all small motions, sample to sample.
@@ -72,7 +77,8 @@ pub enum Doubt {
     /// Pitch that is held on with the throttle of the start brings an aircraft to another airspeed, where it grows: by the set-point
     /// of the end, or by a configuration or fuel of later.
     #[error(
-        "held on, the pitch of the end brings the aircraft, with its configuration or its fuel of later and the throttle of its trim at the start, to another airspeed, at which the loop is unstable (spectral radius {spectral_radius:.6}): a longer flight shows it"
+        "held on, the pitch of the end brings the aircraft, as it is by then and with the throttle of its trim at the start, to another airspeed, at which the loop is unstable ({}): a longer flight shows it",
+        in_words(*spectral_radius)
     )]
     HeldOn {
         /// Spectral radius there.
@@ -80,7 +86,8 @@ pub enum Doubt {
     },
     /// A mode of the autopilot brings an aircraft to another airspeed or altitude, where it grows.
     #[error(
-        "{led}, where everything together that it engages is unstable (spectral radius {spectral_radius:.6}): a longer flight shows it"
+        "{led}, where everything together that it engages is unstable ({}): a longer flight shows it",
+        in_words(*spectral_radius)
     )]
     Led {
         /// The mode, and where it leads to.
@@ -93,7 +100,8 @@ pub enum Doubt {
     LedNowhere(Led),
     /// In the wind of the end of the flight, if it stays, a mode of the autopilot grows.
     #[error(
-        "in the wind of the end of the flight, if it stays, a mode of the autopilot is unstable (spectral radius {spectral_radius:.6}): a longer flight shows it"
+        "in the wind of the end of the flight, if it stays, a mode of the autopilot is unstable ({}): a longer flight shows it",
+        in_words(*spectral_radius)
     )]
     WindOfTheEnd {
         /// Spectral radius of everything that the mode engages.
@@ -116,11 +124,19 @@ pub enum Doubt {
     )]
     OuterGains,
     /// What is held at the end of the flight takes more than a limit leaves, of a plant that does not come to rest by itself; or
-    /// the flight of one ended at a limit with an error that grows.
+    /// the flight of one ended at a limit with an error that grows, or meets limits for ever, flown on.
     #[error(
-        "the plant does not come to rest by itself, and at the end of the flight set-point and loads take more elevator than a limit leaves, or the command is at a limit and the error grows"
+        "the plant does not come to rest by itself, and at the end of the flight set-point and loads take more elevator than a limit leaves, or the command is at a limit and the error grows, or the flight, flown on, meets limits and does not come to rest"
     )]
     BeyondLimits,
+}
+
+/// A spectral radius; who leaves a rest within the few samples that were flown has none that is a number.
+fn in_words(spectral_radius: f64) -> String {
+    match spectral_radius.is_finite() {
+        true => format!("spectral radius {spectral_radius:.6}"),
+        false => "it grows within a few samples".to_owned(),
+    }
 }
 
 impl Doubt {
@@ -146,5 +162,40 @@ impl Doubt {
             | Self::OuterGains
             | Self::BeyondLimits => true,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::leads_to::Leg;
+
+    #[test]
+    fn what_leaves_within_a_few_samples_is_said_so_and_no_number_is_shown_that_is_none() {
+        let led = Led { mode: 0, target: None, airspeed_m_s: None, leg: Leg::End };
+        for spectral_radius in [f64::INFINITY, f64::NAN] {
+            for doubt in [
+                Doubt::OneSide { spectral_radius },
+                Doubt::LongWay { spectral_radius },
+                Doubt::Commanded { spectral_radius },
+                Doubt::Wings { spectral_radius },
+                Doubt::Erection { spectral_radius },
+                Doubt::HeldOn { spectral_radius },
+                Doubt::Led { led, spectral_radius },
+                Doubt::WindOfTheEnd { spectral_radius },
+            ] {
+                let words = doubt.to_string();
+                assert!(words.contains("it grows within a few samples"), "{words}");
+                assert!(!words.contains("spectral radius"), "{words}");
+            }
+        }
+        let words = Doubt::Wings { spectral_radius: 1.25 }.to_string();
+        assert!(words.contains("(spectral radius 1.250000)"), "{words}");
+    }
+
+    #[test]
+    fn what_is_held_on_speaks_of_no_configuration_that_a_scenario_may_not_have() {
+        let words = Doubt::HeldOn { spectral_radius: 1.1 }.to_string();
+        assert!(!words.contains("configuration") && !words.contains("fuel"), "{words}");
     }
 }

@@ -71,6 +71,11 @@ impl Disturbance {
         !matches!(self.shape, Shape::Noise { .. } | Shape::Sine { .. })
     }
 
+    /// True for what moves for ever.
+    pub(crate) fn goes_on(&self) -> bool {
+        self.shape.goes_on()
+    }
+
     /// Its amplitude, rad, and its shape.
     pub(crate) fn part(&self) -> (f64, &Shape) {
         (self.amplitude_rad, &self.shape)

@@ -81,6 +81,15 @@ impl Profile {
         matches!(self.0, Kind::Shape { shape: Shape::Sine { .. } | Shape::Noise { .. }, .. })
     }
 
+    /// True for a set-point that moves for ever, a square wave among them.
+    pub(crate) fn goes_on(&self) -> bool {
+        matches!(&self.0, Kind::Shape { shape, .. } if shape.goes_on())
+    }
+
+    pub(crate) fn is_noise(&self) -> bool {
+        matches!(self.0, Kind::Shape { shape: Shape::Noise { .. }, .. })
+    }
+
     /// Least and largest set-point that is commanded in all time, rad; the trim is one of them.
     #[must_use]
     pub fn ends_rad(&self) -> [f64; 2] {

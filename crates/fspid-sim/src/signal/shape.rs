@@ -103,6 +103,11 @@ impl Shape {
         }
     }
 
+    /// True for what moves for ever: what else there is keeps its value from some time on.
+    pub(crate) fn goes_on(&self) -> bool {
+        matches!(self, Self::Square { .. } | Self::Sine { .. } | Self::Noise { .. })
+    }
+
     /// Adds `amplitude` times the shape to `values`, one entry a sample. `stream` keeps the noises
     /// of one seed apart.
     pub(crate) fn add_to(&self, values: &mut [f64], amplitude: f64, timing: Timing, stream: u64) {

@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 use super::{ControllerResult, FailedFlight, Judgement, Simulation};
 use crate::analysis::{AtRest, RestGains};
 use crate::json::{finite, present, unless_empty};
-use crate::metrics::{EdgeMetrics, METRICS, Measured, StepMetrics, Verdict};
+use crate::metrics::{Absent, EdgeMetrics, METRICS, Measured, StepMetrics, Verdict};
 use fspid_scenario::units::degrees;
 
 /// Version of the answer's shape.
@@ -16,8 +16,9 @@ const SCHEMA: u32 = 1;
 impl Simulation {
     /// The answer of `simulate --format json`. Of each controller `verdict` is a sentence, `outcome` the same for
     /// programs: its `kind` ([`Verdict::kind`]) and the numbers of that kind, `at_s`, `window_s`, `doubling_s` and
-    /// `spectral_radius`. `failed` says whether the flight fails whatever is required of it, `failures` why. `notes`
-    /// hold for the whole answer.
+    /// `spectral_radius`. `failed` says whether the flight fails whatever is required of it, `failures` why. `stability` is
+    /// that of the loop at rest, a word, where it could be asked, and `undecided` why nobody can tell. `notes` of a controller
+    /// are what the text says of it beside its measures, those beside them hold for the whole answer.
     #[must_use]
     pub fn json(&self) -> Value {
         present(json!({
@@ -48,6 +49,9 @@ fn controller(result: &ControllerResult) -> Value {
         "saturated_samples": result.trace.saturated_samples,
         "faults": result.trace.faults.to_string(),
         "gains": gains(&result.at_rest),
+        "stability": result.at_rest.stability_word(),
+        "undecided": result.at_rest.undecided.map(|it| Absent::Undecided(it.doubt).to_string()),
+        "notes": unless_empty(&notes(result), |words| json!(words)),
         "constant_load": result.at_rest.load.map(constant_load),
         "moves_the_wrong_way": result.metrics.wrong_way.then_some(true),
         "left_validity": result.trace.exit.map(|exit| json!({
@@ -58,6 +62,13 @@ fn controller(result: &ControllerResult) -> Value {
         })),
         "failures": (!failures.is_empty()).then_some(failures),
     }))
+}
+
+/// What the text says beside the measures and no other key does.
+fn notes(result: &ControllerResult) -> Vec<String> {
+    let at_rest = &result.at_rest;
+    let without_gains = at_rest.gains_in_words().filter(|_| at_rest.gains.gains().is_none());
+    without_gains.into_iter().chain(result.notes()).collect()
 }
 
 fn constant_load(load: ConstantLoad) -> Value {

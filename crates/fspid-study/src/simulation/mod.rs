@@ -18,7 +18,7 @@ use fspid_sim::{
     Controller, Flyer, NamedController, RestPoint, Scenario, SimError, Trace, simulate,
 };
 
-use crate::analysis::AtRest;
+use crate::analysis::{AtRest, RestGains};
 pub use crate::judgement::Judgement;
 use crate::judgement::{flown_on_their_own, judge};
 use crate::metrics::{Absent, FlightMetrics, Verdict};
@@ -55,7 +55,11 @@ impl ControllerResult {
         let scenario = &study.scenario;
         let (timing, pushes_s) = (scenario.timing, scenario.pushes_s());
         let named = scenario.controllers.iter().find(|it| it.name == name);
-        let is_lost = named.is_some_and(|it| is_lost_at_a_limit(scenario, &it.controller, &trace));
+        // Who flies without equations is no controller that could fly on.
+        let has_equations = at_rest.gains != RestGains::Unknown;
+        let is_open = has_equations && at_rest.unstable.is_none() && at_rest.undecided.is_none();
+        let is_lost =
+            is_open && named.is_some_and(|it| is_lost_at_a_limit(scenario, &it.controller, &trace));
         let at_rest = if is_lost { at_rest.lost_at_a_limit() } else { at_rest };
         let mut metrics = FlightMetrics::of(&trace, edges, timing, unstable, &pushes_s);
         if named.is_none() {

@@ -213,3 +213,46 @@ fn the_starter_has_a_load_that_stays_and_both_of_its_controllers_take_it_over() 
         assert!(result.at_rest.load.is_some_and(|load| load.is_removed()), "{}", result.name);
     }
 }
+
+/// Programs read "flown", no failure, and no word of the doubt that the text told.
+#[test]
+fn what_the_text_says_beside_a_flight_the_answer_for_programs_says_too() {
+    const STEP: &str = include_str!("../../../../scenarios/747-pitch-step.toml");
+    let cases: [(&str, &[&str]); 4] = [
+        (
+            STEP,
+            &["controller.FSPID.setpoint_weights.proportional=0.0", "setpoint.amplitude_deg=-12"],
+        ),
+        (
+            STEP,
+            &["controller.FSPID.law=accumulating", "controller.FSPID.supervisor.table=mirrored"],
+        ),
+        (STEP, &["controller.CPID.ki=0.0"]),
+        (SIGN, &["plant.elevator_sign=nose-down-positive"]),
+    ];
+    let (mut notes, mut doubts) = (0, 0);
+    for (scenario, set) in cases {
+        let simulation = Simulation::of(&study(scenario, set)).expect("it flies");
+        let json = simulation.json();
+        let text = simulation.text();
+        for (result, told) in simulation.results.iter().zip(json["controllers"].as_array().unwrap())
+        {
+            let list = told["notes"].as_array().map_or(&[][..], Vec::as_slice);
+            let said = result.notes();
+            for note in &said {
+                assert!(list.contains(&note.as_str().into()), "{note}: {told}");
+                assert!(text.contains(&format!("  note: {note}\n")), "{note}: {text}");
+            }
+            // Gains that are no one set are null, and these words say why.
+            let without_gains = result.at_rest.gains.gains().is_none();
+            assert_eq!(list.len(), said.len() + usize::from(without_gains), "{told}");
+            assert_eq!(told["gains"]["at_rest"].is_null(), without_gains, "{told}");
+            let doubt = told["undecided"].as_str();
+            assert_eq!(doubt.is_some(), result.at_rest.undecided.is_some(), "{told}");
+            assert_eq!(told["stability"].as_str(), result.at_rest.stability_word(), "{told}");
+            notes += list.len();
+            doubts += usize::from(doubt.is_some());
+        }
+    }
+    assert!(notes > 4 && doubts > 0, "{notes} {doubts}");
+}

@@ -45,9 +45,10 @@ fn an_unstable_plant_that_is_lost_at_a_limit_is_not_called_stable() {
     };
     assert_eq!(of(9.0, &[]), Some(Doubt::BeyondLimits));
     assert_eq!(of(3.0, &[]), None);
-    // Beyond what there is, however short the flight.
+    // However short the flight: beyond what there is, or lost when it goes on.
     assert_eq!(of(11.0, &["loop.duration_s=1.5"]), Some(Doubt::BeyondLimits));
-    assert_eq!(of(9.0, &["loop.duration_s=1.5"]), None);
+    assert_eq!(of(9.0, &["loop.duration_s=1.5"]), Some(Doubt::BeyondLimits));
+    assert_eq!(of(3.0, &["loop.duration_s=1.5"]), None);
     // A servo's own limits as well, which a load at it does not reach.
     let servo = ["actuator={time_constant_s=0.05, position_limit_deg=2.0}", "loop.duration_s=1.5"];
     assert_eq!(of(3.0, &servo), None);
@@ -162,4 +163,111 @@ width_s = 20.0
     };
     assert_eq!(of(-0.6), Some(Doubt::BeyondLimits));
     assert_eq!(of(-2.0), None);
+}
+
+/// A lightly damped plant that runs away, behind a servo with an end of its travel that a ramp takes a swing to.
+const SWINGS_LATER: &str = r#"
+schema = 1
+name = "swings later"
+[plant]
+numerator = [1.7654880430491657, 8.472202540070402]
+denominator = [1.0, 0.6666822977238218, 84.78151392738918, -21.98228273256644]
+elevator_sign = "nose-up-positive"
+[actuator]
+time_constant_s = 0.1
+delay_samples = 2
+position_limit_deg = 17.455
+[loop]
+sample_period_s = 0.005
+duration_s = 10.0
+[setpoint]
+kind = "ramp"
+amplitude_deg = -3.26846
+width_s = 5.0
+[[controller]]
+name = "PID"
+kind = "pid"
+kp = 2.5506819644042293
+ki = 4.74469695678181
+kd = 0.0
+setpoint_weights = { proportional = 0.6 }
+"#;
+
+/// A plant that runs away and follows a sine, for a few periods.
+const FOLLOWS: &str = r#"
+schema = 1
+name = "follows"
+[plant]
+numerator = [2.27650982088445, 16.627479239817916, 8.411935970196069]
+denominator = [1.0, 3.0094589925450723, 20.600145626717342, -17.433253915810855, 0.0]
+elevator_sign = "nose-up-positive"
+[actuator]
+delay_samples = 3
+[loop]
+sample_period_s = 0.02
+duration_s = 10.0
+[setpoint]
+kind = "sine"
+amplitude_deg = 3.0
+frequency_hz = 0.2
+[[controller]]
+name = "PID"
+kind = "pid"
+kp = 2.4
+ki = 0.05
+kd = 0.0
+output_limits_deg = [-3.42706, 7.68064]
+anti_windup = { kind = "back-calculation", tracking_s = 1.0 }
+setpoint_weights = { proportional = 0.6 }
+"#;
+
+/// A plant that integrates and swings from limit to limit for ever after a step.
+const SWINGS_FOR_EVER: &str = r#"
+schema = 1
+name = "swings for ever"
+[plant]
+numerator = [0.05480746048453045, 0.17393605397913903, 0.05603308968525515]
+denominator = [1.0, 0.1542436020494921, 0.018670660527296115, 0.0]
+elevator_sign = "nose-up-positive"
+[actuator]
+delay_samples = 1
+[loop]
+sample_period_s = 0.05
+duration_s = 10.0
+[setpoint]
+kind = "step"
+amplitude_deg = -5.10501
+[[disturbance]]
+kind = "step"
+enters_at = "servo"
+amplitude_deg = -2.54097
+at_s = 2.0
+[[controller]]
+name = "PID"
+kind = "pid"
+kp = 7.061723068717123
+ki = 0.0
+kd = 0.11734663779217713
+derivative_filter_s = 0.05
+output_limits_deg = [-13.8042, 12.0815]
+"#;
+
+/// Their rests are within the limits, and their flights of 10 s end with nothing to be seen: "flown", `stable` met.
+#[test]
+fn a_short_flight_whose_swing_at_limits_grows_or_stays_when_it_goes_on_is_undecided() {
+    for text in [SWINGS_LATER, FOLLOWS, SWINGS_FOR_EVER] {
+        let found = result(text, &[]);
+        assert!(!found.verdict().is_failure(), "{text}");
+        assert_eq!(found.at_rest.undecided.map(|it| it.doubt), Some(Doubt::BeyondLimits), "{text}");
+        // A third of what is commanded, or limits of three times as much, and it comes to rest.
+        let (small, wide) = match text {
+            SWINGS_LATER => ("setpoint.amplitude_deg=-1.0", "actuator.position_limit_deg=60.0"),
+            FOLLOWS => {
+                ("setpoint.amplitude_deg=0.5", "controller.PID.output_limits_deg=[-20.0, 20.0]")
+            }
+            _ => ("setpoint.amplitude_deg=-1.0", "controller.PID.output_limits_deg=[-90.0, 90.0]"),
+        };
+        let decided = |set| result(text, &[set]).at_rest.undecided.is_none();
+        assert!(decided(small) && decided(wide), "{text}");
+    }
 }

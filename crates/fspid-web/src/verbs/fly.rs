@@ -79,6 +79,6 @@ output_limits_deg = [-10.0, 10.0]
             let simulation = Simulation::of(&study).expect("it flies");
             trace(&mut Answer::of(Value::Null), &simulation.results[0])["good"].clone()
         };
-        assert_eq!((is_good(9.0), is_good(11.0)), (true.into(), false.into()));
+        assert_eq!((is_good(3.0), is_good(11.0)), (true.into(), false.into()));
     }
 }

@@ -1,0 +1,263 @@
+//! Whether a flight of a linear plant that does not come to rest by itself, and that meets limits, comes to rest when it goes on.
+//!
+//! Around a rest that limits leave, small motions decay; a swing that meets limits may grow from there on, or stay. Of such a
+//! flight nothing at rest speaks, so that it is flown on: with what is held at its end, and with what swings.
+
+use core::ops::ControlFlow;
+
+use crate::closed_loop::fly;
+use crate::controller::Controller;
+use crate::held_limits::{Ends, Moves};
+use crate::scenario::{Prepared, Scenario};
+use crate::signal::{Disturbance, Entry};
+use crate::timing::Timing;
+use crate::trace::{Outcome, Trace};
+
+/// So many times as long a flight is flown on.
+const TIMES: usize = 10;
+/// Samples of it, at least and at most.
+const SAMPLES: [usize; 2] = [5_000, 100_000];
+/// Fewest samples of a fifth of which something is said.
+const LEAST_FIFTH: usize = 10;
+/// An error that moves within a fifth of the flight by no more than this share of all its movement has come to rest.
+const RESTS: f64 = 1e-3;
+/// What has moved so many times as much has grown.
+const GROWN: f64 = 1.05;
+/// A limit of rate is met a thousandth before it, for rounding.
+const AT_RATE: f64 = 0.999;
+
+/// What an error does over some samples, and whether a limit was met in them.
+#[derive(Clone, Copy, Debug)]
+struct Span {
+    least_rad: f64,
+    most_rad: f64,
+    meets: bool,
+}
+
+impl Span {
+    const NONE: Self = Self { least_rad: f64::INFINITY, most_rad: f64::NEG_INFINITY, meets: false };
+
+    fn and(self, other: Self) -> Self {
+        Self {
+            least_rad: self.least_rad.min(other.least_rad),
+            most_rad: self.most_rad.max(other.most_rad),
+            meets: self.meets || other.meets,
+        }
+    }
+
+    fn of(spans: &[Self]) -> Self {
+        spans.iter().fold(Self::NONE, |all, one| all.and(*one))
+    }
+
+    fn size_rad(self) -> f64 {
+        (self.most_rad - self.least_rad).max(0.0)
+    }
+
+    /// True for the end of a flight that has come to rest, of which `all` is the whole.
+    fn rests(self, all: Self) -> bool {
+        !self.meets && self.size_rad() <= RESTS * all.size_rad()
+    }
+}
+
+/// A flight in pieces of one length; the last may be shorter.
+struct Pieces<'a> {
+    ends: &'a Ends,
+    length: usize,
+    samples: usize,
+    all: Vec<Span>,
+    before: Option<[f64; 2]>,
+}
+
+impl<'a> Pieces<'a> {
+    fn new(ends: &'a Ends, length: usize) -> Self {
+        Self { ends, length, samples: 0, all: Vec::new(), before: None }
+    }
+
+    /// Takes a sample: its error, its command, what acts beside it at the servo, and the elevator.
+    fn push(&mut self, error_rad: f64, command_rad: f64, at_servo_rad: f64, elevator_rad: f64) {
+        let [by_command, by_elevator] = self.before.map_or([0.0; 2], |[command, elevator]| {
+            [command_rad - command, elevator_rad - elevator]
+        });
+        self.before = Some([command_rad, elevator_rad]);
+        let meets = self.ends.are_met(command_rad, at_servo_rad)
+            || self.ends.are_met_by_moving(AT_RATE, by_command, by_elevator);
+        let sample = Span { least_rad: error_rad, most_rad: error_rad, meets };
+        if self.samples.is_multiple_of(self.length) {
+            self.all.push(Span::NONE);
+        }
+        self.samples += 1;
+        if let Some(last) = self.all.last_mut() {
+            *last = last.and(sample);
+        }
+    }
+
+    fn whole(&self) -> Span {
+        Span::of(&self.all)
+    }
+
+    /// True where the last piece, whole, has come to rest.
+    fn rests(&self) -> bool {
+        self.samples.is_multiple_of(self.length)
+            && self.all.last().is_some_and(|it| it.rests(self.whole()))
+    }
+
+    /// The last two pieces, one of them whole.
+    fn tail(&self) -> Span {
+        Span::of(&self.all[self.all.len().saturating_sub(2)..])
+    }
+
+    /// The flight in five parts.
+    fn fifths(&self) -> [Span; 5] {
+        let pieces = self.all.len();
+        std::array::from_fn(|part| Span::of(&self.all[part * pieces / 5..(part + 1) * pieces / 5]))
+    }
+
+    /// True where limits are met near the end, and the error moves there at least so many times as much as before: a last fifth
+    /// beside the one before it; or of a swing that is longer, the last two beside the first two.
+    fn goes_on(&self, times: f64) -> bool {
+        let [first, second, _, fourth, fifth] = self.fifths();
+        let (start, end) = (first.and(second), fourth.and(fifth));
+        let stays = fifth.size_rad() >= times * fourth.size_rad();
+        let has_grown = end.size_rad() >= times.max(GROWN) * start.size_rad();
+        end.meets && (stays || has_grown)
+    }
+}
+
+/// What keeps an error moving for ever.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Moved {
+    Nothing,
+    BySwings,
+    ByNoise,
+}
+
+impl Moved {
+    fn of(scenario: &Scenario) -> Self {
+        let is_noisy = scenario.disturbances.iter().any(Disturbance::is_noise)
+            || scenario.setpoint.is_noise()
+            || scenario.surroundings.is_noisy();
+        let swings =
+            scenario.setpoint.goes_on() || scenario.disturbances.iter().any(Disturbance::goes_on);
+        match (is_noisy, swings) {
+            (true, _) => Self::ByNoise,
+            (false, true) => Self::BySwings,
+            (false, false) => Self::Nothing,
+        }
+    }
+
+    /// How many times as much an error that is lost moves in a last fifth, at limits, as in the one before it. With nothing that
+    /// moves it, one that does not shrink by a hundredth stays. Moved by swings it grows; and a plant that runs away is held at a
+    /// limit by luck, however it has gone so far. Under noise, whose fifths differ by chance, it doubles.
+    fn least_growth(self, moves: Moves) -> f64 {
+        match (self, moves) {
+            (Self::Nothing, _) => 0.99,
+            (Self::BySwings, Moves::Away) => 0.0,
+            (Self::BySwings, Moves::On) => GROWN,
+            (Self::ByNoise, _) => 2.0,
+        }
+    }
+}
+
+/// True where a flight of a linear plant meets limits, and flown on it is lost, or still meets them in a swing that does not
+/// shrink. The plant is one that does not come to rest by itself.
+pub(crate) fn is_lost(
+    scenario: &Scenario,
+    controller: &Controller,
+    trace: &Trace,
+    moves: impl FnOnce() -> Option<Moves>,
+) -> bool {
+    let rows = scenario.timing.rows();
+    let ends = Ends::of(scenario, controller);
+    let length = rows / 5;
+    if ends.are_none() || length < LEAST_FIFTH || trace.rows() < rows || rows > SAMPLES[1] {
+        return false;
+    }
+    // Moving air is that of a way that ends with the flight.
+    let is_linear = scenario.plant.linear().is_some() && scenario.surroundings.weather.is_none();
+    if !is_linear || has_come_to_rest(scenario, &ends, trace) {
+        return false;
+    }
+    // What cannot be flown on says nothing.
+    let flown = moves().and_then(|moves| flies_on_and_is_lost(scenario, controller, &ends, moves));
+    flown.unwrap_or(false)
+}
+
+/// True where the flight itself has come to rest, or has met no limit under noise, which would go on for ever.
+fn has_come_to_rest(scenario: &Scenario, ends: &Ends, trace: &Trace) -> bool {
+    let at_servo = scenario.loads_rad(Entry::Servo);
+    let mut pieces = Pieces::new(ends, trace.rows() / 5);
+    for k in 0..trace.rows() {
+        let load_rad = at_servo.as_ref().and_then(|it| it.get(k)).copied().unwrap_or(0.0);
+        let error_rad = trace.setpoint_rad[k] - trace.theta_rad[k];
+        pieces.push(error_rad, trace.command_rad[k], load_rad, trace.elevator_rad[k]);
+    }
+    let whole = pieces.whole();
+    match Moved::of(scenario) {
+        Moved::Nothing => pieces.tail().rests(whole),
+        Moved::BySwings => false,
+        Moved::ByNoise => !whole.meets,
+    }
+}
+
+fn flies_on_and_is_lost(
+    scenario: &Scenario,
+    controller: &Controller,
+    ends: &Ends,
+    moves: Moves,
+) -> Option<bool> {
+    let rows = scenario.timing.rows();
+    let prepared = held_on(scenario, (TIMES * rows).clamp(SAMPLES[0], SAMPLES[1]))?;
+    let mut pieces = Pieces::new(ends, rows / 5);
+    let moved = Moved::of(scenario);
+    let mut rested = false;
+    let outcome = fly(&prepared, controller, |instant| {
+        let load_rad =
+            prepared.at_servo.as_ref().and_then(|it| it.get(instant.k)).copied().unwrap_or(0.0);
+        let error_rad = instant.setpoint_rad - instant.theta_rad;
+        pieces.push(error_rad, instant.step.command_rad, load_rad, instant.elevator_rad);
+        rested = moved == Moved::Nothing && instant.k > rows && pieces.rests();
+        if rested { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    let is_lost = !matches!(outcome.ok()?, Outcome::Completed);
+    Some(!rested && (is_lost || pieces.goes_on(moved.least_growth(moves))))
+}
+
+/// The flight as it goes on to so many samples: what stands still at its end is held, what swings swings on, and what would
+/// begin later does not.
+fn held_on(scenario: &Scenario, rows: usize) -> Option<Prepared> {
+    let before = scenario.timing.rows();
+    let dt_s = scenario.timing.dt_s();
+    let mut own = scenario.clone();
+    own.timing = Timing::new(dt_s, dt_s * (rows - 1) as f64).ok()?;
+    let end_s = scenario.timing.end_s();
+    own.plant_changes.retain(|it| it.at_s() <= end_s);
+    let mut prepared = own.prepare().ok()?;
+    hold(&mut prepared.setpoint_rad, before, scenario.setpoint.goes_on());
+    let places = [
+        (Entry::Servo, &mut prepared.at_servo),
+        (Entry::Elevator, &mut prepared.at_elevator),
+        (Entry::Measurement, &mut prepared.at_measurement),
+    ];
+    for (entry, values) in places {
+        let Some(values) = values else { continue };
+        values.fill(0.0);
+        for (stream, disturbance) in (0_u64..).zip(&own.disturbances) {
+            if disturbance.entry() == entry {
+                let mut one = vec![0.0; values.len()];
+                disturbance.add_to(&mut one, own.timing, stream);
+                hold(&mut one, before, disturbance.goes_on());
+                values.iter_mut().zip(one).for_each(|(sum, value)| *sum += value);
+            }
+        }
+    }
+    Some(prepared)
+}
+
+/// Holds the last of the first samples, unless the signal swings on; one that is nothing within them stays so.
+fn hold(values: &mut [f64], before: usize, swings_on: bool) {
+    let begins_later = values.iter().take(before).all(|value| *value == 0.0);
+    let last = values.get(before - 1).copied().unwrap_or(0.0);
+    if !swings_on || begins_later {
+        values.iter_mut().skip(before).for_each(|value| *value = last);
+    }
+}
