@@ -173,7 +173,7 @@ fn an_interval_of_what_fails_counts_cases_and_holds_the_truth() {
             .collect();
         let judged = judged(&[("PID", flights)], 10, 0);
         let [lower, upper] = Summary::of(&judged, 0).failed;
-        holds += u64::from(lower <= 0.3 && 0.3 <= upper);
+        holds += u64::from((lower..=upper).contains(&0.3));
     }
     // 95 % are 285, less three standard errors of 4.
     assert!(holds >= 273, "{holds} of {CONTESTS}");
