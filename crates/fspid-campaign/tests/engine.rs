@@ -203,6 +203,19 @@ fn a_flight_that_does_not_settle_has_failed_where_nothing_is_required() {
     assert!(flights.iter().all(|flight| !flight.is_failed() && flight.reasons().is_empty()));
 }
 
+/// One line about the short period, which no controller moves, made "0 flights failed" of twenty that did not settle.
+#[test]
+fn what_is_required_of_the_aircraft_alone_excuses_no_flight_that_does_not_settle() {
+    let asked = format!("{STEP}\n[[requirement]]\nmeasure = \"phugoid_damping\"\nleast = 0.0\n");
+    let short = template(&asked).with(&[(&path("loop.duration_s"), NewValue::Number(2.0))]);
+    let flights = alone(&short.expect("a scenario"));
+    for flight in &flights {
+        assert!(flight.judgements.iter().all(|judgement| judgement.met), "{flight:?}");
+        assert_eq!(flight.reasons(), ["not settled within 2 s"]);
+        assert!(flight.is_failed());
+    }
+}
+
 /// The Navion at 300 ft with a step of -10 deg flew on to -276 m, and none of 20 such flights failed.
 #[test]
 fn flights_into_the_ground_and_beyond_the_data_fail_and_say_why() {

@@ -220,10 +220,12 @@ impl FlightResult {
             || self.judgements.iter().any(|judgement| !judgement.met)
     }
 
-    /// Where nothing is required of it, a flight is asked to settle its steps.
+    /// Where nothing is required of its controller, a flight is asked to settle its steps. What is required of the aircraft
+    /// alone says nothing of how it was flown.
     fn is_unsettled(&self) -> bool {
         let verdict = self.metrics.verdict;
-        self.judgements.is_empty() && !verdict.is_good() && !verdict.is_failure()
+        let is_asked = self.judgements.iter().any(|judgement| !judgement.is_of_aircraft());
+        !is_asked && !verdict.is_good() && !verdict.is_failure()
     }
 
     /// Why the flight counts as failed: it fails by itself, requirements are not met, or, where nothing is required of

@@ -7,7 +7,7 @@ use fspid_scenario::measure::label;
 use super::measures;
 use super::words::{axis_label, cut, number, share};
 use super::{Source, style};
-use crate::summary::{ControllerSummary, Influence, Sensitivity, SensitivityTarget};
+use crate::summary::{AboveChance, ControllerSummary, Influence, Sensitivity, SensitivityTarget};
 
 /// Most controllers in one figure.
 const MOST_CONTROLLERS: usize = 6;
@@ -36,12 +36,20 @@ pub(super) fn chapter(source: &Source<'_>) -> Option<Chapter> {
         return Some(Chapter { items, ..named() });
     }
     let mut items = vec![Item::Text(
-        "A share of the variance says how much of the spread would go if that parameter alone stood still; a rank correlation says which way it pulls, from \u{2212}1 (more of it, less of the measure) to 1. Shares that sum to less than 100 % leave the rest to parameters acting together and to noise. Bars are 95 % intervals, approximate.".to_owned(),
+        "A share of the variance says how much of the spread would go if that parameter alone stood still; a rank correlation says which way it pulls, from \u{2212}1 (more of it, less of the measure) to 1. Shares that sum to less than 100 % leave the rest to parameters acting together and to noise. Bars are 95 % intervals, approximate, each alone: of many parameters that do nothing some stand out.".to_owned(),
     )];
+    items.push(Item::List(above_chance(source)));
     let figures = targets.iter().take(MOST_FIGURES + 1).map(|target| picture(source, target));
     items.push(Item::Figures(figures.collect()));
     items.push(Item::Fold("All measures in numbers".to_owned(), vec![Item::Table(table(source))]));
     Some(Chapter { items, ..named() })
+}
+
+/// How many shares of each controller are more than chance, of all that are asked together.
+fn above_chance(source: &Source<'_>) -> Vec<String> {
+    let controllers = source.summary.controllers.iter().enumerate();
+    let found = controllers.map(|(n, it)| (n, AboveChance::of(it))).filter(|(_, it)| it.asked > 0);
+    found.map(|(n, it)| format!("{}: {}.", source.name(n), it.in_words())).collect()
 }
 
 fn named() -> Chapter {
@@ -179,7 +187,7 @@ fn table(source: &Source<'_>) -> DataTable {
     }
     rows.truncate(MOST_TABLE);
     DataTable {
-        caption: "The three parameters that each measure depends on most: share of the variance with its standard error, and rank correlation.".to_owned(),
+        caption: "The three parameters that each measure depends on most: share of the variance with its standard error, and rank correlation. The first of a measure need not be more than chance.".to_owned(),
         head: head.map(str::to_owned).to_vec(),
         rows,
         cards: true,

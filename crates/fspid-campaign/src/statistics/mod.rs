@@ -11,6 +11,7 @@
 //! The same column gives the same bits on every machine: sums run in the order of the rows, elementary functions come from
 //! `libm`.
 
+pub mod beta;
 pub mod binomial;
 mod error;
 mod exact;

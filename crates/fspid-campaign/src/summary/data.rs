@@ -328,6 +328,8 @@ pub struct Influence {
     /// flights, and for texts with more different ones than the root of the number of flights.
     #[serde(rename = "variance_share")]
     pub share: Option<Share>,
+    /// The chance that a parameter without any influence would have such a share, by ranks; `None` where there is none.
+    pub p: Option<f64>,
 }
 
 /// A measure and in how many flights something is so of it.

@@ -44,7 +44,7 @@ const SCHEMA: u64 = 1;
 ///   sensitivities       [{ of: failure | measure, measure, used, runs_used, runs,
 ///                          parameters: [{ parameter,
 ///                            rank_correlation: { coefficient, interval_95: [lower, upper], pairs },
-///                            variance_share: { fraction, uncorrected, standard_error, classes } }] }]
+///                            variance_share: { fraction, uncorrected, standard_error, classes }, p }] }]
 /// }]
 /// notes                 [{ note, text, … what the note is about }]
 ///
@@ -83,7 +83,7 @@ pub fn json(summary: &Summary) -> Value {
 }
 
 /// Why keys of the answer are null.
-const NULLS: [(&str, &str); 27] = [
+const NULLS: [(&str, &str); 28] = [
     ("digest", "parts were read one by one, or what was read holds none"),
     (
         "at_least",
@@ -108,6 +108,7 @@ const NULLS: [(&str, &str); 27] = [
     ("diverged_at_s", "the flight did not diverge"),
     ("rank_correlation", NO_SHARE),
     ("variance_share", NO_SHARE),
+    ("p", NO_SHARE),
     ("coefficient", NO_SHARE),
     ("fraction", NO_SHARE),
     ("uncorrected", NO_SHARE),

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use fspid_scenario::measure::{Family, Measure};
 use rayon::prelude::*;
 
 use super::data::{
@@ -175,11 +176,19 @@ fn notes(source: &Source, controllers: &[ControllerSummary]) -> Vec<Note> {
 }
 
 impl ControllerSummary {
-    /// True where some flight was judged by a requirement; otherwise a flight that does not fail was called good by
-    /// nobody.
+    /// True where some flight was judged by a requirement of more than the aircraft alone; otherwise a flight that does
+    /// not fail was called good by nobody.
     #[must_use]
     pub fn is_judged(&self) -> bool {
-        self.requirements.iter().any(|it| it.not_met.of > 0)
+        let is_of_aircraft = |measure: &str| {
+            Measure::from_name(measure).is_some_and(|it| it.family() == Family::Airframe)
+        };
+        self.requirements.iter().any(|it| it.not_met.of > 0 && !is_of_aircraft(&it.measure))
+    }
+
+    /// True where the aircraft alone is asked something.
+    pub(super) fn is_aircraft_judged(&self) -> bool {
+        !self.is_judged() && self.requirements.iter().any(|it| it.not_met.of > 0)
     }
 
     /// False for the column of a requirement that does not concern this controller.

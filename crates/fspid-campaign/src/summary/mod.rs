@@ -17,6 +17,7 @@
 //! [`Sketch`](crate::statistics::Sketch) of each column, whose quantiles say how far they may be off. Memory is that
 //! of the sketches, some MB a column, whatever the number of rows; the bits do not depend on how the rows are cut.
 
+mod above_chance;
 mod data;
 mod error;
 mod files;
@@ -32,6 +33,7 @@ mod source;
 mod text;
 pub mod words;
 
+pub(crate) use above_chance::AboveChance;
 pub use data::{
     Bad, ControllerSummary, Extreme, FailedRun, Head, Influence, Limits, MeasureCount,
     MeasureSummary, Note, Parameter, Probability, QuantileSummary, RequirementSummary, Sensitivity,

@@ -103,7 +103,8 @@ impl Factors {
         let influences = self.factors.par_iter().zip(&selection.factors).map(|(factor, ready)| {
             let correlation = ready.correlation(&values, &value_ranks);
             let share = ready.share(&values);
-            Influence { parameter: factor.name.clone(), correlation, share }
+            let p = ready.chance(&values, &value_ranks);
+            Influence { parameter: factor.name.clone(), correlation, share, p }
         });
         Sensitivity {
             of,
@@ -258,6 +259,14 @@ impl Ready {
         match &self.drawn {
             None => classes.share_of(values),
             Some(drawn) => classes.share_of(&selected(values, drawn)),
+        }
+    }
+
+    fn chance(&self, values: &[f64], value_ranks: &[f64]) -> Option<f64> {
+        let classes = self.classes.as_ref()?;
+        match &self.drawn {
+            None => classes.chance_of(value_ranks),
+            Some(drawn) => classes.chance_of(&ranks(&selected(values, drawn))),
         }
     }
 }

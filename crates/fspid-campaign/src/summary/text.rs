@@ -2,9 +2,10 @@
 
 use fspid_page::columns::{self, Align, Columns};
 
+use super::above_chance::AboveChance;
 use super::data::{
-    Bad, ControllerSummary, Extreme, Head, Influence, MeasureSummary, QuantileSummary,
-    RequirementSummary, Sensitivity, SensitivityTarget, Severity, Summary,
+    Bad, ControllerSummary, Extreme, Head, MeasureSummary, QuantileSummary, RequirementSummary,
+    Sensitivity, SensitivityTarget, Severity, Summary,
 };
 use super::words::{number, percent, whole};
 
@@ -12,12 +13,9 @@ use super::words::{number, percent, whole};
 const WIDTH: usize = 100;
 /// Longest name of a measure or parameter in a table, in characters: three of them and four numbers fit into a line.
 const NAME: usize = 22;
-/// Least share of the variance that is named, and how many standard errors it must be above 0.
-const LEAST_SHARE: f64 = 0.01;
-const SURE: f64 = 2.0;
 /// What the columns are.
 const LEGEND: &str = "without: flights that do not have the measure. share: of the variance, what the \
-    parameter explains alone, where it is 1 % at least and above 0 by two standard errors. rank: Spearman's \
+    parameter explains alone, where it is 1 % at least and above chance, for all shares of a controller together. rank: Spearman's \
     correlation. run: number of the flight with the worst value.";
 /// What stands where there is nothing.
 const NOTHING: &str = "\u{2013}";
@@ -69,6 +67,9 @@ fn of_controller(controller: &ControllerSummary, confidence: f64) -> Vec<String>
     let failed = controller.failed.in_words(confidence);
     lines.push(match controller.is_judged() {
         true => format!("  fails {failed}"),
+        false if controller.is_aircraft_judged() => format!(
+            "  nothing is required of it but of the aircraft; not settled, failed by itself, or that is not met: {failed}"
+        ),
         false => format!("  nothing is required of it; not settled, or failed by itself: {failed}"),
     });
     let verdicts: Vec<String> = controller
@@ -93,8 +94,12 @@ fn of_controller(controller: &ControllerSummary, confidence: f64) -> Vec<String>
             SensitivityTarget::Failure => false,
             SensitivityTarget::Measure(name) => requirement_of(name).is_some(),
         });
-    lines.extend(sensitivities("measure", &others));
-    lines.extend(sensitivities("requirement", &values));
+    let above = AboveChance::of(controller);
+    lines.extend(sensitivities("measure", &others, above));
+    lines.extend(sensitivities("requirement", &values, above));
+    if above.asked > 0 {
+        lines.extend([String::new(), format!("  {}", above.in_words())]);
+    }
     lines.extend(failed_runs(controller));
     lines
 }
@@ -176,7 +181,7 @@ fn extreme(extreme: Option<Extreme>) -> [String; 2] {
     }
 }
 
-fn sensitivities(heading: &str, sensitivities: &[&Sensitivity]) -> Vec<String> {
+fn sensitivities(heading: &str, sensitivities: &[&Sensitivity], above: AboveChance) -> Vec<String> {
     let mut table = Columns::new(&[
         (heading, Align::Left),
         ("depends most on", Align::Left),
@@ -192,7 +197,8 @@ fn sensitivities(heading: &str, sensitivities: &[&Sensitivity]) -> Vec<String> {
             SensitivityTarget::Measure(name) => short_name(name),
         };
         let mut row = vec![cut(name)];
-        let mut influences: Vec<_> = sensitivity.influences.iter().filter_map(clear).collect();
+        let named = |it| Some((it, above.names(it)?));
+        let mut influences: Vec<_> = sensitivity.influences.iter().filter_map(named).collect();
         influences.sort_by(|a, b| b.1.total_cmp(&a.1));
         for (influence, share) in influences.iter().take(2) {
             let rank = influence.correlation.map(|found| rank(found.coefficient));
@@ -206,13 +212,6 @@ fn sensitivities(heading: &str, sensitivities: &[&Sensitivity]) -> Vec<String> {
         }
     }
     below(&table)
-}
-
-/// An influence whose share is clearly above 0, with it.
-fn clear(influence: &Influence) -> Option<(&Influence, f64)> {
-    let share = influence.share?;
-    let is_clear = share.fraction >= LEAST_SHARE && share.fraction > SURE * share.standard_error;
-    is_clear.then_some((influence, share.fraction))
 }
 
 fn rank(coefficient: f64) -> String {

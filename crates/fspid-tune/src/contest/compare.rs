@@ -37,8 +37,10 @@ pub(crate) enum Bar {
 
 /// Why one controller is not called better than another, if it is not. What fails is no success beside what does not,
 /// and errors of flights that fail are no measure of success.
-pub(crate) fn barred(judged: &Judged, one: &Contestant, other: &Contestant) -> Option<Bar> {
+pub(crate) fn barred(judged: &Judged, one: usize, other: usize) -> Option<Bar> {
     let all = judged.all();
+    let evidence = judged.evidence_between(&[one, other]).into_iter();
+    let (one, other) = (judged.contestants.get(one)?, judged.contestants.get(other)?);
     let [mine, theirs] = [one, other].map(|it| judged.count(it, &all));
     if mine.failed == mine.of {
         return Some(Bar::AllFail);
@@ -47,7 +49,6 @@ pub(crate) fn barred(judged: &Judged, one: &Contestant, other: &Contestant) -> O
         return Some(Bar::Unstable);
     }
     let share = |it: &Contestant, case: usize| judged.count(it, &[case]).failed_share();
-    let evidence = judged.evidence().into_iter();
     let differences: Vec<f64> =
         evidence.map(|case| share(one, case) - share(other, case)).collect();
     let p = SignedRank::of(&differences, CONFIDENCE).map_or(1.0, |it| it.p);
@@ -72,6 +73,8 @@ pub struct Ratio {
 pub struct Comparison {
     /// Place of the controller.
     pub contestant: usize,
+    /// Cases that are evidence between both: those that they do not fly to the last bit as another, or as one of the tuning.
+    pub evidence: usize,
     /// Ratio of the means over all cases and designs; infinite where it lost a flight, none where both did.
     pub ratio_of_means: Option<f64>,
     /// The mean ratio, with an interval that holds together with those of the other controllers.
@@ -109,17 +112,26 @@ pub struct Lost {
     pub p_adjusted: f64,
 }
 
-/// Compares everyone with the one; `None` where a value of the quantity is not above 0, so that it has no ratio.
+/// Compares everyone with the one whom the scenario names.
 pub(crate) fn compared(judged: &Judged, quantity: Quantity) -> Option<Vec<Comparison>> {
-    let reference = judged.contestants.get(judged.against)?;
+    compared_with(judged, quantity, judged.against)
+}
+
+/// Compares everyone with one of them; `None` where a value of the quantity is not above 0, so that it has no ratio.
+pub(crate) fn compared_with(
+    judged: &Judged,
+    quantity: Quantity,
+    one: usize,
+) -> Option<Vec<Comparison>> {
+    let reference = judged.contestants.get(one)?;
     if !is_positive(judged, quantity) {
         return None;
     }
-    let others = judged.contestants.iter().enumerate().filter(|(at, _)| *at != judged.against);
+    let others = judged.contestants.iter().enumerate().filter(|(at, _)| *at != one);
     let count = judged.contestants.len().saturating_sub(1).max(1);
     // Each interval gives up its share of the doubt, so that all hold together (Bonferroni).
     let together = 1.0 - (1.0 - CONFIDENCE) / count as f64;
-    let pair = Pair { judged, quantity, theirs: reference };
+    let pair = Pair { judged, quantity, reference: one, theirs: reference };
     let mut all: Vec<Comparison> =
         others.map(|(place, mine)| pair.comparison(place, mine, together)).collect();
     let adjusted = holm(&all.iter().map(|it| it.p).collect::<Vec<_>>());
@@ -144,6 +156,8 @@ fn is_positive(judged: &Judged, quantity: Quantity) -> bool {
 struct Pair<'a> {
     judged: &'a Judged,
     quantity: Quantity,
+    /// Place of the one that is compared with.
+    reference: usize,
     theirs: &'a Contestant,
 }
 
@@ -151,14 +165,14 @@ impl Pair<'_> {
     fn comparison(&self, place: usize, mine: &Contestant, together: f64) -> Comparison {
         let all = self.judged.all();
         let cases: Vec<f64> = all.iter().map(|case| self.case(mine, *case)).collect();
-        let evidence = self.judged.evidence();
+        let evidence = self.judged.evidence_between(&[place, self.reference]);
         let of_evidence: Vec<f64> = evidence.iter().map(|case| self.case(mine, *case)).collect();
         let typical = SignedRank::of(&of_evidence, CONFIDENCE);
         let (over, ratio) = self.ratio(mine, &evidence, together);
         let groups = self.judged.groups();
-        let groups = groups.into_iter().map(|it| {
-            let cases = self.judged.of_their_own(it.cases);
-            self.ratio(mine, &cases, CONFIDENCE).1
+        let groups = groups.into_iter().map(|mut it| {
+            it.cases.retain(|case| evidence.binary_search(case).is_ok());
+            self.ratio(mine, &it.cases, CONFIDENCE).1
         });
         let p = match (over, typical) {
             // Two tests that point in different directions have found nothing.
@@ -169,6 +183,7 @@ impl Pair<'_> {
         };
         Comparison {
             contestant: place,
+            evidence: evidence.len(),
             ratio_of_means: self.ratio_of_means(mine),
             ratio,
             groups: groups.collect(),
@@ -176,7 +191,7 @@ impl Pair<'_> {
             typical,
             p,
             p_adjusted: 1.0,
-            lost: self.lost(mine),
+            lost: self.lost(mine, &evidence),
             standing: Standing::Open,
             by_flights: false,
             is_sure: false,
@@ -184,10 +199,10 @@ impl Pair<'_> {
         }
     }
 
-    fn lost(&self, mine: &Contestant) -> Lost {
+    fn lost(&self, mine: &Contestant, evidence: &[usize]) -> Lost {
         let share = |it: &Contestant, case: usize| self.judged.count(it, &[case]).lost_share();
         let difference = |case: usize| share(mine, case) - share(self.theirs, case);
-        let differences: Vec<f64> = self.judged.evidence().into_iter().map(difference).collect();
+        let differences: Vec<f64> = evidence.iter().copied().map(difference).collect();
         Lost {
             cases: differences.iter().filter(|it| **it != 0.0).count(),
             p: SignedRank::of(&differences, CONFIDENCE).map_or(1.0, |it| it.p),
@@ -277,8 +292,8 @@ impl Pair<'_> {
             _ => Standing::Open,
         };
         let bar = match found.standing {
-            Standing::Better => barred(self.judged, mine, self.theirs),
-            Standing::Worse => barred(self.judged, self.theirs, mine),
+            Standing::Better => barred(self.judged, found.contestant, self.reference),
+            Standing::Worse => barred(self.judged, self.reference, found.contestant),
             Standing::Open | Standing::Barred => None,
         };
         if let Some(bar) = bar {

@@ -97,11 +97,6 @@ impl Flight {
         is_flown && !other.lost && bits(self) == bits(other)
     }
 
-    /// The same of one of which as much is required.
-    pub(crate) fn is_alike(&self, other: &Self) -> bool {
-        self.has_measures_of(other) && self.failed == other.failed
-    }
-
     pub(crate) fn refused(reason: String) -> Self {
         Self {
             measures: [None; MEASURES.len()],

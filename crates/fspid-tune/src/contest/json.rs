@@ -5,10 +5,10 @@ use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 use super::compare::{CONFIDENCE, Comparison, Ratio, Standing};
+use super::headline::{Headline, headline};
 use super::judged::{CaseGroup, Contestant, Design, Quantity};
 use super::outcome::{First, Outcome};
 use super::summary::{Spread, Summary};
-use super::words::{Headline, headline};
 
 /// Version of the format.
 const SCHEMA: u32 = 1;
@@ -64,8 +64,24 @@ pub(super) fn json(outcome: &Outcome) -> Value {
 /// What stands at the head of the text and of the page.
 fn verdict(outcome: &Outcome) -> Value {
     let Headline { word, winner, why, .. } = headline(outcome);
-    let winner = winner.and_then(|place| outcome.judged.contestants.get(place));
-    json!({ "winner": winner.map(|it| it.name.as_str()), "words": word, "why": why })
+    let name = |place: usize| outcome.judged.contestants.get(place).map(|it| it.name.as_str());
+    let beside = outcome.beside_first.iter().flatten().map(|it| {
+        json!({
+            "name": name(it.contestant),
+            "standing": standing(it),
+            "by_lost_flights": it.by_flights,
+            "p_adjusted": it.p_adjusted,
+            "lost_p_adjusted": it.lost.p_adjusted,
+            "evidence_cases": it.evidence,
+        })
+    });
+    json!({
+        "winner": winner.and_then(name),
+        "words": word,
+        "why": why,
+        "first": name(outcome.leader()),
+        "beside_first": beside.collect::<Vec<_>>(),
+    })
 }
 
 fn ranking<'a>(outcome: &'a Outcome, first: &First) -> Vec<&'a str> {
@@ -154,16 +170,20 @@ fn design(design: &Design) -> Value {
     }
 }
 
-/// JSON has no infinity: a ratio with lost flights is null, and the flights are counted beside it.
-fn comparison(outcome: &Outcome, found: &Comparison) -> Value {
-    let standing = match (found.standing, found.is_sure) {
+/// How a controller stands beside the other, in a word for programs.
+fn standing(found: &Comparison) -> &'static str {
+    match (found.standing, found.is_sure) {
         (Standing::Better, true) => "better",
         (Standing::Worse, true) => "worse",
         (Standing::Better, false) => "ahead",
         (Standing::Worse, false) => "behind",
         (Standing::Open, _) => "not significant",
         (Standing::Barred, _) => "barred by failures",
-    };
+    }
+}
+
+/// JSON has no infinity: a ratio with lost flights is null, and the flights are counted beside it.
+fn comparison(outcome: &Outcome, found: &Comparison) -> Value {
     let names = outcome.judged.groups();
     let groups = names.iter().zip(&found.groups);
     let groups = groups.map(|(group, ratio)| GroupRatio { ratio, name: &group.name });
@@ -179,7 +199,8 @@ fn comparison(outcome: &Outcome, found: &Comparison) -> Value {
         })
     });
     json!({
-        "standing": standing,
+        "standing": standing(found),
+        "evidence_cases": found.evidence,
         "by_lost_flights": found.by_flights,
         "lost": found.lost,
         "ratio_of_means": found.ratio_of_means,

@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 
 use serde::Serialize;
 
+use super::alike;
 use super::flight::{Flight, IAE, MEASURES, TRAVEL};
 use super::tuning::Found;
 
@@ -54,10 +55,11 @@ pub struct Judged {
     /// Place of the controller that the others are compared with.
     pub against: usize,
     /// Of each case the place of an earlier one that everybody has flown alike to the last bit, if there is one: it is no evidence
-    /// of its own, such as one that moves a limit which never acts.
+    /// of its own, such as one that moves a limit which never acts. Two controllers may fly more cases alike.
     pub twin_of: Vec<Option<usize>>,
-    /// Of each case the name of one of the tuning that is flown alike to the last bit, if there is one.
-    pub trained_as: Vec<Option<String>>,
+    /// Of each controller and case the name of one of the tuning that it flies alike to the last bit, if there is one; empty
+    /// of a controller that was not tuned.
+    pub trained_as: Vec<Vec<Option<String>>>,
 }
 
 /// What controllers are compared in.
@@ -166,19 +168,19 @@ impl Contestant {
 impl Judged {
     /// All flights of the contestants; which cases are flown alike is found here.
     pub(crate) fn new(contestants: Vec<Contestant>, cases: Vec<Case>, against: usize) -> Self {
-        let trained_as = vec![None; cases.len()];
+        let trained_as = vec![Vec::new(); contestants.len()];
         let mut judged = Self { contestants, cases, against, twin_of: Vec::new(), trained_as };
-        judged.twin_of = (0..judged.cases.len()).map(|case| judged.twin(case)).collect();
+        judged.twin_of = alike::twins(&judged, &judged.contestants.iter().collect::<Vec<_>>());
         judged
     }
 
-    /// The same with the cases that were tuned on: `training` has their names, each with its flights by the designs of one of the
-    /// contestants.
+    /// Notes which cases a controller was tuned on: `training` has those of the tuning by their names, each with its flights
+    /// by the designs of that controller.
     pub(crate) fn trained_on(
-        mut self,
+        &mut self,
         contestant: usize,
         training: &[(String, Vec<Vec<Flight>>)],
-    ) -> Self {
+    ) {
         let designs = self.contestants.get(contestant).map_or(&[][..], |it| &it.designs);
         let is_alike = |case: usize, flights: &[Vec<Flight>]| {
             designs.len() == flights.len()
@@ -192,34 +194,36 @@ impl Judged {
             let mut all = training.iter();
             all.find(|(_, flights)| is_alike(case, flights)).map(|(name, _)| name.clone())
         };
-        self.trained_as = (0..self.cases.len()).map(alike).collect();
-        self
+        let trained_as: Vec<Option<String>> = (0..self.cases.len()).map(alike).collect();
+        if let Some(mine) = self.trained_as.get_mut(contestant) {
+            *mine = trained_as;
+        }
     }
 
-    /// The first earlier case that everybody has flown alike.
-    fn twin(&self, case: usize) -> Option<usize> {
-        let designs: Vec<&Design> = self.contestants.iter().flat_map(|it| &it.designs).collect();
-        let is_alike = |other: &usize| {
-            designs.iter().all(|design| {
-                let [mine, theirs] = [case, *other].map(|it| self.flights(design, it));
-                mine.len() == theirs.len() && mine.iter().zip(theirs).all(|(a, b)| a.is_alike(b))
-            })
-        };
-        (0..case).find(is_alike)
+    /// The name of a case of the tuning that somebody flies as a case of the contest.
+    pub(crate) fn trained_name(&self, case: usize) -> Option<&str> {
+        self.trained_as.iter().find_map(|it| it.get(case)?.as_deref())
     }
 
-    /// Cases that are evidence: those that are flown as an earlier one, or as one of the tuning, are not.
+    /// Cases that are evidence: those that everybody flies as an earlier one, or somebody as one of the tuning, are not.
     pub(crate) fn evidence(&self) -> Vec<usize> {
-        self.of_their_own(self.all())
-    }
-
-    /// The same of some cases.
-    pub(crate) fn of_their_own(&self, cases: impl IntoIterator<Item = usize>) -> Vec<usize> {
         let is_own = |case: &usize| {
             self.twin_of.get(*case).is_none_or(Option::is_none)
-                && self.trained_as.get(*case).is_none_or(Option::is_none)
+                && self.trained_name(*case).is_none()
         };
-        cases.into_iter().filter(is_own).collect()
+        self.all().into_iter().filter(is_own).collect()
+    }
+
+    /// Cases that are evidence between some controllers by their places, whatever others make of them.
+    pub(crate) fn evidence_between(&self, places: &[usize]) -> Vec<usize> {
+        let some = places.iter().filter_map(|place| self.contestants.get(*place));
+        let twin_of = alike::twins(self, &some.collect::<Vec<_>>());
+        let is_trained = |case: usize| {
+            let mut theirs = places.iter().filter_map(|place| self.trained_as.get(*place));
+            theirs.any(|it| it.get(case).is_some_and(Option::is_some))
+        };
+        let is_own = |case: &usize| twin_of[*case].is_none() && !is_trained(*case);
+        self.all().into_iter().filter(is_own).collect()
     }
 
     /// Whether a controller was tuned, and one of them not more than once, or to the same numbers each time: then nobody knows

@@ -19,9 +19,11 @@
 //! behind it and is never called better, whatever its error elsewhere; whether it is called worse is for the signed
 //! ranks of the cases to say.
 
+mod alike;
 mod check;
 mod compare;
 mod flight;
+mod headline;
 mod json;
 mod judged;
 mod mirror;
@@ -268,22 +270,21 @@ impl Contest {
         });
         let contestants = contestants.collect::<Result<_, TuneError>>()?;
         let judged = Judged::new(contestants, self.cases(), self.against);
-        match self.trained(&judged)? {
-            Some((contestant, training)) => Ok(judged.trained_on(contestant, &training)),
-            None => Ok(judged),
+        let mut judged = judged;
+        for (place, entrant) in self.entrants.iter().enumerate() {
+            if let (Some(problem), Some(contestant)) =
+                (&entrant.problem, judged.contestants.get(place))
+            {
+                let training = self.trained(problem, &contestant.designs)?;
+                judged.trained_on(place, &training);
+            }
         }
+        Ok(judged)
     }
 
-    /// The flights of the tuning's cases by the designs of the first who was tuned, and their place: a judged case that flies what
-    /// one of them flies was tuned on, however it is written.
-    fn trained(&self, judged: &Judged) -> Result<Option<(usize, Training)>, TuneError> {
-        let mut tuned = self.entrants.iter().enumerate();
-        let Some((place, problem)) =
-            tuned.find_map(|(place, entrant)| Some((place, entrant.problem.as_ref()?)))
-        else {
-            return Ok(None);
-        };
-        let designs = judged.contestants.get(place).map_or(&[][..], |it| &it.designs);
+    /// The flights of the tuning's cases by the designs of one who was tuned: a judged case that it flies as one of them was
+    /// tuned on, however it is written.
+    fn trained(&self, problem: &TuningProblem, designs: &[Design]) -> Result<Training, TuneError> {
         let found = designs.iter().filter_map(|design| design.found.as_ref());
         let points: Vec<Vec<f64>> = found.map(|found| found.point.clone()).collect();
         let flights = problem.its_flights();
@@ -297,7 +298,7 @@ impl Contest {
                 flown.iter().map(|all| all.get(of_case.clone()).unwrap_or_default().to_vec());
             (case.name.clone(), mine.collect())
         });
-        Ok(Some((place, cases.collect())))
+        Ok(cases.collect())
     }
 
     fn cases(&self) -> Vec<Case> {

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::compare::{Comparison, Standing, compared};
+use super::compare::{Comparison, Standing, compared, compared_with};
 use super::judged::{Judged, Quantity};
 use super::summary::{Part, Summary};
 use super::{json, text};
@@ -56,6 +56,8 @@ pub struct Outcome {
     pub summaries: Vec<Summary>,
     /// Comparisons of the error integral; none where one is 0.
     pub error: Option<Vec<Comparison>>,
+    /// Comparisons of the error integral of all others with the first of the ranking, who wins by these; none where one is 0.
+    pub beside_first: Option<Vec<Comparison>>,
     /// Comparisons of the way of the elevator; none where one is 0.
     pub activity: Option<Vec<Comparison>>,
     /// Comparisons of the cost; none where one is not above 0, or without objectives.
@@ -64,17 +66,29 @@ pub struct Outcome {
 
 impl Outcome {
     pub(super) fn new(judged: Judged, setting: Setting) -> Self {
-        let summaries = judged.contestants.iter().map(|it| Summary::of(&judged, it)).collect();
+        let places = 0..judged.contestants.len();
+        let summaries = places.map(|it| Summary::of(&judged, it)).collect();
         let cost =
             if setting.objectives.is_empty() { None } else { compared(&judged, Quantity::Cost) };
-        Self {
+        let mut outcome = Self {
             summaries,
             error: compared(&judged, Quantity::ERROR),
+            beside_first: None,
             activity: compared(&judged, Quantity::ACTIVITY),
             cost,
             judged,
             setting,
-        }
+        };
+        outcome.beside_first = match outcome.leader() {
+            leader if leader == outcome.judged.against => outcome.error.clone(),
+            leader => compared_with(&outcome.judged, Quantity::ERROR, leader),
+        };
+        outcome
+    }
+
+    /// Place of the controller that is first on all cases, who need not win.
+    pub(super) fn leader(&self) -> usize {
+        self.first().ranking.first().copied().unwrap_or(self.judged.against)
     }
 
     /// The comparison of a controller in the error.

@@ -53,9 +53,9 @@ pub struct Summary {
     pub groups: Vec<Part>,
     /// On each case.
     pub cases: Vec<Part>,
-    /// Interval of the probability that a flight is lost.
+    /// Interval of the probability that a flight of another case like these is lost, over cases; seeds are as they were found.
     pub lost: [f64; 2],
-    /// Interval of the probability that a flight fails.
+    /// The same of the probability that it fails.
     pub failed: [f64; 2],
     /// How alike mirrored cases are flown; none where there are none.
     pub mirror: Option<Mirror>,
@@ -78,20 +78,40 @@ impl Part {
 }
 
 impl Summary {
-    pub(crate) fn of(judged: &Judged, contestant: &Contestant) -> Self {
+    pub(crate) fn of(judged: &Judged, place: usize) -> Self {
+        let contestant = &judged.contestants[place];
         let part = |cases: &[usize]| part(judged, contestant, cases);
         let whole = part(&judged.all());
-        let interval =
-            |count: u64| clopper_pearson(count, whole.count.of, CONFIDENCE).unwrap_or([0.0, 1.0]);
         Self {
-            lost: interval(whole.count.lost),
-            failed: interval(whole.count.failed),
+            lost: interval(judged, place, Count::lost_share),
+            failed: interval(judged, place, Count::failed_share),
             groups: judged.groups().iter().map(|group| part(&group.cases)).collect(),
             cases: judged.all().into_iter().map(|case| part(&[case])).collect(),
             mirror: mirror(judged, contestant),
             whole,
         }
     }
+}
+
+/// Draws and designs of a case fail together, so that each case counts as one flight, a share of which fails: Clopper and
+/// Pearson's interval, its lower end that of as many whole cases as have failed at least, its upper end of those at most.
+/// Shares scatter less than whole cases do, so that the interval is somewhat too wide rather than too narrow.
+fn interval(judged: &Judged, place: usize, share: fn(Count) -> f64) -> [f64; 2] {
+    let cases = judged.evidence_between(&[place]);
+    let of = cases.len() as u64;
+    let shares = cases.iter().map(|case| share(judged.count(&judged.contestants[place], &[*case])));
+    let sum: f64 = shares.sum();
+    // Of a sum that rounding moved off a whole number, the number is meant.
+    let whole = [libm::floor(sum + 1e-9), libm::ceil(sum - 1e-9)];
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "between 0 and the number of cases"
+    )]
+    let ends = whole.map(|failed| {
+        clopper_pearson((failed.max(0.0) as u64).min(of), of, CONFIDENCE).unwrap_or([0.0, 1.0])
+    });
+    [ends[0][0], ends[1][1]]
 }
 
 fn part(judged: &Judged, contestant: &Contestant, cases: &[usize]) -> Part {

@@ -3,11 +3,12 @@
 use fspid_page::columns::{Align, Columns};
 
 use super::compare::Comparison;
+use super::headline::{beside_first, headline};
 use super::judged::{Judged, Quantity};
 use super::outcome::Outcome;
 use super::words::{
-    by_group, cautions, columns, counted, cut, headline, name, number, p_value, sentence, signed,
-    spread_of, standing,
+    by_group, cautions, columns, counted, cut, name, number, p_value, sentence, signed, spread_of,
+    standing,
 };
 
 pub(super) fn text(outcome: &Outcome) -> String {
@@ -18,6 +19,7 @@ pub(super) fn text(outcome: &Outcome) -> String {
     for found in others.filter_map(|place| outcome.comparison(*place)) {
         out.push_str(&format!("{}\n", sentence(outcome, found)));
     }
+    beside_first(outcome).iter().for_each(|line| out.push_str(&format!("{line}\n")));
     out.push_str("\nFirst to last, by kind of case:\n");
     by_group(outcome).iter().for_each(|line| out.push_str(&format!("  {line}\n")));
     out.push('\n');

@@ -5,7 +5,7 @@ use fspid_page::number::{fixed, short};
 use fspid_scenario::requirement::Requirement;
 use fspid_scenario::tuning::{Over, Tuning};
 
-use super::compare::{Bar, CONFIDENCE, Comparison, Standing, barred};
+use super::compare::{Bar, CONFIDENCE, Comparison, Standing};
 use super::flight::{FAR, Flight};
 use super::judged::{CaseGroup, Judged, Quantity};
 use super::outcome::Outcome;
@@ -174,106 +174,9 @@ pub(super) fn group(name: &str) -> &str {
     if name.is_empty() { "other cases" } else { name }
 }
 
-/// Who is first on all cases, and what that rests on.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Headline {
-    /// Whether lost flights or a significant difference decide it.
-    pub(super) is_decided: bool,
-    /// "PID wins", "PID is first, and nobody wins", "one tuning each: no winner can be named".
-    pub(super) word: String,
-    /// Who wins, if anybody does.
-    pub(super) winner: Option<usize>,
-    /// Why, without a full stop.
-    pub(super) why: String,
-    /// Whose comparison the reason tells in full, if it does.
-    pub(super) told: Option<usize>,
-}
-
-pub(super) fn headline(outcome: &Outcome) -> Headline {
-    let first = outcome.first().ranking.first().copied().unwrap_or(outcome.judged.against);
-    let winner = cut(name(outcome, first), 60);
-    let bar = bar_of_first(outcome, first);
-    if outcome.judged.is_tuned_once() {
-        let bar = bar.map_or(String::new(), |words| format!("; {words}"));
-        let (word, tell) = match outcome.judged.has_idle_seeds() {
-            true => (
-                "every seed found the same: no winner can be named",
-                "another tuning may find another order; an optimiser that draws, or a larger budget, would tell",
-            ),
-            false => (
-                "one tuning each: no winner can be named",
-                "another seed may find another order; contest.seeds = 3 or more would tell",
-            ),
-        };
-        let why = format!("{winner} is first in it, and {tell}{bar}");
-        let word = word.to_owned();
-        return Headline { is_decided: false, word, winner: None, why, told: None };
-    }
-    let (is_decided, why) = match bar {
-        Some(words) => (false, words),
-        None => decision(outcome, first),
-    };
-    let word = match is_decided {
-        // Nothing is known of how the designs were found.
-        true if !outcome.judged.is_tuned() => {
-            format!("{winner} wins, as these designs are written")
-        }
-        true => format!("{winner} wins"),
-        false => format!("{winner} is first, and nobody wins"),
-    };
-    let told = outcome.comparison(first).filter(|_| is_decided).map(|it| it.contestant);
-    Headline { is_decided, word, winner: is_decided.then_some(first), why, told }
-}
-
-/// Whether the first wins, and why, or why not.
-fn decision(outcome: &Outcome, first: usize) -> (bool, String) {
-    let is_open = |it: &&Comparison| !(it.standing == Standing::Worse && it.is_sure);
-    let open_of =
-        |open: &[String]| (false, format!("nothing decides between it and {}", list(open)));
-    let (Some(all), found) = (outcome.error.as_ref(), outcome.comparison(first)) else {
-        return (false, "an error is 0 somewhere, so that errors have no ratios".to_owned());
-    };
-    match found {
-        Some(found) if found.standing == Standing::Better && found.is_sure => {
-            (true, finding(outcome, found))
-        }
-        Some(_) => open_of(&[cut(name(outcome, outcome.judged.against), 60)]),
-        None if !all.iter().any(|it| is_open(&it)) => (
-            true,
-            "every other controller has a significantly larger error or loses significantly more flights"
-                .to_owned(),
-        ),
-        None => {
-            let ranking = outcome.first().ranking;
-            let open = ranking.iter().filter_map(|place| outcome.comparison(*place)).filter(is_open);
-            let open = open.map(|it| cut(name(outcome, it.contestant), 60));
-            open_of(&open.collect::<Vec<_>>())
-        }
-    }
-}
-
-/// What keeps the first from winning, whatever its error: loops that are unstable at rest, flights that all fail, or
-/// more that fail than of another.
-fn bar_of_first(outcome: &Outcome, first: usize) -> Option<String> {
-    let (judged, count) = (&outcome.judged, outcome.summaries.get(first)?.whole.count);
-    if count.unstable > 0 {
-        return Some(format!(
-            "{} of its {} flights {} of loops that are unstable at rest",
-            count.unstable,
-            count.of,
-            if count.unstable == 1 { "is" } else { "are" }
-        ));
-    }
-    let contestant = judged.contestants.get(first)?;
-    let others = judged.contestants.iter().enumerate().filter(|(place, _)| *place != first);
-    let bars =
-        others.filter_map(|(place, other)| Some((place, barred(judged, contestant, other)?)));
-    bars.map(|(place, _)| failing(outcome, first, place)).next()
-}
-
 /// How many flights of a controller fail, and why, and how many of another: "8 of its 8 flights fail (left the range of
 /// its model), 2 of 8 of PID".
-fn failing(outcome: &Outcome, place: usize, other: usize) -> String {
+pub(super) fn failing(outcome: &Outcome, place: usize, other: usize) -> String {
     let count = |place: usize| outcome.summaries[place].whole.count;
     let (mine, theirs) = (count(place), count(other));
     let verb = if mine.failed == 1 { "fails" } else { "fail" };
@@ -348,7 +251,7 @@ pub(super) fn finding(outcome: &Outcome, found: &Comparison) -> String {
                 .ratio
                 .interval
                 .map_or(String::new(), |it| format!(" ({}: {})", per_cent(), interval(it)));
-            let place = match found.ratio.cases == outcome.judged.evidence().len() {
+            let place = match found.ratio.cases == found.evidence {
                 true => String::new(),
                 false => format!(
                     " on the {} that neither lost",
@@ -481,7 +384,7 @@ pub(super) fn by_group(outcome: &Outcome) -> Vec<String> {
 /// Cases that are flown as others are: they count in means and not in tests.
 fn no_evidence(judged: &Judged) -> Option<String> {
     let name = |case: usize| judged.cases.get(case).map_or("", |it| it.name.as_str());
-    let of = |case: usize| match (judged.trained_as.get(case)?, judged.twin_of.get(case)?) {
+    let of = |case: usize| match (judged.trained_name(case), judged.twin_of.get(case)?) {
         (Some(training), _) => Some(format!("\"{}\" as \"{training}\" of the tuning", name(case))),
         (None, Some(twin)) => Some(format!("\"{}\" as \"{}\"", name(case), name(*twin))),
         (None, None) => None,
@@ -504,6 +407,35 @@ fn no_evidence(judged: &Judged) -> Option<String> {
     })
 }
 
+/// Pairs that have less evidence than there is of all: what a third controller alone can tell apart is one case between two.
+fn between(outcome: &Outcome) -> Vec<String> {
+    let judged = &outcome.judged;
+    let (all, others) = (judged.evidence().len(), judged.contestants.len().saturating_sub(1));
+    let (against, first) = (judged.against, outcome.leader());
+    let with = |one: usize| move |it| (one, it);
+    let pairs = outcome.error.iter().flatten().map(with(against));
+    let beside = outcome.beside_first.iter().flatten().map(with(first));
+    let beside = beside.filter(|(_, it)| first != against && it.contestant != against);
+    let few = pairs.chain(beside).filter(|(_, it): &(usize, &Comparison)| it.evidence < all);
+    few.map(|(one, it)| {
+        let is_too_few = least_p(it.evidence) * others as f64 > 1.0 - CONFIDENCE;
+        format!(
+            "Between {} and {} {} of {all} cases {} evidence: both fly the others to the last bit like these{}.",
+            cut(name(outcome, it.contestant), 60),
+            cut(name(outcome, one), 60),
+            it.evidence,
+            if it.evidence == 1 { "is" } else { "are" },
+            if is_too_few { ", and no difference could be significant" } else { "" }
+        )
+    })
+    .collect()
+}
+
+/// The smallest p-value that the signs of so many cases can have: 2^(1-n).
+fn least_p(cases: usize) -> f64 {
+    libm::exp2(1.0 - cases as f64)
+}
+
 /// Cases without evidence that are told by their names.
 const TWINS_TOLD: usize = 5;
 
@@ -512,10 +444,8 @@ pub(super) fn cautions(outcome: &Outcome) -> Vec<String> {
     let (judged, setting) = (&outcome.judged, &outcome.setting);
     let mut notes = Vec::new();
     let others = judged.contestants.len().saturating_sub(1);
-    // The smallest p-value of n signs is 2^(1-n).
     let evidence = judged.evidence().len();
-    let least = libm::exp2(1.0 - evidence as f64) * others as f64;
-    if least > 1.0 - CONFIDENCE {
+    if least_p(evidence) * others as f64 > 1.0 - CONFIDENCE {
         notes.push(format!(
             "{} {} too few for {}: no difference could be significant.",
             counted(evidence, "case", "cases"),
@@ -524,6 +454,7 @@ pub(super) fn cautions(outcome: &Outcome) -> Vec<String> {
         ));
     }
     notes.extend(no_evidence(judged));
+    notes.extend(between(outcome));
     if judged.is_tuned() && setting.efforts.len() < 2 {
         notes.push("Each controller was tuned once: what another seed would have found is not in the intervals.".to_owned());
     }

@@ -54,10 +54,13 @@ pub struct Cases {
     pub lost: usize,
     /// Those without a common range of travel, or in which the ladder changes no travel.
     pub apart: usize,
+    /// Those that are no evidence between both, and are in none of the others: at some effort they fly them to the last bit
+    /// as another case, or as one of the tuning.
+    pub alike: usize,
 }
 
 impl Cases {
-    /// All of them.
+    /// All that are evidence.
     #[must_use]
     pub const fn of(self) -> usize {
         self.compared + self.lost + self.apart
@@ -122,7 +125,7 @@ impl Pair<'_> {
         let judged = &self.everywhere.together;
         let both = [self.contestant, judged.against];
         let (lost, kept): (Vec<usize>, Vec<usize>) =
-            judged.evidence().into_iter().partition(|case| self.lost(*case).is_some());
+            self.evidence().into_iter().partition(|case| self.lost(*case).is_some());
         let found: Vec<OfCase> = kept
             .iter()
             .filter_map(|&case| {
@@ -131,7 +134,12 @@ impl Pair<'_> {
             })
             .collect();
         let compared = found.len();
-        let cases = Cases { compared, lost: lost.len(), apart: kept.len() - compared };
+        let cases = Cases {
+            compared,
+            lost: lost.len(),
+            apart: kept.len() - compared,
+            alike: judged.cases.len() - lost.len() - kept.len(),
+        };
         let defeats: Vec<f64> = lost.iter().filter_map(|case| self.lost(*case)).collect();
         let mut band = Band {
             contestant: self.contestant,
@@ -161,6 +169,17 @@ impl Pair<'_> {
             band.dominance = allowed(&band.ends, &ranked, bars);
         }
         band
+    }
+
+    /// Cases that are evidence between both at every effort.
+    fn evidence(&self) -> Vec<usize> {
+        let against = self.everywhere.together.against;
+        let mut kept = self.everywhere.together.all();
+        for rung in self.rungs {
+            let evidence = rung.evidence_between(&[self.contestant, against]);
+            kept.retain(|case| evidence.binary_search(case).is_ok());
+        }
+        kept
     }
 
     /// A case of which one lost a flight, as the contest counts it: the largest defeat of the one that lost the larger

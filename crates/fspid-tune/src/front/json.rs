@@ -52,6 +52,7 @@ fn of_band(band: &Band) -> Value {
         "cases": band.cases.compared,
         "cases_lost": band.cases.lost,
         "cases_apart": band.cases.apart,
+        "cases_alike": band.cases.alike,
         "cases_of": band.cases.of(),
         "travel_deg": travel(|it| it.mean_deg),
         "narrowest_travel_deg": travel(|it| it.narrowest_deg),

@@ -110,7 +110,7 @@ impl<'a> Everywhere<'a> {
 fn bar(judged: &Judged, one: usize, other: usize) -> Option<FrontBar> {
     let (mine, theirs) = (judged.contestants.get(one)?, judged.contestants.get(other)?);
     let count = |it| judged.count(it, &judged.all());
-    let found = barred(judged, mine, theirs);
+    let found = barred(judged, one, other);
     match found {
         Some(Bar::AllFail) => Some(FrontBar::AllFail),
         // Who has one does not win, also where the other has as many.

@@ -68,6 +68,14 @@ pub(super) fn whole(band: &Band) -> String {
             cases(band.cases.apart)
         ));
     }
+    if band.cases.alike > 0 {
+        told.push_str(&format!(
+            "; {} more {} no evidence, for both fly {} to the last bit as others, or as the tuning's",
+            counted(band.cases.alike, "case"),
+            if band.cases.alike == 1 { "is" } else { "are" },
+            if band.cases.alike == 1 { "it" } else { "them" },
+        ));
+    }
     told.push('.');
     told
 }

@@ -2,7 +2,7 @@
 
 use fspid_tune::contest::Options;
 
-use super::{marked, place};
+use super::{LOOP, cases, marked, pid, place};
 
 /// Fourteen copies of a case made a winner of whom nobody was.
 #[test]
@@ -32,8 +32,8 @@ fn cases_that_are_flown_alike_are_evidence_once_and_those_of_the_tuning_never() 
     assert_eq!(judged.twin_of[at("idle 0")], None);
     assert_eq!(judged.twin_of[at("idle 1")], Some(at("idle 0")));
     assert_eq!(judged.twin_of[at("idle 2")], Some(at("idle 0")));
-    assert_eq!(judged.trained_as[at("trained")].as_deref(), Some("as written"));
-    assert_eq!(judged.trained_as[at("idle 0")], None);
+    assert_eq!(judged.trained_as[0][at("trained")].as_deref(), Some("as written"));
+    assert_eq!(judged.trained_as[0][at("idle 0")], None);
     let said = held.text();
     assert!(said.contains("\"idle 1\" as \"idle 0\""), "{said}");
     assert!(said.contains("\"trained\" as \"as written\" of the tuning"), "{said}");
@@ -51,4 +51,55 @@ fn seeds_that_find_the_same_are_one_tuning_and_nobody_wins() {
     assert!(held.judged.is_tuned_once());
     let said = held.text();
     assert!(said.starts_with("every seed found the same: no winner can be named"), "{said}");
+}
+
+/// Twelve seeds of a rate gyro's noise, which a third controller alone reads: "Y wins ... p = 0.0010 ... judged on 12 cases",
+/// of one flight each of the two.
+#[test]
+fn seeds_that_a_third_controller_alone_sees_are_one_case_between_two_others() {
+    let sensor =
+        "\n[sensor]\npreset = \"ideal\"\nseed = 1\n\n[sensor.rate]\nnoise_deg_s_rt_hz = 0.05\n";
+    let seeds: String = (2..14)
+        .map(|seed| {
+            format!("\n[[contest.case]]\nname = \"{seed}\"\nset = [\"sensor.seed={seed}\"]\n")
+        })
+        .collect();
+    let text = format!(
+        "{LOOP}{sensor}{}{}\n[[controller]]\nname = \"with rate\"\nkind = \"pid\"\nkp = 0.5\nki = 0.4\nrate_gain = 0.1\n\n[contest]\nagainst = \"slack\"\n{seeds}",
+        pid("slack", "kp = 0.2\nki = 0.1\nkd = 0.05"),
+        pid("good", "kp = 0.8\nki = 0.4\nkd = 0.16"),
+    );
+    let place = place(&text);
+    let outcome = place.held();
+    let found = outcome.comparison(1).expect("a comparison");
+    assert_eq!((found.evidence, found.is_sure, found.p), (1, false, 1.0));
+    let told = outcome.text();
+    assert!(!told.lines().next().is_some_and(|line| line.contains("wins,")), "{told}");
+    assert!(told.contains("Between good and slack 1 of 12 cases is evidence"), "{told}");
+    let page = std::fs::read_to_string(place.out().join("contest.html")).expect("a page");
+    assert!(page.contains("Between good and slack 1 of 12 cases is evidence"));
+    assert!(outcome.json()["verdict"]["winner"].is_null());
+}
+
+/// The first was held against the controller that all are compared with, and against nobody else.
+#[test]
+fn the_same_controller_twice_does_not_win_beside_a_poor_one() {
+    let good = "kp = 0.8\nki = 0.4\nkd = 0.16";
+    let text = format!(
+        "{LOOP}{}{}{}{}",
+        pid("slack", "kp = 0.2\nki = 0.1\nkd = 0.05"),
+        pid("good", good),
+        pid("again", good),
+        cases("")
+    );
+    let place = place(&text);
+    let outcome = place.held();
+    let told = outcome.text();
+    let first = "good is first, and nobody wins: it is better than slack, and nothing decides between it and again.";
+    assert!(told.starts_with(first), "{told}");
+    assert!(told.contains("Beside good, which is first: again not significant (p = 1"), "{told}");
+    let verdict = &outcome.json()["verdict"];
+    assert!(verdict["winner"].is_null() && verdict["first"] == "good", "{verdict}");
+    let page = std::fs::read_to_string(place.out().join("contest.html")).expect("a page");
+    assert!(page.contains("good is first, and nobody wins") && page.contains("Beside good"));
 }

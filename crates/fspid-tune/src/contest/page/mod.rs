@@ -13,7 +13,8 @@ use fspid_plot::{SeriesStyle, Svg};
 use fspid_study::shell::word;
 
 use super::flight::LOST;
-use super::words::{Headline, cautions, cut, headline, list, name, sentence};
+use super::headline::{Headline, beside_first, headline};
+use super::words::{cautions, cut, list, name, sentence};
 use super::{Contest, Outcome, text};
 
 /// Most sentences above the table; the table has all.
@@ -69,8 +70,11 @@ fn answer(outcome: &Outcome) -> Vec<Item> {
     let told = headline(outcome).told;
     let found = ranking.iter().filter(|place| Some(**place) != told);
     let found = found.filter_map(|place| outcome.comparison(*place));
-    let sentences: Vec<String> =
-        found.take(MOST_SENTENCES).map(|it| sentence(outcome, it)).collect();
+    let sentences: Vec<String> = found
+        .take(MOST_SENTENCES)
+        .map(|it| sentence(outcome, it))
+        .chain(beside_first(outcome))
+        .collect();
     let mut items = vec![Item::Heading("Who is how far from whom, by kind of case".to_owned())];
     items.extend(tables::by_group(outcome));
     items.extend([

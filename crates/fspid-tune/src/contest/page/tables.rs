@@ -184,7 +184,7 @@ fn failures(outcome: &Outcome) -> DataTable {
         "IAE on all cases [deg s]",
     ];
     let caption = format!(
-        "A flight is lost that {LOST}. A flight fails that {FAILED}. Intervals are those of Clopper and Pearson at {}, for independent flights: flights of one design or one case fail together, so that the true doubt is larger. Loops that are unstable at rest are judged by their error as they flew, and who has one does not win. A mean with a lost flight is \"lost\". Nobody lost a flight of {}.",
+        "A flight is lost that {LOST}. A flight fails that {FAILED}. Intervals are those of Clopper and Pearson at {} with each case as one flight, for draws and seeds of a case fail together: for other cases like these, and the designs as they were found. Loops that are unstable at rest are judged by their error as they flew, and who has one does not win. A mean with a lost flight is \"lost\". Nobody lost a flight of {}.",
         per_cent(),
         match without {
             kept if kept == outcome.judged.cases.len() => "any case".to_owned(),

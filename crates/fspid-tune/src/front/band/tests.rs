@@ -217,7 +217,7 @@ fn draws_of_different_size_are_no_efforts_and_who_is_worse_in_every_flight_is_no
             flown(10.0 * size * twice * effort * noise, 5.0 * size * worse)
         };
         let band = Ladder { seeds: 3, cases: 8, runs: 5, weight: EVEN, flight }.band();
-        assert_eq!(band.cases, Cases { compared: 0, lost: 0, apart: 8 });
+        assert_eq!(band.cases, Cases { compared: 0, lost: 0, apart: 8, alike: 0 });
         assert_eq!(band.dominance, Dominance::NotTold(Missing::Cases));
     }
     // Means over the runs have a common range where efforts do.
@@ -283,7 +283,7 @@ fn what_bars_the_winner_of_a_contest_bars_who_is_better_on_a_front() {
         let expected = bar.map_or(Dominance::Dominated, Dominance::OtherBarred);
         assert_eq!(changed(change, 0).dominance, expected, "{place}");
         if bar == Some(FrontBar::LosesMore) {
-            assert_eq!(band.cases, Cases { compared: 9, lost: 3, apart: 0 });
+            assert_eq!(band.cases, Cases { compared: 9, lost: 3, apart: 0, alike: 0 });
             assert_eq!((band.flights[0].lost, band.flights[1].lost), (27, 0));
         }
     }
@@ -297,9 +297,32 @@ fn lost_cases_of_one_are_not_set_off_in_the_ranks_by_others_of_the_other() {
         _ => usual(0.3, who, rung, seed, case),
     };
     let band = Ladder { seeds: 3, cases: 12, runs: 1, weight: EVEN, flight }.band();
-    assert_eq!(band.cases, Cases { compared: 6, lost: 6, apart: 0 });
+    assert_eq!(band.cases, Cases { compared: 6, lost: 6, apart: 0, alike: 0 });
     assert!(band.ends[1].iter().all(|it| *it < 0.0), "{band:?}");
     assert_eq!(band.dominance, Dominance::OpenByRanks);
+}
+
+/// Twelve copies of one case, which a third controller alone can tell apart, were twelve cases between two others.
+#[test]
+fn cases_that_two_fly_alike_on_a_front_are_one_whatever_a_third_makes_of_them() {
+    let flight =
+        |who: usize, rung: usize, seed: usize, _: usize, _: usize| usual(0.3, who, rung, seed, 0);
+    let ladder = Ladder { seeds: 3, cases: 12, runs: 1, weight: EVEN, flight };
+    let rung = |rung: usize| {
+        let Judged { mut contestants, cases, .. } = ladder.rung(rung);
+        contestants.push(contestants[1].clone());
+        // What tells cases apart is left to the third.
+        let two = contestants[..2].iter_mut().flat_map(|it| &mut it.designs);
+        let marks = two.flat_map(|it| &mut it.flights).filter_map(|it| it.measures.last_mut());
+        marks.for_each(|mark| *mark = None);
+        Judged::new(contestants, cases, 0)
+    };
+    let all: Vec<Judged> = (0..3).map(rung).collect();
+    let [two, third] =
+        super::all(&all.iter().collect::<Vec<_>>()).try_into().expect("two beside the first");
+    assert_eq!(two.cases, Cases { compared: 1, lost: 0, apart: 0, alike: 11 });
+    assert_eq!(two.dominance, Dominance::NotTold(Missing::Cases));
+    assert_eq!((third.cases.compared, third.cases.alike), (12, 0));
 }
 
 #[test]
