@@ -187,6 +187,73 @@ fn a_dead_time_of_whole_samples_up_to_the_delay_margin_is_borne_and_no_more() ->
     Ok(())
 }
 
+/// A rigid body and a bending mode near half the sample rate: g/(s (s + a)) + r/(s² + 2 ζ ω s + ω²).
+fn bending(random: &mut Random, dt_s: f64) -> Result<TransferFunction, LtiError> {
+    let (a, g) = (random.uniform(0.5, 5.0), random.uniform(0.5, 3.0));
+    let damping = libm::pow(10.0, random.uniform(-2.5, -1.0));
+    let omega = random.uniform(0.6, 1.5) * PI / dt_s;
+    let sign = if random.uniform(0.0, 1.0) < 0.5 { -1.0 } else { 1.0 };
+    let r = sign * libm::pow(10.0, random.uniform(-1.0, 2.0)) * damping * omega * omega * 0.2;
+    let [damper, spring] = [2.0 * damping * omega, omega * omega];
+    TransferFunction::new(
+        &[g + r, g * damper + r * a, g * spring],
+        &[1.0, a + damper, a * damper + spring, a * spring, 0.0],
+    )
+}
+
+/// The same loop with its input late by a part of a sample, on a straight line between two samples.
+fn late(system: &TransferFunction, dt_s: f64, part: f64) -> Result<SampledLoop, LtiError> {
+    let model = system.to_state_space();
+    let (held, input) = zero_order_hold(model.a(), model.b(), dt_s)?;
+    let states = model.states();
+    let mut a = Matrix::zeros(states + 1, states + 1);
+    let (mut b, mut c) = (vec![0.0; states + 1], vec![0.0; states + 1]);
+    for row in 0..states {
+        for column in 0..states {
+            a.set(row, column, held.get(row, column).expect("inside"))?;
+        }
+        c[row] = model.c().get(0, row).expect("inside");
+        let entry = input.get(row, 0).expect("inside");
+        b[row] = (1.0 - part) * entry;
+        a.set(row, states, part * entry)?;
+    }
+    b[states] = 1.0;
+    SampledLoop::new(a, b, c, dt_s)
+}
+
+/// Crossovers alone promised 2.8 samples to a loop that one sample makes unstable.
+#[test]
+fn no_delay_margin_is_longer_than_the_first_delay_that_makes_the_loop_unstable() -> Outcome {
+    let dt_s = 0.02;
+    let mut random = Random(96);
+    let (mut told, mut beyond) = (0, 0);
+    for _ in 0..8000 {
+        let plant = bending(&mut random, dt_s)?;
+        let open = sampled(&plant, dt_s, 0)?;
+        if !(open.at(open.nyquist_rad_s()).re > 1.0 + 1e-6) {
+            continue;
+        }
+        let Ok(found) = stable(&open) else { continue };
+        let margin_s = found.delay_margin_s.expect("a limit");
+        assert!(stable(&sampled(&plant, dt_s, 1)?).is_err() && margin_s < dt_s, "{margin_s}");
+        // As flights have it: stable up to it at every part of a sample, whatever it is that ends it.
+        for share in [0.1, 0.3, 0.5, 0.7, 0.9, 0.999] {
+            let part = share * margin_s / dt_s;
+            assert!(stable(&late(&plant, dt_s, part)?).is_ok(), "{part} of {margin_s} s");
+        }
+        let crossovers = found.crossovers.iter().map(|at| at.delay_s);
+        let least_s = crossovers.fold(f64::INFINITY, f64::min);
+        if margin_s < least_s {
+            let part = 1.001 * margin_s / dt_s;
+            assert!(stable(&late(&plant, dt_s, part)?).is_err(), "{part} of {margin_s} s");
+        }
+        told += 1;
+        beyond += usize::from(least_s > dt_s);
+    }
+    assert!(told >= 100 && beyond >= 5, "{told} {beyond}");
+    Ok(())
+}
+
 #[test]
 fn a_loop_with_three_integrators_is_stable_between_two_gains() -> Outcome {
     let a = Matrix::from_rows(&[[1.0, 1.0, 0.0], [0.0, 1.0, 1.0], [0.0, 0.0, 1.0]])?;

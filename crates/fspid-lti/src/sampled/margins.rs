@@ -45,12 +45,14 @@ pub struct SampledMargins {
     pub crossovers: Vec<SampledCrossover>,
     /// The crossover nearest to an oscillation; `None` if the gain is nowhere 1.
     pub phase_margin: Option<SampledCrossover>,
-    /// Smallest dead time that makes the loop unstable; `None` if the gain is nowhere 1.
+    /// Smallest dead time that makes the loop unstable; `None` if the gain is nowhere 1, and below 1 at Nyquist's frequency.
     ///
     /// $$ \tau = \min \frac{\varphi_m \bmod 2 \pi}{\omega} $$
     ///
-    /// A dead time τ ahead of the sampler is taken for the factor $e^{-j \omega \tau}$ on L. That is exact for whole
-    /// samples, and between them as good as the signal is free of frequencies beyond Nyquist's.
+    /// A dead time τ ahead of the sampler is taken for the factor $e^{-j \omega \tau}$ on L. Where the gain at Nyquist's
+    /// frequency is below 1 that is exact for whole samples, and between them as good as the signal is free of frequencies
+    /// beyond Nyquist's. A sample of delay turns the sign of L there: with a gain of 1 or more the loop is unstable with it,
+    /// and this is at most the part of a sample that it bears, with what is late taken on a straight line between two samples.
     pub delay_margin_s: Option<f64>,
     /// Largest sensitivity $M_s$.
     pub sensitivity_peak: Peak,
@@ -111,6 +113,7 @@ impl SampledLoop {
         let (squares, proof) = (Squares::new(&self.reduced)?, self.proof());
         let [gain_low, gain_high] = self.gain_limits(&squares, proof.as_ref())?;
         let crossovers = self.crossovers(&squares, proof.as_ref())?;
+        let delay_margin_s = self.delay_limit_s(&crossovers, proof.as_ref())?;
         let search = self.search_with(&poles, proof)?;
         let (sensitivity_peak, sensitivity) = search.peak(1.0)?;
         let (complementary_peak, complementary) = search.peak(0.0)?;
@@ -119,7 +122,7 @@ impl SampledLoop {
             gain_low,
             gain_high,
             phase_margin: nearest(&crossovers),
-            delay_margin_s: crossovers.iter().map(|at| at.delay_s).min_by(f64::total_cmp),
+            delay_margin_s,
             crossovers,
             sensitivity_peak,
             complementary_peak,

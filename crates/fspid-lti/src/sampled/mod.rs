@@ -10,6 +10,7 @@ mod crossings;
 mod disk;
 mod family;
 mod gain_limits;
+mod late;
 mod level_set;
 mod margins;
 mod peak;

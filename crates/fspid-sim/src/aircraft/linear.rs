@@ -1,7 +1,7 @@
 //! The linear plant of an aircraft around its trim.
 
 use fspid_aircraft::linearise::{Linearisation, VelocityForm};
-use fspid_aircraft::{AirMotion, RIGID_STATES, Vector3};
+use fspid_aircraft::{AirMotion, Consumption, RIGID_STATES, Vector3};
 use fspid_lti::Matrix;
 
 use super::AircraftPlant;
@@ -13,6 +13,15 @@ use crate::plant::{ElevatorSign, LinearPlant};
 const DIFFERENCE: f64 = 1e-3;
 /// Places of u, w, q and of the derivative of pitch, which is q, in a rigid state.
 const STATES: [usize; 3] = [3, 5, 11];
+
+/// An aircraft that has burnt fuel, as if it stayed so.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AfterBurning {
+    /// Around the trim of the same speed and altitude; nothing without a trim there, or without a transfer function.
+    pub plant: Option<LinearPlant>,
+    /// Whether a flight of that length comes to it for certain.
+    pub is_reached: bool,
+}
 
 impl AircraftPlant {
     /// The linear model from elevator and gusts to pitch at the trim: u, w, q, θ with the air's
@@ -43,6 +52,22 @@ impl AircraftPlant {
             plants.push((later.from_s, plant));
         }
         Ok(plants)
+    }
+
+    /// The aircraft with the fuel that is left at a time, s, which is that of the end of a flight; nothing where none is burnt.
+    ///
+    /// With a flow that is the same all the time that is what is left then. What an engine takes by its thrust only the flight
+    /// tells: there the tank is empty.
+    #[must_use]
+    pub fn after_burning(&self, end_s: f64) -> Option<AfterBurning> {
+        let fuel = self.changing().fuel()?;
+        let (left_kg, is_reached) = match fuel.consumption {
+            Consumption::Flow { kg_s } => (fuel.left_kg(kg_s * end_s), true),
+            Consumption::ThrustSpecific { .. } => (0.0, false),
+        };
+        let plant = self.standing_at(end_s, Some(left_kg));
+        let plant = plant.and_then(|plant| plant.linear().ok());
+        Some(AfterBurning { plant, is_reached })
     }
 
     /// States u, w, q, θ; inputs elevator, forward gust, downward gust, pitch gust.

@@ -46,6 +46,7 @@ pub(crate) use flight::{
 };
 pub use forces::Forces;
 pub use leveller::{LEVELLING_TIME_S, WingLeveller, YawDamper};
+pub use linear::AfterBurning;
 pub(crate) use standing::{Change, Standing};
 
 use fspid_aircraft::{Aircraft, Spool, Trim, TrimTarget};

@@ -77,7 +77,7 @@ impl AircraftPlant {
     }
 
     /// The aircraft of a time with that much fuel, as if it stayed so; nothing where it has no trim.
-    fn standing_at(&self, time_s: f64, fuel_kg: Option<f64>) -> Option<Self> {
+    pub(super) fn standing_at(&self, time_s: f64, fuel_kg: Option<f64>) -> Option<Self> {
         let (model, changing) = (self.aircraft().model().varied()?, self.changing());
         let fuel = changing.fuel().zip(fuel_kg).map(|(fuel, left_kg)| (&fuel.body, left_kg));
         let aircraft = model.starting_at(self.aircraft(), changing.shares(time_s), fuel);

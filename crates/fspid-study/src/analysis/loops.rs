@@ -3,6 +3,7 @@
 use super::rank::{judged, rank, rank_without_margins};
 use fspid_core::Gains;
 use fspid_lti::{Complex, SampledLoop, SampledMargins};
+use fspid_sim::aircraft::AfterBurning;
 use fspid_sim::loop_model::{BreakPoint, SampledPlant};
 use fspid_sim::stability::doubt_beyond;
 use fspid_sim::{
@@ -96,10 +97,14 @@ impl AnalysedLoop {
             return Ok(none(Absent::NoRateLoop));
         }
         let mut plants = Vec::new();
-        for (from_s, plant) in &lasting_plants(scenario)? {
-            let found = PlantLoop::of(scenario, plant, controller, gains, question.point)?;
+        for AskedPlant { from_s, plant, is_reached } in asked_plants(scenario)? {
+            let Some(plant) = &plant else { continue };
+            let mut found = PlantLoop::of(scenario, plant, controller, gains, question.point)?;
+            if !is_reached {
+                found.doubt_instability();
+            }
             let frozen = Frozen::of(scenario, plant, controller, gains, question)?;
-            plants.push(PlantLoop { from_s: *from_s, frozen, ..found });
+            plants.push(PlantLoop { from_s, frozen, ..found });
         }
         let modes = AnalysedMode::all(scenario, controller, gains)?;
         let doubt = doubt_beyond(scenario, controller, gains)?.map(|it| it.doubt);
@@ -265,6 +270,15 @@ impl PlantLoop {
         Ok(Self { from_s: 0.0, worst, others, margins, frozen: None })
     }
 
+    /// Of a plant that a flight need not come to nothing is unstable for certain.
+    fn doubt_instability(&mut self) {
+        let rests = core::iter::once(&mut self.worst).chain(&mut self.others);
+        let margins = rests.map(|rest| &mut rest.margins).chain([&mut self.margins]);
+        for margins in margins.filter(|it| matches!(it, Err(Absent::Unstable { .. }))) {
+            *margins = Err(Absent::Undecided(Doubt::ChangedAircraft));
+        }
+    }
+
     /// Every gain of a law without memory, standing still.
     #[must_use]
     pub fn map(&self) -> Option<&FrozenMap> {
@@ -332,12 +346,13 @@ pub(crate) fn held_at_rest(
     let Some(gains) = equilibrium(controller).gains() else {
         return Ok(Vec::new());
     };
-    let plants = lasting_plants(scenario)?;
-    let held = plants.iter().map(|(from_s, plant)| {
+    let plants = asked_plants(scenario)?.into_iter().filter(|it| it.is_reached);
+    let plants = plants.filter_map(|it| Some((it.from_s, it.plant?)));
+    let held = plants.map(|(from_s, plant)| {
         let mut worst: Option<Held> = None;
-        for rest in Rest::all(scenario, plant, controller, gains) {
-            let verdict = verdict_of(scenario, plant, &rest, controller)?;
-            let found = Held { from_s: *from_s, at: rest.at, verdict };
+        for rest in Rest::all(scenario, &plant, controller, gains) {
+            let verdict = verdict_of(scenario, &plant, &rest, controller)?;
+            let found = Held { from_s, at: rest.at, verdict };
             if worst.is_none_or(|worst| found.rank() < worst.rank()) {
                 worst = Some(found);
             }
@@ -359,6 +374,36 @@ fn verdict_of(
     }
     let sampled = SampledPlant::of(scenario, plant)?;
     Ok(of_stand(rest.stand(scenario, &sampled, controller)?))
+}
+
+/// A plant that loops and airframes are asked with.
+#[derive(Clone, Debug)]
+pub(crate) struct AskedPlant {
+    /// From when on it stands, s.
+    pub(crate) from_s: f64,
+    /// The plant; none of an aircraft of later that has no trim at the speed and altitude of the start.
+    pub(crate) plant: Option<LinearPlant>,
+    /// Whether the flight comes to it for certain: not to an empty tank whose engine burns by its thrust.
+    pub(crate) is_reached: bool,
+}
+
+/// The plants that last, and at the end of a flight that burns fuel the aircraft with what is left of it.
+pub(crate) fn asked_plants(scenario: &Scenario) -> Result<Vec<AskedPlant>, SimError> {
+    scenario.plant.require_equations()?;
+    let reached = |(from_s, plant): (f64, Option<LinearPlant>)| AskedPlant {
+        from_s,
+        plant,
+        is_reached: true,
+    };
+    let Some(aircraft) = scenario.plant.aircraft() else {
+        let linear = scenario.lasting_plants().into_iter();
+        return Ok(linear.map(|(from_s, plant)| reached((from_s, Some(plant.clone())))).collect());
+    };
+    let from_s = scenario.timing.end_s();
+    let burnt = aircraft
+        .after_burning(from_s)
+        .map(|AfterBurning { plant, is_reached }| AskedPlant { from_s, plant, is_reached });
+    Ok(aircraft.lasting()?.into_iter().map(reached).chain(burnt).collect())
 }
 
 /// The plants that last, an aircraft's linear model at its trim in its place.

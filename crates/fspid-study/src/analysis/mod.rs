@@ -41,7 +41,7 @@ pub use flown::flown_inputs;
 pub use frozen::{Frozen, FrozenGains, FrozenMap, FrozenPoint, FrozenReach};
 pub use fspid_sim::loop_model::BreakPoint;
 pub use loops::{AnalysedLoop, PlantLoop, RestLoop};
-pub(crate) use loops::{held_at_rest, lasting_plants};
+pub(crate) use loops::{asked_plants, held_at_rest, lasting_plants};
 pub use modes::AnalysedMode;
 pub use nonlinear_parts::not_in_the_linear_loop;
 pub use stability::Stability;

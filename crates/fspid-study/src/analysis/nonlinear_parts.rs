@@ -32,7 +32,7 @@ fn of_what_flies(scenario: &Scenario) -> [LeftOut; 8] {
         ),
         (
             scenario.plant.aircraft().is_some_and(|plant| !plant.changing().is_still()),
-            "While configurations move, and with fuel that is burnt, the aircraft is between those that are analysed: as it is at the start, and after each change of a configuration at the trim of the same speed and altitude.",
+            "While configurations move and fuel is burnt, the aircraft is none of those that are analysed: as it is at the start, after each change of a configuration with the fuel of the start, and at the end of a flight that burns fuel with what is left then (with an empty tank, where thrust decides how much is burnt), all at the trim of the same speed and altitude.",
         ),
         (
             scenario.autopilot.is_some(),

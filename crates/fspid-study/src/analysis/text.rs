@@ -7,7 +7,7 @@ use super::answer::{Margins, NO_CROSSOVER, NO_LOWER_LIMIT, NO_UPPER_LIMIT};
 
 use super::{
     AnalysedLoop, Analysis, Equilibrium, Flights, Frozen, FrozenMap, FrozenReach, PlantLoop,
-    Stability, held_in_words,
+    RestLoop, Stability, held_in_words,
 };
 use crate::metrics::Absent;
 
@@ -108,7 +108,10 @@ fn push_loop(out: &mut String, found: &AnalysedLoop) {
 
 fn push_plant(out: &mut String, plant: &PlantLoop) {
     match &plant.margins {
-        Ok(margins) => push_margins(out, margins),
+        Ok(margins) => {
+            push_margins(out, margins);
+            push_turning(out, plant);
+        }
         Err(reason) => {
             if plant.stability() == Stability::Unstable {
                 push_unstable_poles(out, plant);
@@ -175,6 +178,9 @@ fn push_margins(out: &mut String, margins: &Margins) {
         )),
         None => out.push_str(&format!("  phase margin       without end: {NO_CROSSOVER}\n")),
     }
+    if margins.gain_crossover_rad_s.is_none() && margins.delay_margin_s.is_finite() {
+        out.push_str(&format!("  delay margin       {:.4} s\n", margins.delay_margin_s));
+    }
     let [disk_low, disk_high] = margins.disk_gain_db;
     out.push_str(&format!(
         "  disk margin        {:.4} at {:.3} rad/s: gain {disk_low:+.2} to {disk_high:+.2} dB, phase {:.2} deg\n",
@@ -190,6 +196,18 @@ fn push_margins(out: &mut String, margins: &Margins) {
             name.replace('_', " "),
             bracket.at_least,
             bracket.at_most
+        ));
+    }
+}
+
+/// A delay margin that no crossover tells.
+fn push_turning(out: &mut String, plant: &PlantLoop) {
+    let at_nyquist = |rest: &RestLoop| rest.open.gain(rest.open.nyquist_rad_s());
+    let gain = plant.rests().map(at_nyquist).fold(0.0, f64::max);
+    // Written so that NaN is told, too.
+    if !(gain < 1.0) {
+        out.push_str(&format!(
+            "  half sample rate   the gain is {gain:.3} there, where a sample of delay turns the sign: the loop bears less than one\n"
         ));
     }
 }

@@ -51,6 +51,33 @@ pub enum NotEvaluated {
         /// The step that it was asked of.
         place: Box<CasePlace>,
     },
+    /// The flight, or the time of a step, ends while the response still goes on.
+    #[error(
+        "the response still goes on at the end of the {} s that are flown after the step: fly on, to see how far beyond it goes",
+        to_digits(*window_s, 6)
+    )]
+    StillRising {
+        /// How long there was time, s.
+        window_s: f64,
+        /// The step that it was asked of.
+        place: Box<CasePlace>,
+    },
+    /// An error that is small at the last sample and was larger just before.
+    #[error(
+        "it is as little at the last sample, but up to {} {unit} over the last tenth of the {} s that are flown: fly on, to see that it stays",
+        to_digits(*largest, 4),
+        to_digits(*window_s, 6)
+    )]
+    NotLeft {
+        /// The largest of the last tenth.
+        largest: f64,
+        /// Its unit.
+        unit: &'static str,
+        /// How long there was time, s.
+        window_s: f64,
+        /// What it was asked of.
+        place: Box<CasePlace>,
+    },
     /// The time that counts is not part of the flight.
     #[error(
         "nothing was flown from {} s to {} s: the flight ends at {} s",
@@ -201,6 +228,8 @@ impl NotEvaluated {
         match self {
             Self::Unstable { place, .. }
             | Self::NotRecovered { place, .. }
+            | Self::StillRising { place, .. }
+            | Self::NotLeft { place, .. }
             | Self::TooShort { place, .. } => **place,
             _ => CasePlace::default(),
         }

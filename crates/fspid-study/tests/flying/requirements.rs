@@ -211,3 +211,58 @@ fn a_set_takes_the_target_that_is_chosen() {
     let why = judgements.iter().filter_map(|it| it.found.as_ref().err()).map(ToString::to_string);
     assert!(why.collect::<String>().contains("nobody says which altitude is aimed at"));
 }
+
+/// Requirements on the aircraft itself and on its loop.
+const ASKED: &str = "[[requirement]]\nmeasure = \"short_period_damping\"\nleast = 0.3\n\
+                     [[requirement]]\nmeasure = \"phase_margin_deg\"\nleast = 30.0\n\
+                     [[requirement]]\nmeasure = \"cap_rad_s2_per_g\"\nmost = 3.6\n";
+
+fn of_changed(more: &str, set: &[&str]) -> Vec<Judgement> {
+    let text = format!("{NAVION}{more}{ASKED}");
+    Simulation::of(&study(&text, set)).expect("it flies").judgements
+}
+
+/// Damping and anticipation were those of the aircraft of the start, with flaps that take most of the damping.
+#[test]
+fn the_aircraft_itself_is_judged_after_each_change_of_a_configuration() {
+    let flaps = "[[configuration]]\nname = \"flaps\"\nassumption = \"made up\"\npitch.alpha = -2.0\npitch.pitch_rate = 9.0\n\
+                 [[configuration_change]]\nname = \"flaps\"\nto = 1.0\nat_s = 1.0\ntakes_s = 1.0\n";
+    let wide = ["aircraft.validity=warn"];
+    let later = of_changed(flaps, &wide);
+    let at_once = of_changed(
+        flaps,
+        &[wide[0], "aircraft.configuration=['flaps']", "configuration_change=[]"],
+    );
+    let before = of_changed(flaps, &[wide[0], "configuration_change[0].to=0.0"]);
+    for place in [0, 2] {
+        let value = |of: &[Judgement]| of[place].found.as_ref().expect("a value").value;
+        assert!(!later[place].met && before[place].met, "{:?}", later[place]);
+        assert!((value(&later) / value(&at_once) - 1.0).abs() < 1e-3, "{:?}", later[place].found);
+        let at = later[place].found.as_ref().expect("a value").place.plant.expect("of later");
+        assert!((at.index, at.from_s) == (1, 2.0), "{at:?}");
+    }
+}
+
+/// Margins, and the aircraft itself, were those of the full tank.
+#[test]
+fn the_aircraft_is_judged_with_the_fuel_that_its_flight_leaves() {
+    let burns = |flow_kg_s: f64| {
+        let fuel =
+            format!("[fuel]\non_board_kg = 227.0\nflow_kg_s = {flow_kg_s}\ntank_mac = -1.0\n");
+        of_changed(&fuel, &["aircraft.validity=warn"])
+    };
+    let end_s = study(NAVION, &[]).scenario.timing.end_s();
+    // Nearly all of it, and nearly nothing.
+    let (dry, full) = (burns(226.0 / end_s), burns(1e-6));
+    for place in [0, 1] {
+        assert!(!dry[place].met && full[place].met, "{:?} {:?}", dry[place], full[place]);
+    }
+    // Where thrust decides how much is burnt the tank is empty, and nobody says that its loop is unstable for certain.
+    let fuel = "[fuel]\non_board_kg = 227.0\nspecific_kg_n_s = 1e-5\ntank_mac = -1.0\n";
+    let by_thrust = of_changed(fuel, &["aircraft.validity=warn"]);
+    for place in [0, 1] {
+        assert!(!by_thrust[place].met, "{:?}", by_thrust[place]);
+        let told = format!("{:?}", by_thrust[place].found);
+        assert!(!told.contains("Unstable"), "{told}");
+    }
+}

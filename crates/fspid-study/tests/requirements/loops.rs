@@ -302,3 +302,34 @@ fn an_autopilot_that_is_not_held_at_rest_is_not_proved() {
     assert!(!proved.is_empty() && proved.iter().all(|it| !it.met), "{proved:?}");
     assert!(proved.iter().all(|it| it.value_in_words() == "not proved stable"), "{proved:?}");
 }
+
+/// A bending mode near half the sample rate, at which the gain of the loop is 4.
+const BENDING: &str = r#"
+schema = 1
+name = "bending mode near half the sample rate"
+[plant]
+numerator = [-16175.14818846, -71307.92997127, 37540.21281599]
+denominator = [1.0, 14.2880807, 28053.0355, 123492.118, 0.0]
+elevator_sign = "nose-up-positive"
+[loop]
+sample_period_s = 0.02
+duration_s = 5.0
+[setpoint]
+kind = "step"
+amplitude_deg = 1.0
+[[controller]]
+name = "P"
+kind = "pid"
+kp = 1.0
+"#;
+
+/// 0.056 s were told, and 0.02 s make it grow.
+#[test]
+fn a_delay_margin_is_no_longer_than_the_first_sample_that_makes_the_loop_unstable() {
+    let told_s = values(BENDING, Measure::DelayMargin, "", &[]);
+    assert!(told_s.iter().all(|told_s| (0.0124..0.0127).contains(told_s)), "{told_s:?}");
+    let late = one(BENDING, "measure = \"stable\"\nleast = 1", &["actuator.delay_samples=1"]);
+    assert!(!late.met, "{late:?}");
+    let analysis = Analysis::of(&study(BENDING, &[]), Question::default()).expect("analysed");
+    assert!(analysis.text().contains("where a sample of delay turns the sign"));
+}

@@ -53,7 +53,88 @@ fn a_step_that_has_not_risen_has_no_overshoot_to_judge() {
         "{:?}",
         overshoot.found
     );
-    assert!(judged(&["loop.duration_s=2.5"]).judgements[0].met);
+    // It has risen and still goes on: how far, nobody has seen.
+    let rising = judged(&["loop.duration_s=2.5"]);
+    let overshoot = &rising.judgements[0].found;
+    assert!(matches!(overshoot, Err(NotEvaluated::StillRising { .. })), "{overshoot:?}");
+    assert!(judged(&["loop.duration_s=4.4"]).judgements[0].met);
+}
+
+/// A step of the paper's Navion under gains that swing.
+const SWINGS: &str = r#"
+schema = 1
+name = "swings"
+[plant]
+preset = "navion-paper"
+[actuator]
+time_constant_s = 0.1
+[loop]
+sample_period_s = 0.01
+duration_s = 9.88
+[setpoint]
+kind = "step"
+amplitude_deg = 5.0
+[[controller]]
+name = "N"
+kind = "pid"
+kp = 3.0
+ki = 1.0
+[[requirement]]
+measure = "largest_error_deg"
+from_s = 9.87
+most = 0.1
+[[requirement]]
+measure = "rms_error_deg"
+from_s = 9.87
+most = 0.1
+[[requirement]]
+measure = "final_error_pct"
+most = 2
+[[requirement]]
+measure = "overshoot_pct"
+most = 5
+"#;
+
+fn swings(set: &[&str]) -> Vec<Result<f64, NotEvaluated>> {
+    let set: Vec<String> = set.iter().map(|&change| change.to_owned()).collect();
+    let study: Study = file::parse(SWINGS, "test.toml", None, &set)
+        .unwrap_or_else(|problems| panic!("{problems}"));
+    let judgements = Simulation::of(&study).expect("it flies").judgements;
+    judgements.into_iter().map(|it| it.found.map(|case| case.value)).collect()
+}
+
+/// All were met at 9.88 s, where the swing goes through its set-point, and none of them at 12 s.
+#[test]
+fn errors_of_a_swing_are_not_met_by_its_last_samples() {
+    let found = swings(&[]);
+    for at in [0, 1] {
+        assert!(matches!(found[at], Err(NotEvaluated::LittleFlown { .. })), "{found:?}");
+    }
+    assert!(matches!(found[2], Err(NotEvaluated::NotLeft { .. })), "{found:?}");
+    let longer = swings(&["loop.duration_s=12", "requirement[2].most=99"]);
+    assert!(longer[..3].iter().all(Result::is_ok), "{longer:?}");
+}
+
+/// 3 % when the flight ended after 0.68 s, and 39 % in a longer one.
+#[test]
+fn a_response_that_goes_on_at_the_end_has_no_overshoot_to_judge() {
+    let slower = ["controller[0].kp=1.0", "controller[0].ki=0.9"];
+    let found = swings(&[
+        slower[0],
+        slower[1],
+        "loop.duration_s=0.68",
+        "requirement[0].from_s=0.0",
+        "requirement[1].from_s=0.0",
+    ]);
+    assert!(matches!(found[3], Err(NotEvaluated::StillRising { .. })), "{found:?}");
+    let found = swings(&[
+        slower[0],
+        slower[1],
+        "loop.duration_s=5.0",
+        "requirement[0].from_s=0.0",
+        "requirement[1].from_s=0.0",
+    ]);
+    assert!(found[3].as_ref().is_ok_and(|pct| *pct > 39.0), "{found:?}");
 }
 
 /// Within the longest time that is allowed, or for a tenth of its own time after it.

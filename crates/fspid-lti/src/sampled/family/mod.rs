@@ -15,6 +15,7 @@ mod place;
 
 use core::f64::consts::{PI, TAU};
 
+use super::late::is_below_one;
 use super::{DiskMargin, GainLimit, Peak, Proved, SampledCrossover, SampledLoop, SampledMargins};
 use crate::complex::{Complex, modulus, quotient};
 use crate::error::LtiError;
@@ -73,7 +74,7 @@ impl LoopFamily {
     /// Margins of the loop with these gains, if the quick way is sure of them.
     ///
     /// `None` where it is not, and [`SampledLoop::margins`] has to be asked: a loop that is unstable or nearly so, a
-    /// disk margin below 0.1, limits of the gain that nearly coincide, gains that are not finite or of another number,
+    /// disk margin below 0.1, a gain of 1 or more at half the sample rate, limits of the gain that nearly coincide, gains that are not finite or of another number,
     /// a plant whose numbers over- or underflow, a closed-loop pole within a millionth of z = 1.
     /// Nothing is proved of the peaks: they are reached, and no point of the grid is higher.
     ///
@@ -100,6 +101,10 @@ impl LoopFamily {
             let (place, value) = peaks::highest(&member, &samples, centre)?;
             Some(Peak { value, omega_rad_s: self.omega_rad_s(place) })
         };
+        // A sample of delay turns the sign there, which crossovers do not tell.
+        if !is_below_one(modulus(member.at(1.0).open())) {
+            return None;
+        }
         let disk = peak(0.5)?;
         let disk = DiskMargin::new(1.0 / disk.value, 0.0, disk.omega_rad_s);
         if !(disk.size >= SMALL_DISK) {

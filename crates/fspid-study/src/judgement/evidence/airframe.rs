@@ -6,6 +6,8 @@ use fspid_aircraft::qualities::{
 };
 use fspid_sim::{LinearPlant, Scenario, SimError};
 
+use super::linear::CHANGED;
+use crate::analysis::asked_plants;
 use crate::judgement::{Case, CasePlace, NotEvaluated, PlantAt};
 use fspid_scenario::file::{Airframe, Study};
 use fspid_scenario::measure::Measure;
@@ -15,28 +17,20 @@ use fspid_scenario::requirement::Requirement;
 pub(super) fn cases(study: &Study, requirement: &Requirement) -> Result<Vec<Case>, NotEvaluated> {
     let scenario = &study.scenario;
     let path = command_path(scenario)?;
-    let several = !scenario.plant_changes.is_empty();
+    let plants = asked_plants(scenario)?;
+    let several = plants.len() > 1;
     let mut cases = Vec::new();
-    for ((at, plant), airframe) in plants(scenario)?.into_iter().zip(&study.airframes) {
+    for (index, asked) in plants.into_iter().enumerate() {
+        let plant = asked.plant.ok_or(NotEvaluated::Absent(CHANGED))?;
+        // What a nonlinear aircraft comes to be is trimmed at the airspeed of the start.
+        let known = study.airframes.get(index);
+        let airframe = known.or(study.airframes.first()).ok_or(SimError::NotLinear)?;
         let value = value(requirement.measure, &plant, airframe, &path)?;
+        let at = PlantAt { index, from_s: asked.from_s };
         let place = CasePlace { plant: several.then_some(at), ..CasePlace::default() };
         cases.push(Case { value, place });
     }
     Ok(cases)
-}
-
-/// The linear plants, an aircraft's model at its trim in its place.
-fn plants(scenario: &Scenario) -> Result<Vec<(PlantAt, LinearPlant)>, SimError> {
-    scenario.plant.require_equations()?;
-    let first = match (scenario.plant.linear(), scenario.plant.aircraft()) {
-        (Some(plant), _) => plant.clone(),
-        (None, Some(aircraft)) => aircraft.linear()?,
-        (None, None) => return Err(SimError::NotLinear),
-    };
-    let later = (1..)
-        .zip(&scenario.plant_changes)
-        .map(|(index, change)| (PlantAt { index, from_s: change.at_s() }, change.target().clone()));
-    Ok(std::iter::once((PlantAt { index: 0, from_s: 0.0 }, first)).chain(later).collect())
 }
 
 /// Servo, whole samples of delay, and half a sample for which the hold keeps a command on average.

@@ -1,5 +1,7 @@
 //! What a flight shows.
 
+mod seen;
+
 use std::ops::RangeInclusive;
 
 use fspid_sim::air::WindKind;
@@ -30,7 +32,7 @@ pub(super) fn cases(
             aircraft::case(study, &result.trace, requirement, time).map(|case| vec![case])
         }
         (Measure::RecoveryTime, _) => flown.recovery(&requirement.conditions, requirement.most),
-        (Measure::FinalErrorAngle, _) => flown.final_errors(&requirement.conditions),
+        (Measure::FinalErrorAngle, _) => flown.final_errors(requirement),
         (_, Family::Step) => flown.steps(requirement),
         _ => flown.whole(requirement).map(|case| vec![case]),
     }
@@ -137,7 +139,11 @@ impl Flown<'_> {
             let case = Case { value, place: at_step(*step) };
             match requirement.measure {
                 // What has not come there has not gone beyond it either.
-                Measure::Overshoot => edge.step.rise_time_s.map(|_| case).map_err(Into::into),
+                Measure::Overshoot => {
+                    edge.step.rise_time_s?;
+                    self.peaked(case, edge, requirement.most)
+                }
+                Measure::FinalError => self.left_pct(case, edge, requirement),
                 Measure::SettlingTime => self.lasting(case, edge.window_s, requirement.most),
                 _ => Ok(case),
             }
@@ -176,20 +182,19 @@ impl Flown<'_> {
         setpoints.iter().zip(thetas).map(|(setpoint, theta)| setpoint - theta).collect()
     }
 
-    fn final_errors(&self, conditions: &Conditions) -> Result<Vec<Case>, NotEvaluated> {
+    fn final_errors(&self, requirement: &Requirement) -> Result<Vec<Case>, NotEvaluated> {
         let last = self.trace.rows().saturating_sub(1);
+        let conditions = &requirement.conditions;
         // A command that never moves is held from the start to the end.
         if self.metrics.edges.is_empty() && conditions.step_deg.is_none() {
-            let value = degrees(self.errors_rad(last..=last).first().map_or(f64::NAN, |e| e.abs()));
+            let errors = self.errors_rad(0..=last);
+            let error = |sample: usize| degrees(errors.get(sample).copied().unwrap_or(f64::NAN));
             let place = CasePlace { at_s: Some(self.timing.time_s(last)), ..CasePlace::default() };
-            return Ok(vec![Case { value, place }]);
+            let case = Case { value: error(last).abs(), place };
+            return Ok(vec![self.left(case, 0..=last, requirement, error)?]);
         }
-        let case = |(step, edge): &(StepAt, &EdgeMetrics)| {
-            let theta_rad = self.trace.theta_rad.get(*self.window(edge).end()).copied();
-            let left_rad = edge.to_rad - theta_rad.unwrap_or(f64::NAN);
-            Case { value: degrees(left_rad.abs()), place: at_step(*step) }
-        };
-        Ok(self.counted(conditions)?.iter().map(case).collect())
+        let steps = self.counted(conditions)?.into_iter();
+        steps.map(|step| self.left_deg(step, requirement)).collect()
     }
 
     fn time(&self, conditions: &Conditions) -> Result<RangeInclusive<usize>, NotEvaluated> {
@@ -270,9 +275,10 @@ impl Flown<'_> {
         Err(NotEvaluated::TooShort { settled_s: 0.0, window_s, place: Box::new(place) })
     }
 
-    /// A measure of the whole flight or of the time that counts.
+    /// A measure of the whole flight or of the time that counts, which is seen to stay so.
     fn whole(&self, requirement: &Requirement) -> Result<Case, NotEvaluated> {
         let time = self.time(&requirement.conditions)?;
+        self.is_seen_to_stay(&requirement.conditions)?;
         let value = match requirement.measure {
             Measure::LargestError => return Ok(self.largest_error(time)),
             Measure::RmsError => self.rms_deg(time),

@@ -5,7 +5,9 @@ use fspid_sim::{
     Doubt, EarlyEnd, EndCause, NamedController, Outcome, RestPoint, Scenario, SimError,
 };
 
-use crate::analysis::{Analysis, Margins, PlantLoop, Question, RestLoop, decibels, held_at_rest};
+use crate::analysis::{
+    Analysis, Margins, PlantLoop, Question, RestLoop, asked_plants, decibels, held_at_rest,
+};
 use crate::judgement::{Case, CasePlace, NotEvaluated, PlantAt};
 use crate::metrics::Absent;
 use crate::simulation::ControllerResult;
@@ -35,6 +37,9 @@ impl PlantEvidence {
             .map(move |rest| (rest, CasePlace { rest: several.then_some(rest.at), ..self.place() }))
     }
 }
+
+/// An aircraft that comes to be and has no linear model.
+pub(super) const CHANGED: Absent = Absent::Undecided(Doubt::ChangedAircraft);
 
 /// Why there are no margins, and where.
 pub(super) fn with_place(reason: Absent, place: CasePlace) -> NotEvaluated {
@@ -84,6 +89,9 @@ pub(super) fn loops(
     let analysed = analysed.ok_or(NotEvaluated::Linear(SimError::NotLinear))?;
     if let Some(reason) = analysed.absent {
         return Err(NotEvaluated::Absent(reason));
+    }
+    if asked_plants(scenario)?.iter().any(|asked| asked.plant.is_none()) {
+        return Err(NotEvaluated::Absent(CHANGED));
     }
     let several = analysed.plants.len() > 1;
     let evidence = |(index, at_rest): (usize, PlantLoop)| {

@@ -175,7 +175,8 @@ fn a_recovery_is_asked_of_each_step_or_from_a_time_on() {
 fn what_is_left_of_a_step_is_left_at_the_last_sample_before_the_next() {
     let flight = two_steps();
     let left = |conditions: Conditions| {
-        let cases = flight.flown().final_errors(&conditions).expect("there are steps");
+        let asked = requirement(Measure::FinalErrorAngle, conditions);
+        let cases = flight.flown().final_errors(&asked).expect("there are steps");
         cases.into_iter().map(|case| case.value).collect::<Vec<_>>()
     };
     let found = left(Conditions::default());
@@ -193,13 +194,14 @@ fn what_is_left_of_a_command_that_never_moves_is_left_at_the_end() {
     let mut errors = [0.5; 11];
     errors[10] = -0.3;
     let flight = Whole::with_errors(errors);
-    let found = flight.flown().final_errors(&Conditions::default()).expect("held");
+    let of = |conditions| requirement(Measure::FinalErrorAngle, conditions);
+    let found = flight.flown().final_errors(&of(Conditions::default())).expect("held");
     near(found[0].value, 0.3);
     assert_eq!((found.len(), found[0].place.at_s), (1, Some(1.0)));
     // A step that is asked for is not there.
     let asked = Conditions { step_deg: Some(2.0), ..Conditions::default() };
     let none = NotEvaluated::NoStepOf { asked_deg: 2.0, found_deg: Vec::new() };
-    assert_eq!(flight.flown().final_errors(&asked), Err(none));
+    assert_eq!(flight.flown().final_errors(&of(asked)), Err(none));
     let recovery = flight.flown().recovery(&Conditions::default(), None);
     assert_eq!(recovery, Err(NotEvaluated::Absent(Absent::NoStep)));
 }
@@ -283,4 +285,62 @@ fn an_altitude_that_is_held_is_seen_for_a_tenth_of_the_time_before_it() {
     let why = little(0.98).expect_err("a reason").to_string();
     assert!(why.contains("from 0.98 s on only 0.02 s were flown"), "{why}");
     assert_eq!(asked(Some(0.98), Some(1.0)), Ok(()));
+}
+
+/// The last sample of a swing is within any limit by chance.
+#[test]
+fn an_error_that_is_left_is_seen_over_the_last_tenth_of_its_time() {
+    let mut errors = [0.5; 11];
+    (errors[9], errors[10]) = (-1.5, 0.1);
+    let flight = Whole::with_errors(errors);
+    let asked = requirement(Measure::FinalErrorAngle, Conditions::default());
+    match flight.flown().final_errors(&asked) {
+        Err(NotEvaluated::NotLeft { largest, unit, window_s, .. }) => {
+            near(largest, 1.5);
+            near(window_s, 1.0);
+            assert_eq!(unit, "deg");
+        }
+        other => panic!("{other:?}"),
+    }
+    let mut wide = asked.clone();
+    wide.most = Some(1.6);
+    near(flight.flown().final_errors(&wide).expect("seen")[0].value, 0.1);
+    // What is not met at the last sample is told as it is.
+    errors[10] = 2.0;
+    let lost = Whole::with_errors(errors);
+    near(lost.flown().final_errors(&asked).expect("seen")[0].value, 2.0);
+    // The same of a step, in per cent of it.
+    let theta = [0.0, 0.0, 0.5, 1.0, 2.0, 2.0, 2.0, 2.0, 2.0, 1.8, 2.0];
+    let flight = Whole::of(&[2.0; 11], &theta, &[edge(0, 0.0, 2.0)]);
+    let mut asked = requirement(Measure::FinalError, Conditions::default());
+    assert!(matches!(flight.flown().steps(&asked), Err(NotEvaluated::NotLeft { .. })));
+    asked.most = Some(10.1);
+    near(flight.flown().steps(&asked).expect("seen")[0].value, 0.0);
+}
+
+/// A response of 0.68 s that is 3 % beyond its set-point, on its way to 39 %, had an overshoot of 3 %.
+#[test]
+fn an_overshoot_is_told_when_its_peak_is_seen() {
+    let told = |theta: [f64; 11], most| {
+        let flight = Whole::of(&[2.0; 11], &theta, &[edge(0, 0.0, 2.0)]);
+        let mut asked = requirement(Measure::Overshoot, Conditions::default());
+        asked.most = most;
+        flight.flown().steps(&asked).map(|cases| cases[0].value)
+    };
+    let rising = [0.0, 0.0, 0.2, 0.4, 0.6, 0.8, 1.0, 1.3, 1.6, 1.9, 2.1];
+    assert!(matches!(told(rising, Some(5.5)), Err(NotEvaluated::StillRising { .. })));
+    // Short of its set-point, too.
+    let before = rising.map(|theta| 0.92 * theta);
+    assert!(matches!(told(before, Some(5.0)), Err(NotEvaluated::StillRising { .. })));
+    // More than is allowed is told as it is.
+    near(told(rising, Some(4.0)).expect("told"), 5.0);
+    let seen = [0.0, 0.0, 0.2, 0.4, 0.6, 0.8, 1.0, 1.3, 1.9, 2.1, 2.0];
+    near(told(seen, Some(6.0)).expect("told"), 5.0);
+    // So slow that for another second it stays within 5 %, and within 2 % that it does not.
+    let slow = [0.0, 0.0, 0.2, 0.4, 0.6, 0.8, 1.0, 1.3, 1.8, 2.06, 2.061];
+    near(told(slow, Some(5.0)).expect("told"), 3.05);
+    assert!(matches!(told(slow, Some(3.1)), Err(NotEvaluated::StillRising { .. })));
+    // What has settled and creeps on goes no further.
+    let creeping = [0.0, 0.5, 1.0, 1.5, 1.8, 1.97, 1.98, 1.985, 1.99, 1.995, 2.01];
+    near(told(creeping, Some(5.0)).expect("told"), 0.5);
 }
