@@ -152,63 +152,83 @@ impl<'a> Walk<'a> {
         seeker: &Seeker<'_>,
     ) -> Vec<Wanted> {
         let untouched = self.untouched(from, seeker);
-        let start = from.unwrap_or(&self.start).target;
-        let written = |quantity: Quantity, or: f64| {
-            let targets = self.targets.get(number);
-            targets.and_then(|it| *it.get(quantity.place())?).unwrap_or(or)
-        };
-        let airspeed_m_s = written(Quantity::Airspeed, start.airspeed_m_s);
-        let mut powers = vec![untouched.power];
-        let mut throttle = untouched.throttle;
-        if let Some(mover) = engaged.throttle() {
-            powers.insert(0, Power::Airspeed(airspeed_m_s));
-            throttle = mover.within(throttle, self.start.point.throttle);
-            // Without an integral the airspeed ends somewhere between the one that is held and that of a throttle that stays.
-            powers.truncate(if has_integral(mover.controller) { 1 } else { 2 });
-        }
-        let climb_m_s = start.airspeed_m_s * libm::sin(start.flight_path_rad) + self.air.up_m_s;
-        let outermost = engaged.outermost();
-        let holds = match engaged.mode.total_energy {
-            true => Some(Quantity::Altitude),
-            false => outermost.map(|it| it.holds),
-        };
-        let way = match holds {
-            None | Some(Quantity::Heading) => untouched.way,
-            Some(Quantity::Altitude) => Way::OverGround(0.0),
-            Some(Quantity::VerticalSpeed) => {
-                Way::Climb(written(Quantity::VerticalSpeed, climb_m_s))
-            }
-            Some(Quantity::FlightPath) => self.path(number, start.flight_path_rad),
-            Some(Quantity::GlideSlope) => {
-                let beam = engaged.autopilot.glide_slope();
-                Way::OverGround(beam.map_or(0.0, |beam| -beam.angle_rad))
-            }
-            Some(Quantity::Airspeed) => Way::Airspeed(airspeed_m_s),
-        };
-        let mut ways = vec![way];
-        // Likewise of a path, but for altitudes, which gather by themselves.
-        let gathers = matches!(holds, Some(Quantity::Altitude | Quantity::GlideSlope));
-        if let Some(outer) = outermost.filter(|it| !gathers && !has_integral(&it.controller)) {
-            ways.push(match outer.moves {
-                Moves::Loop(_) => Way::Through(start.flight_path_rad),
-                Moves::Pitch | Moves::Throttle | Moves::Bank => untouched.way,
-            });
-        }
-        let altitude_m = written(Quantity::Altitude, untouched.altitude_m);
+        let (powers, throttle) = self.powers(engaged, number, from, &untouched);
+        let ways = self.ways(engaged, number, from, &untouched);
+        let altitude_m = self.target(number, Quantity::Altitude).unwrap_or(untouched.altitude_m);
         let ends = engaged.pitch().and_then(|it| it.ends());
         let range = ends.map(|ends| ends.map(|end| self.base_rad + end));
-        let pitch_rad = range.filter(|_| holds.is_some());
+        let pitch_rad = range.filter(|_| engaged.holds().is_some());
         let with = |power| {
             ways.iter().map(move |&way| Wanted { power, way, altitude_m, throttle, pitch_rad })
         };
         powers.into_iter().flat_map(with).collect()
     }
 
-    /// The path of a mode that holds one: what is written over the ground, or that of the flight before.
-    fn path(&self, number: usize, before_rad: f64) -> Way {
-        let targets = self.targets.get(number);
-        let written = targets.and_then(|it| *it.get(Quantity::FlightPath.place())?);
-        written.map_or(Way::Through(before_rad), Way::OverGround)
+    /// What is written that a mode holds, as it is in truth.
+    fn target(&self, number: usize, quantity: Quantity) -> Option<f64> {
+        *self.targets.get(number)?.get(quantity.place())?
+    }
+
+    /// What makes the airspeed, and how far the throttle may go for it.
+    fn powers(
+        &self,
+        engaged: &Engaged<'_>,
+        number: usize,
+        from: Option<&Trim>,
+        untouched: &Wanted,
+    ) -> (Vec<Power>, [f64; 2]) {
+        let Some(mover) = engaged.throttle() else {
+            return (vec![untouched.power], untouched.throttle);
+        };
+        let start = from.unwrap_or(&self.start).target;
+        let held = self.target(number, Quantity::Airspeed).unwrap_or(start.airspeed_m_s);
+        let mut powers = vec![Power::Airspeed(held)];
+        // Without an integral the airspeed ends somewhere between the one that is held and that of a throttle that stays.
+        if !has_integral(mover.controller) {
+            powers.push(untouched.power);
+        }
+        (powers, mover.within(untouched.throttle, self.start.point.throttle))
+    }
+
+    /// What makes the path.
+    fn ways(
+        &self,
+        engaged: &Engaged<'_>,
+        number: usize,
+        from: Option<&Trim>,
+        untouched: &Wanted,
+    ) -> Vec<Way> {
+        let start = from.unwrap_or(&self.start).target;
+        let written = |quantity: Quantity| self.target(number, quantity);
+        let climb_m_s = start.airspeed_m_s * libm::sin(start.flight_path_rad) + self.air.up_m_s;
+        let holds = engaged.holds();
+        let way = match holds {
+            None | Some(Quantity::Heading) => untouched.way,
+            Some(Quantity::Altitude) => Way::OverGround(0.0),
+            Some(Quantity::VerticalSpeed) => {
+                Way::Climb(written(Quantity::VerticalSpeed).unwrap_or(climb_m_s))
+            }
+            Some(Quantity::FlightPath) => written(Quantity::FlightPath)
+                .map_or(Way::Through(start.flight_path_rad), Way::OverGround),
+            Some(Quantity::GlideSlope) => {
+                let beam = engaged.autopilot.glide_slope();
+                Way::OverGround(beam.map_or(0.0, |beam| -beam.angle_rad))
+            }
+            Some(Quantity::Airspeed) => {
+                Way::Airspeed(written(Quantity::Airspeed).unwrap_or(start.airspeed_m_s))
+            }
+        };
+        let mut ways = vec![way];
+        // As of the airspeed without an integral, but for altitudes, which gather by themselves.
+        let gathers = matches!(holds, Some(Quantity::Altitude | Quantity::GlideSlope));
+        let outermost = engaged.outermost().filter(|_| !gathers);
+        if let Some(outer) = outermost.filter(|it| !has_integral(&it.controller)) {
+            ways.push(match outer.moves {
+                Moves::Loop(_) => Way::Through(start.flight_path_rad),
+                Moves::Pitch | Moves::Throttle | Moves::Bank => untouched.way,
+            });
+        }
+        ways
     }
 
     /// How an altitude is come to that is far: as fast as the loop that holds it commands.
@@ -296,6 +316,14 @@ impl Engaged<'_> {
     fn turns(&self) -> bool {
         let load = 1.0 / libm::cos(self.mode.bank_rad);
         self.mover(Moves::Bank).is_none() && load > SLIGHT_LOAD
+    }
+
+    /// What it holds by pitch, in the end.
+    fn holds(&self) -> Option<Quantity> {
+        match self.mode.total_energy {
+            true => Some(Quantity::Altitude),
+            false => self.outermost().map(|it| it.holds),
+        }
     }
 
     /// The loop that moves pitch in the end and that no other loop moves.

@@ -108,3 +108,6 @@ impl Around {
         json!({ "held": held, "modes": self.modes.iter().map(mode).collect::<Vec<_>>() })
     }
 }
+
+#[cfg(test)]
+mod tests;
