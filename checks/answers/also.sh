@@ -43,6 +43,13 @@ for changed in "" "--set controller.FSPID.nominal.ki=0.3"; do
 done
 also campaign-run campaign run campaign.toml --runs 200 --quiet --out run
 also campaign-report campaign report run/campaign.parquet
+for template in requirements pitch-hold; do
+    # A requirement of one controller alone, and notes of no measure.
+    "$program" init --template "$template" "$work/$template.toml" >/dev/null
+    printf '\n[[dispersion]]\npath = "loop.duration_s"\ndistribution = "choice"\nvalues = [10.0]\n' >>"$work/$template.toml"
+    also campaign-run campaign run "$template.toml" --runs 20 --quiet --out "run-$template"
+    also campaign-report campaign report "run-$template/campaign.parquet"
+done
 also campaign-rare campaign rare campaign.toml --fails overshoot_pct --flights 4000 --set loop.duration_s=2
 also campaign-rare campaign rare campaign.toml --fails overshoot_pct --method both --most 1e-6 --flights 4000 --set loop.duration_s=2
 for optimiser in nsga-ii bfgs de; do also tune tune tuning.toml --optimiser "$optimiser" --budget 200 --quiet --limit; done

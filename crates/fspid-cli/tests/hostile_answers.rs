@@ -326,3 +326,21 @@ fn sensors_of_outer_loops_are_refused_by_check_as_those_of_the_pitch_loop_are() 
         assert!(text.contains(&format!("outer_loop[0].sensor.{key}")), "{text}");
     }
 }
+
+/// An aircraft without inertia: its loads were no numbers a sample before its motion was none, and the last row said so.
+#[test]
+fn a_trace_ends_before_the_first_row_that_is_not_finite() {
+    let delay = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/gallery/delay.toml");
+    let folder = tempfile::tempdir().expect("a folder");
+    let light = "aircraft.iy_slug_ft2=0.7529278283267127";
+    let words = ["simulate", delay, "--set", light, "--trace", "t.csv"];
+    let flown = fspid(&words, folder.path());
+    let told = text(&flown.stdout);
+    let trace = std::fs::read_to_string(folder.path().join("t.csv")).expect("written");
+    let rows: Vec<&str> = trace.lines().skip(1).collect();
+    let is_number = |cell: &str| cell.parse::<f64>().is_ok_and(f64::is_finite);
+    assert!(rows.iter().all(|row| row.split(',').all(is_number)), "{trace}");
+    // The flight ends there, and says so.
+    assert_eq!(rows.len(), 4, "{trace}");
+    assert!(told.contains("diverged at t = 0.04 s"), "{told}");
+}

@@ -485,3 +485,31 @@ fn a_plan_that_comes_without_its_empty_folder_is_flown() {
     }
     assert_eq!(code(&fspid(&["campaign", "merge", "--out", "plan"], folder)), 0);
 }
+
+/// A controller of which a requirement asks nothing has no share of flights, and a note may be of no measure: the published
+/// schema had a number and a key there.
+#[test]
+fn reports_of_campaigns_of_the_templates_are_what_their_schema_says() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    let drawn =
+        "\n[[dispersion]]\npath = \"loop.duration_s\"\ndistribution = \"choice\"\nvalues = [3.0]\n";
+    for template in ["requirements", "pitch-hold"] {
+        assert_eq!(code(&fspid(&["init", "--template", template, "a.toml"], folder)), 0);
+        let file = folder.join("a.toml");
+        let written = std::fs::read_to_string(&file).expect("written");
+        std::fs::write(&file, format!("{written}{drawn}")).expect("written");
+        let run = ["campaign", "run", "a.toml", "--runs", "4", "--quiet", "--out", template];
+        assert_eq!(code(&fspid(&run, folder)), 0, "{template}");
+        // Each answer is held against its schema.
+        let report = json(&fspid(&["campaign", "report", template, "--format", "json"], folder));
+        if template == "pitch-hold" {
+            assert_eq!(report["notes"][0]["note"], "nothing-required", "{report}");
+            continue;
+        }
+        let lines = report["controllers"][0]["requirements"].as_array().expect("a list");
+        let other = lines.iter().find(|line| line["id"] == "R-4").expect("of the FSPID alone");
+        assert!(other["not_met"]["estimate"].is_null() && other["not_judged"] == 4, "{other}");
+        std::fs::remove_file(&file).expect("removed");
+    }
+}

@@ -45,7 +45,7 @@ pub struct EarlyEnd {
 /// Why a flight ended before its last sample, in the words of every answer.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum EndCause {
-    /// The pitch angle left ± 10⁶ degrees or was not finite, or a nonlinear aircraft lay on its back.
+    /// The pitch angle left ± 10⁶ degrees, a number was not finite, or a nonlinear aircraft lay on its back.
     #[error("diverged")]
     Diverged,
     /// A nonlinear aircraft came down to the ground.

@@ -5,6 +5,7 @@ use crate::dispersion::{
     Uniform,
 };
 use crate::file::Template;
+use crate::file::paths::{meant, row_at};
 use crate::file::spec::dispersion as keys;
 use crate::file::spec::dispersion::{
     DistributionWord, OWN_KEYS, keys_of, matrix_in_words, paths_in_words, values_in_words,
@@ -345,11 +346,31 @@ impl Template {
                     "a path to a number that is written in the scenario or in a file that it names; or relative = false",
                 )),
             };
-            if let Some((message, allowed)) = wrong {
+            let Some((message, allowed)) = wrong else { continue };
+            if !self.told_misspelt(&mut report, &path, dispersion) {
                 report.missing(self.place_of(&path), &path, message, allowed);
             }
         }
         report.finish(self.name()).map(|_| nominal)
+    }
+
+    /// Tells of the first path of a dispersion at `at` that is nowhere in the scenario: no limit mends that. False without one.
+    fn told_misspelt(&self, report: &mut Report, at: &str, dispersion: &Dispersion) -> bool {
+        let rows = self.rows();
+        let paths = dispersion.targets.iter().flat_map(|target| &target.paths);
+        let is_nowhere = |path: &str| row_at(&rows, path).is_none() && self.found(path).is_none();
+        let mut paths = paths.map(SettingPath::text).enumerate();
+        let Some((number, path)) = paths.find(|(_, path)| is_nowhere(path)) else {
+            return false;
+        };
+        let keys = [format!("{at}.paths[{number}]"), format!("{at}.path")];
+        let [in_list, alone] = &keys;
+        let key = if self.found(in_list).is_some() { in_list } else { alone };
+        let near = meant(&rows, path).map(|near| format!("; did you mean `{near}`?"));
+        let message = format!("there is no `{path}`{}", near.unwrap_or_default());
+        let allowed = "a path that `fspid check FILE --paths` calls drawn";
+        report.missing(self.place_of(key), key, message, allowed);
+        true
     }
 
     /// Refuses a place that is drawn twice.

@@ -7,13 +7,13 @@ use serde_json::{Map, Value, json};
 use super::files::Files;
 use super::setting::{number, quoted, step, written};
 use super::spec::SCENARIO;
-use super::tunable::FIXED;
 use super::{LoadError, Problems, build, changed_document, extra::Extra, read_text};
-use crate::keyed::check::{self, allowed};
+use crate::keyed::check::{self, FIXED, allowed};
+use crate::keyed::document::Item;
 use crate::keyed::schema::{self, kind as schema_of};
 use crate::keyed::{Checked, Entry, KeyName, KeyRow, Kind, Section, Table, Way, join};
-use crate::setting_path::{SettingPath, Step, steps};
-use fspid_diagnostics::Report;
+use crate::setting_path::{SettingPath, Step, bare, steps};
+use fspid_diagnostics::{Report, nearest};
 
 /// Top-level keys whose numbers cannot differ from run to run.
 pub(super) const NEVER_DRAWN: [&str; 4] = ["dispersion", "requirement", "schema", "set"];
@@ -61,36 +61,62 @@ pub fn paths_of(
 ) -> Result<Vec<PathRow>, Problems> {
     let (mut report, mut files) = (Report::default(), Files::new(folder));
     let extra = Extra { overrides, ..Extra::default() };
-    let mut rows = Vec::new();
-    if let Some((document, _)) = changed_document(&mut report, &mut files, text, &extra)
-        && let Some(section) = check::table(&mut report, &SCENARIO, &document, "")
-    {
-        // What a file says that the scenario names is read while it is built.
-        let _ = build::scenario(&mut report, &mut files, &section);
-        files.report_unused_changes(&mut report);
-        let mut walk =
-            Walk { files: &files, root: String::new(), in_file: false, rows: Vec::new() };
-        walk.keys(&SCENARIO, &section, "");
-        rows = walk.rows;
-    }
+    let document = changed_document(&mut report, &mut files, text, &extra);
+    let rows = document.map(|(document, _)| rows(&mut report, &mut files, &document));
     report.finish(name)?;
-    Ok(rows)
+    Ok(rows.unwrap_or_default())
+}
+
+/// Every path of a document; none of one that is wrong.
+pub(super) fn rows(report: &mut Report, files: &mut Files<'_>, document: &Item) -> Vec<PathRow> {
+    let Some(section) = check::table(report, &SCENARIO, document, "") else {
+        return Vec::new();
+    };
+    // What a file says that the scenario names is read while it is built.
+    let _ = build::scenario(report, files, &section);
+    files.report_unused_changes(report);
+    let mut walk = Walk { files, root: String::new(), in_file: false, rows: Vec::new() };
+    walk.keys(&SCENARIO, &section, "");
+    walk.rows
 }
 
 /// The row of a place, however `--set` may call it: an entry of a list by its number too, where rows call it by its name.
 #[must_use]
 pub fn row_at<'a>(rows: &'a [PathRow], path: &str) -> Option<&'a PathRow> {
-    let all: Vec<(Vec<Step>, &PathRow)> =
-        rows.iter().filter_map(|row| Some((steps(&row.path)?, row))).collect();
+    let all = with_steps(rows);
+    let found = named(&all, path)?;
+    all.into_iter().find_map(|(steps, row)| (steps == found).then_some(row))
+}
+
+/// The path of a row that was probably meant by one that is not there.
+pub(super) fn meant<'a>(rows: &'a [PathRow], path: &str) -> Option<&'a str> {
+    let mut found = String::new();
+    for step in named(&with_steps(rows), path)? {
+        match step {
+            Step::Index(index) => found.push_str(&format!("[{index}]")),
+            Step::Name(name) if found.is_empty() => found = bare(&name),
+            Step::Name(name) => found.push_str(&format!(".{}", bare(&name))),
+        }
+    }
+    let known: Vec<&str> = rows.iter().filter(|it| it.drawn).map(|it| it.path.as_str()).collect();
+    nearest(&found, &known)
+}
+
+fn with_steps(rows: &[PathRow]) -> Vec<(Vec<Step>, &PathRow)> {
+    rows.iter().filter_map(|row| Some((steps(&row.path)?, row))).collect()
+}
+
+/// The steps of a path, with the names of entries in place of their numbers.
+fn named(all: &[(Vec<Step>, &PathRow)], path: &str) -> Option<Vec<Step>> {
     let mut found: Vec<Step> = Vec::new();
     for step in SettingPath::parse(path)?.steps() {
         let name = match step {
-            Step::Index(index) => name_of_entry(&all, &found, *index),
+            Step::Index(index) => name_of_entry(all, &found, *index),
             Step::Name(_) => None,
         };
         found.push(name.map_or_else(|| step.clone(), Step::Name));
     }
-    all.into_iter().find_map(|(steps, row)| (steps == found).then_some(row))
+    Some(found)
 }
 
 /// The name of an entry of the list at some steps; none where entries have no names, or too few are there.

@@ -4,6 +4,7 @@ use serde_json::{Map, Value, json};
 
 use crate::file::spec::SCENARIO;
 use crate::file::tunable;
+use crate::keyed::check::FIXED;
 use crate::keyed::schema::{GRID_WORD, NUMBERS_WORD, schema_of};
 
 /// The JSON Schema (draft 2020-12) of scenario files.
@@ -13,7 +14,7 @@ pub fn schema() -> Value {
     if let Some(tables) = schema.get_mut("properties").and_then(Value::as_object_mut) {
         tables
             .iter_mut()
-            .filter(|(name, _)| !tunable::FIXED.contains(&name.as_str()))
+            .filter(|(name, _)| !FIXED.contains(&name.as_str()))
             .for_each(|(_, table)| allow_marks(table));
     }
     schema["$defs"] = tunable::schemas();

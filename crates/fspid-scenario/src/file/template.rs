@@ -7,6 +7,7 @@ use super::document::{Item, Value};
 use super::extra::Extra;
 use super::files::{Files, Kept};
 use super::overrides::{self, Found, Setting};
+use super::paths::{self, PathRow};
 use crate::dispersion::Dispersion;
 use crate::setting_path::{NewValue, SettingPath, Step, path_of, steps};
 use crate::tuning::TunableParameter;
@@ -80,11 +81,21 @@ impl Template {
 
     /// Where a part of the scenario stands; its beginning if it is not there.
     pub(super) fn place_of(&self, path: &str) -> Span {
-        let steps = steps(path).unwrap_or_default();
-        match overrides::find(&self.document, &steps, "") {
-            Found::Here(item) => item.place,
-            _ => self.document.place,
+        self.found(path).unwrap_or(self.document.place)
+    }
+
+    /// The same, if it is there.
+    pub(super) fn found(&self, path: &str) -> Option<Span> {
+        match overrides::find(&self.document, &steps(path)?, "") {
+            Found::Here(item) => Some(item.place),
+            Found::InFile(..) | Found::Nothing => None,
         }
+    }
+
+    /// Every path that the scenario has.
+    pub(super) fn rows(&self) -> Vec<PathRow> {
+        let (mut report, mut files) = (self.report.clone(), self.files());
+        paths::rows(&mut report, &mut files, &self.document)
     }
 
     /// What the scenario is called in messages.

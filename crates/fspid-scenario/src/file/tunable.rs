@@ -5,7 +5,7 @@ use fspid_fuzzy::{Grid, LABEL_COUNT, Label, NumberGrid};
 
 use crate::file::Template;
 use crate::file::setting::named_step;
-use crate::keyed::check::{grid_text, number_grid};
+use crate::keyed::check::{FIXED, grid_text, number_grid};
 use crate::keyed::document::{Item, Member, Value};
 use crate::setting_path::{NewValue, SettingPath, bare};
 use crate::tuning::{Free, Monotone, TunableGrid, TunableNumber, TunableNumbers, TunableParameter};
@@ -23,8 +23,6 @@ const GRID_KEYS: [&str; 6] = [KEY, START, "reach", "symmetric", "at_rest", "mono
 const NUMBERS_KEYS: [&str; 4] = [KEY, START, "reach", "symmetric"];
 /// How many labels a cell may move, unless the mark says.
 const USUAL_REACH: u8 = 2;
-/// Top-level tables in which nothing can be free.
-pub(crate) const FIXED: [&str; 5] = ["requirement", "dispersion", "tuning", "contest", "set"];
 
 /// JSON Schemas of the two kinds of marks.
 pub(crate) fn schemas() -> serde_json::Value {

@@ -139,7 +139,9 @@ fn report_syntax<T>(
     error: &toml::de::Error,
 ) -> Option<T> {
     let span = error.span().unwrap_or(0..0);
-    report.line(place(source, span), syntax::reason(text, error));
+    let (at, reason) = syntax::reason(text, error);
+    let span = if at == span.start { span } else { at..at };
+    report.line(place(source, span), reason);
     None
 }
 

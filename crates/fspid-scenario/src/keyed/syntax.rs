@@ -2,17 +2,57 @@
 
 use toml::de::Error;
 
-/// What is wrong where the parser stopped.
-pub(super) fn reason(text: &str, error: &Error) -> String {
-    if error.message().starts_with("duplicate key") {
-        return "this key or table is here twice".to_owned();
-    }
+/// Where a text is wrong, as a byte, and what is: mostly where the parser stopped.
+pub(super) fn reason(text: &str, error: &Error) -> (usize, String) {
     let at = error.span().map_or(0, |span| span.start);
+    if error.message().starts_with("duplicate key") {
+        return twice(text, at);
+    }
     let message = match slip(text, at) {
         Some(slip) => slip.to_owned(),
+        None if is_bare_text(text, at, error) => "string values must be quoted".to_owned(),
         None => error.message().replace('\n', ", "),
     };
-    format!("not TOML: {message}")
+    (at, format!("not TOML: {message}"))
+}
+
+/// What is told of a key or table that is here twice. Of an entry of a list that stands in single brackets that line is the one
+/// to be changed, be it the first or the second.
+fn twice(text: &str, at: usize) -> (usize, String) {
+    let same = "this key or table is here twice";
+    let Some((name, is_list)) = heading(line_at(text, at)) else {
+        return (at, same.to_owned());
+    };
+    let mut starts = text.split_inclusive('\n').scan(0, |start, line| {
+        let this = *start;
+        *start += line.len();
+        Some((this, line))
+    });
+    let Some((other, _)) = starts.find(|(_, line)| heading(line) == Some((name, !is_list))) else {
+        return (at, format!("{same}; of several in a list each has double brackets"));
+    };
+    let single = if is_list { other } else { at };
+    let message = format!(
+        "`[[{name}]]` is there too: of several in a list each has double brackets, the first as well"
+    );
+    (single, message)
+}
+
+/// The name of a table's heading, and whether its brackets are double.
+fn heading(line: &str) -> Option<(&str, bool)> {
+    let line = line.split('#').next().unwrap_or_default().trim();
+    let within = |open, close| line.strip_prefix(open)?.strip_suffix(close).map(str::trim);
+    match within("[[", "]]") {
+        Some(name) => Some((name, true)),
+        None => within("[", "]").map(|name| (name, false)),
+    }
+}
+
+/// True for a text without quotes that begins as `nan`, `inf`, `true` or `false` do: the parser takes it for one of these.
+fn is_bare_text(text: &str, at: usize, error: &Error) -> bool {
+    let is_word = text.get(at..).is_some_and(|rest| rest.starts_with(char::is_alphabetic));
+    let literals = ["`nan`", "`inf`", "`true`", "`false`"];
+    is_word && literals.iter().any(|literal| error.message().contains(literal))
 }
 
 /// The mistakes that are made again and again, for which the parser's words name a remedy that is none.
@@ -28,6 +68,9 @@ fn slip(text: &str, at: usize) -> Option<&'static str> {
         return colon.or_else(|| of_value(line.trim()).filter(|_| !line.trim().is_empty()));
     };
     let value = value.split('#').next().unwrap_or("").trim();
+    if value.ends_with(';') {
+        return of_value(value);
+    }
     // Two keys on a line, or a table within it, are another matter.
     if value.contains('=') || !key.trim().split('.').all(|part| is_bare(part.trim())) {
         return None;
@@ -39,7 +82,9 @@ fn of_value(value: &str) -> Option<&'static str> {
     let rest = value.trim_start_matches(['+', '-']);
     let after = rest.trim_start_matches(|c: char| c.is_ascii_digit() || c == '.');
     let starts_with_digit = rest.starts_with(|c: char| c.is_ascii_digit());
-    if value.is_empty() {
+    if value.ends_with(';') {
+        Some("a line ends without a semicolon")
+    } else if value.is_empty() {
         Some("nothing stands after `=`; here a value belongs")
     } else if matches!(value, "True" | "TRUE" | "False" | "FALSE") {
         Some("true and false are written in small letters")
@@ -104,7 +149,7 @@ mod tests {
     fn told(line: &str) -> String {
         let text = format!("schema = 1\n{line}\nlast = 2\n");
         let error = DeTable::parse(&text).expect_err("it is wrong");
-        reason(&text, &error)
+        reason(&text, &error).1
     }
 
     #[test]
@@ -126,6 +171,13 @@ mod tests {
             ("kp = 05", "no zero"),
             ("name = “x”", "straight quotes"),
             ("name = pitch", "must be quoted"),
+            ("name = navion-paper", "must be quoted"),
+            ("name = inner", "must be quoted"),
+            ("name = trial", "must be quoted"),
+            ("name = { kind = falcon }", "must be quoted"),
+            ("kp = 1.0;", "without a semicolon"),
+            ("kp = \"a\"; # a comment", "without a semicolon"),
+            ("x = { a = 1 };", "without a semicolon"),
             ("kp = 1e", "exponent"),
             ("[loop", "unclosed table"),
             ("a = 1 b = 2", "unexpected key or value"),
@@ -136,14 +188,30 @@ mod tests {
         }
         assert_eq!(told("a = 1\na = 2"), "this key or table is here twice");
         let error = toml::de::DeValue::parse("5 deg").expect_err("it is wrong");
-        assert!(reason("5 deg", &error).contains("its unit"), "{}", reason("5 deg", &error));
+        let (_, told) = reason("5 deg", &error);
+        assert!(told.contains("its unit"), "{told}");
+    }
+
+    /// The place was that of the second heading, whichever of the two was to be changed.
+    #[test]
+    fn of_a_table_and_a_list_of_one_name_the_single_brackets_are_told() {
+        for (text, line, words) in [
+            ("[a]\nb = 1\n[[a]] # second\nb = 2\n", "[a]", "`[[a]]` is there too"),
+            ("[[a]]\nb = 1\n[ a ]\nb = 2\n", "[ a ]", "`[[a]]` is there too"),
+            ("[a]\nb = 1\n[a]\nb = 2\n", "[a]", "twice; of several in a list"),
+        ] {
+            let error = DeTable::parse(text).expect_err("it is wrong");
+            let (at, told) = reason(text, &error);
+            assert!(told.contains(words), "{text}: {told}");
+            assert_eq!(line_at(text, at), line, "{text}");
+        }
     }
 
     #[test]
     fn the_last_line_without_an_end_and_signs_of_many_bytes_are_read() {
         for text in ["kp =", "kp = 5 °", "ä: 5", "=", "\u{feff}", "kp = “"] {
             if let Err(error) = DeTable::parse(text) {
-                assert!(!reason(text, &error).is_empty(), "{text}");
+                assert!(!reason(text, &error).1.is_empty(), "{text}");
             }
         }
     }

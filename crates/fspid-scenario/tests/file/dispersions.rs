@@ -86,6 +86,29 @@ fn a_correlation_that_is_none_is_refused_at_its_line() {
     assert!(text.contains("1 numbers for 2 paths"), "{text}");
 }
 
+/// Its line was that of the table, and "limits (`lower`, `upper`)" were to mend it.
+#[test]
+fn a_path_that_is_nowhere_is_told_at_its_line_with_the_nearest_that_is() {
+    let rest = "distribution = \"uniform\"\nlower = 0.5\nupper = 1.0";
+    for (path, nearest, relative) in [
+        ("controller[0].Kp", "controller.PID.kp", false),
+        ("controller.PID.kpp", "controller.PID.kp", true),
+        ("actuator.time_constant", "actuator.time_constant_s", false),
+    ] {
+        let text = format!("{rest}\nrelative = {relative}\npath = \"{path}\"");
+        let problems = template(&text).check_dispersions().expect_err("a misspelt path");
+        let told = problems.to_string();
+        let words = format!("dispersion[0].path: there is no `{path}`; did you mean `{nearest}`?");
+        assert!(told.contains(&words) && !told.contains("`lower`"), "{told}");
+        let whole = scenario(&text);
+        let line = whole.lines().position(|line| line.starts_with("path = ")).expect("there") + 1;
+        assert!(told.starts_with(&format!("x.toml:{line}:8: ")), "{line}: {told}");
+    }
+    let several = format!("{rest}\npaths = [\"controller[0].kp\", \"controller[0].kq\"]");
+    let problems = template(&several).check_dispersions().expect_err("a misspelt path");
+    assert!(problems.to_string().contains("dispersion[0].paths[1]: there is no"), "{problems}");
+}
+
 #[test]
 fn a_dispersion_that_would_make_the_scenario_wrong_is_found_before_a_campaign() {
     let normal = "path = \"actuator.time_constant_s\"\ndistribution = \"normal\"\nmean = 0.1\nstandard_deviation = 0.05";
@@ -100,7 +123,7 @@ fn a_dispersion_that_would_make_the_scenario_wrong_is_found_before_a_campaign() 
     let nothing =
         "path = \"controller[0].nothing\"\ndistribution = \"uniform\"\nlower = 0.0\nupper = 1.0";
     let problems = template(nothing).check_dispersions().expect_err("no such key").to_string();
-    assert!(problems.contains("unknown key"), "{problems}");
+    assert!(problems.contains("there is no `controller[0].nothing`"), "{problems}");
     let factor = "path = \"controller[0].rate_gain\"\ndistribution = \"uniform\"\nlower = 0.5\nupper = 1.0\nrelative = true";
     let problems = template(factor).check_dispersions().expect_err("nothing to scale").to_string();
     assert!(problems.contains("there is no number at `controller[0].rate_gain`"), "{problems}");

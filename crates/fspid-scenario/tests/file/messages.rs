@@ -234,6 +234,95 @@ fn the_messages_are_those_that_were_read_aloud() {
     assert_eq!(messages.lines().count(), golden.lines().count());
 }
 
+/// What is told of the starter with one replacement.
+fn told(from: &str, to: &str) -> String {
+    let text = file::starter().replacen(from, to, 1);
+    assert_ne!(text, file::starter(), "{from}");
+    file::parse(&text, "starter.toml", None, &[]).expect_err(to).to_string()
+}
+
+/// "did you mean "p"?" dropped the derivative.
+#[test]
+fn a_controller_of_two_terms_is_a_pid_whose_third_gain_is_0() {
+    for (kind, words) in [
+        ("pd", "unknown kind; a PD controller is \"pid\" with ki = 0"),
+        ("PD", "is \"pid\" with ki = 0"),
+        ("pi", "is \"pid\" with kd = 0"),
+        ("pids", "did you mean \"pid\"?"),
+    ] {
+        let told = told("kind = \"pid\"", &format!("kind = \"{kind}\""));
+        assert!(told.contains(words), "{kind}: {told}");
+    }
+    let told = told("kind = \"step\"", "kind = \"pd\"");
+    assert!(!told.contains("PD controller"), "a set-point is none: {told}");
+}
+
+/// "belongs to kind "lqi"" alone led to another controller.
+#[test]
+fn a_key_of_another_kind_that_is_here_in_the_plural_is_told_with_that() {
+    let told = told("kd = 0.05\n", "kd = 0.05\nsetpoint_weight = 0.5\n");
+    let words = "belongs to kind \"lqi\", not to kind \"pid\"; did you mean `setpoint_weights`: a table of proportional, derivative?";
+    assert!(told.contains(words), "{told}");
+}
+
+/// "invalid float, expected `nan`".
+#[test]
+fn a_word_without_quotes_is_told_so_whatever_letter_it_begins_with() {
+    for word in ["navion-paper", "inner", "trial", "falcon", "b747-paper"] {
+        let told = told("preset = \"navion-paper\"", &format!("preset = {word}"));
+        assert!(told.contains("must be quoted"), "{word}: {told}");
+    }
+}
+
+/// "is here twice" stood at the second controller.
+#[test]
+fn a_first_controller_in_single_brackets_is_told_at_its_own_line() {
+    let told = told("[[controller]]", "[controller]");
+    let lines = file::starter().lines();
+    let line = lines.clone().position(|it| it == "[[controller]]").expect("there") + 1;
+    assert!(told.starts_with(&format!("starter.toml:{line}:1: `[[controller]]`")), "{told}");
+    assert!(told.contains("double brackets, the first as well"), "{told}");
+}
+
+/// There was no word of the mark that was meant.
+#[test]
+fn a_range_for_a_number_that_can_be_tuned_is_told_how_a_mark_is_written() {
+    for range in ["{ min = 0.1, max = 10 }", "[0.1, 10]"] {
+        let told = told("kp = 1.0\n", &format!("kp = {range}\n"));
+        assert!(told.contains("is { tune = [lower, upper] }"), "{range}: {told}");
+    }
+    let requirement = format!(
+        "{}\n[[requirement]]\nmeasure = \"overshoot_pct\"\nmost = [1, 2]\n",
+        file::starter()
+    );
+    let problems = file::parse(&requirement, "starter.toml", None, &[]).expect_err("a list");
+    assert!(!problems.to_string().contains("tune ="), "nothing is tuned there: {problems}");
+}
+
+/// "invalid float, expected nothing".
+#[test]
+fn a_semicolon_at_the_end_of_a_line_is_told_by_name() {
+    for line in ["kp = 1.0;\n", "kp = 1.0; # as in MATLAB\n", "kp = [1.0];\n"] {
+        let told = told("kp = 1.0\n", line);
+        assert!(told.contains("a line ends without a semicolon"), "{line}: {told}");
+    }
+}
+
+/// 10⁶ deg were allowed, and a loop that came there had "diverged": `verify` called it unstable, `analyse` stable.
+#[test]
+fn set_points_and_loads_near_where_a_flight_counts_as_diverged_are_refused_with_their_range() {
+    for (from, to) in [
+        ("amplitude_deg = 5.0", "amplitude_deg = 1e6"),
+        ("amplitude_deg = 5.0", "amplitude_deg = -10001.0"),
+    ] {
+        let told = told(from, to);
+        assert!(told.contains("out of range") && told.contains("-10000 to 10000 deg"), "{told}");
+    }
+    let noise = "[[disturbance]]\nenters_at = \"servo\"\nkind = \"noise\"\nstandard_deviation_deg = 1e5\nseed = 1\n\n[[disturbance]]";
+    let told = told("[[disturbance]]", noise);
+    assert!(told.contains("standard_deviation_deg: out of range"), "{told}");
+}
+
 #[test]
 fn problems_as_json_hold_what_the_text_says() {
     let text = file::starter().replace("sample_period_s = 0.01", "sample_period_s = 0.0");

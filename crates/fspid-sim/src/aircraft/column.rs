@@ -94,6 +94,11 @@ pub const AIRCRAFT_COLUMNS: [&str; 23] = [
 ];
 
 impl AircraftSample {
+    /// False where a number of its columns is none: loads can leave all numbers a sample before the motion does.
+    pub(crate) fn is_finite(&self) -> bool {
+        self.values().iter().all(|value| value.is_finite())
+    }
+
     /// The numbers in the order of [`AIRCRAFT_COLUMNS`].
     #[must_use]
     pub fn values(&self) -> [f64; AIRCRAFT_COLUMNS.len()] {

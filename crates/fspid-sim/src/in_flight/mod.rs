@@ -230,6 +230,11 @@ impl<P: Borrow<Prepared>> Course<P> {
         let theta_rad = self.plant.theta_rad();
         let q_rad_s = propagation.rate_rad_s(&self.plant, disturbance_rad);
         let aircraft = shown(propagation, &self.plant, disturbance_rad);
+        // Another simulator says by itself which of its numbers are none.
+        let flies_here = matches!(self.plant, Motion::Aircraft(_));
+        if flies_here && aircraft.as_ref().is_some_and(|it| !it.is_finite()) {
+            return ended(EndCause::Diverged);
+        }
         let at_measurement = self.at(|prepared| &prepared.at_measurement);
         self.sensors.erect(&aircraft);
         let measurement_rad = self.sensors.pitch_rad(k, theta_rad) + at_measurement;

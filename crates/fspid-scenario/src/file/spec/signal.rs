@@ -1,6 +1,5 @@
 //! Set-points and disturbances.
 
-use super::{ANGLE_LIMIT_DEG, angle};
 use crate::keyed::word::{words, words_of};
 use crate::keyed::{
     BOOLEAN, Key, KindOf, Range, Table, Variant, defaulted, not_negative, number, numbers,
@@ -11,8 +10,13 @@ use fspid_sim::signal::{Entry, Interpolation};
 /// Highest frequency, Hz; far above what any sample period can show.
 const FREQUENCY: KindOf<f64> = number("Hz", Range::PositiveUpTo(1e6));
 
+/// Largest set-point and load, in degrees: a hundredth of where a flight has diverged, so that a loop that does what it is told
+/// is not taken for one that runs away.
+const SIGNAL_LIMIT_DEG: f64 = super::ANGLE_LIMIT_DEG / 100.0;
+const SIGNAL: Range = Range::Between(-SIGNAL_LIMIT_DEG, SIGNAL_LIMIT_DEG);
+
 pub(crate) const AMPLITUDE: Key<f64> =
-    required("amplitude_deg", angle(), "Size; negative for the other way.");
+    required("amplitude_deg", number("deg", SIGNAL), "Size; negative for the other way.");
 pub(crate) const AT: Key<f64> = defaulted("at_s", not_negative("s"), 0.0, "Start.");
 
 words! {
@@ -65,11 +69,8 @@ pub(crate) const TIME_S: Key<[f64]> = required(
     numbers("s", Range::NotNegative, (1, MOST_ROWS)),
     "Times, each after the one before.",
 );
-pub(crate) const VALUE_DEG: Key<[f64]> = required(
-    "value_deg",
-    numbers("deg", Range::Between(-ANGLE_LIMIT_DEG, ANGLE_LIMIT_DEG), (1, MOST_ROWS)),
-    "Values, as many as times.",
-);
+pub(crate) const VALUE_DEG: Key<[f64]> =
+    required("value_deg", numbers("deg", SIGNAL, (1, MOST_ROWS)), "Values, as many as times.");
 pub(crate) const INTERPOLATION: Key<Interpolation> = defaulted(
     "interpolation",
     word(),
@@ -119,7 +120,7 @@ pub(crate) const ENTERS_AT: Key<Entry> = required(
 pub(crate) const PULSE_WIDTH_S: Key<f64> = required("width_s", positive("s"), "Length.");
 pub(crate) const STANDARD_DEVIATION_DEG: Key<f64> = required(
     "standard_deviation_deg",
-    number("deg", Range::UpTo(ANGLE_LIMIT_DEG)),
+    number("deg", Range::UpTo(SIGNAL_LIMIT_DEG)),
     "Standard deviation.",
 );
 pub(crate) const SEED: Key<i64> = required(

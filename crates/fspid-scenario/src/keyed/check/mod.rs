@@ -2,11 +2,13 @@
 
 mod choice;
 mod grid;
+mod hint;
 pub(crate) mod number_grid;
 mod unit;
 mod value;
 
 pub(crate) use grid::grid_text;
+pub(crate) use hint::FIXED;
 pub(crate) use value::allowed;
 
 use crate::keyed::document::{Item, Member, Value};
@@ -113,7 +115,9 @@ impl<'a> Checker<'a> {
             let other_unit = unit::other_unit(name, &member.item.value, &unit::numbers(keys));
             let message = if !owners.is_empty() {
                 let kind = self.section.kind;
-                format!("belongs to kind {}, not to kind \"{kind}\"", quoted_or(&owners))
+                let near = hint::singular_or_plural(name, keys);
+                let near = near.map(|key| format!("; {}", hint::of_key(key))).unwrap_or_default();
+                format!("belongs to kind {}, not to kind \"{kind}\"{near}", quoted_or(&owners))
             } else if let Some((meant, told)) = other_unit {
                 all_meant.push(meant);
                 format!("unknown key; {told}")

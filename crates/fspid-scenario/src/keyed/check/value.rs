@@ -3,10 +3,10 @@
 use fspid_fuzzy::Defuzzifier;
 
 use crate::keyed::check::unit::in_text;
-use crate::keyed::check::{grid, in_words, number_grid, quoted, table};
+use crate::keyed::check::{grid, hint, in_words, number_grid, quoted, table};
 use crate::keyed::document::{Item, Value};
 use crate::keyed::{Checked, Kind, Range, Table};
-use fspid_diagnostics::{Report, Span, nearest};
+use fspid_diagnostics::{Report, Span};
 
 /// The value if it is of its kind; otherwise its problems are reported.
 pub(super) fn check(
@@ -109,7 +109,7 @@ pub(super) fn number(
         let found = item.value.type_name();
         let instead = match &item.value {
             Value::Text(text) => in_text(text, unit).unwrap_or_default(),
-            _ => String::new(),
+            other => hint::of_range(other, path).to_owned(),
         };
         report.value(item.place, path, format!("wrong type: {found}{instead}"), range.words(unit));
         return None;
@@ -156,8 +156,7 @@ pub(super) fn word(
     if known.contains(&text.as_str()) {
         return Some(text.clone());
     }
-    let meant = nearest(text, known).map(|meant| format!("; did you mean \"{meant}\"?"));
-    let message = format!("unknown {what}{}", meant.unwrap_or_default());
+    let message = format!("unknown {what}{}", hint::of_word(text, known));
     report.value(item.place, path, message, quoted(known));
     None
 }
@@ -265,8 +264,7 @@ fn rules(
     if known.contains(&text.as_str()) || is_file {
         return Some(Checked::Text(text.clone()));
     }
-    let meant = nearest(text, &known).map(|meant| format!("; did you mean \"{meant}\"?"));
-    let message = format!("unknown rule table{}", meant.unwrap_or_default());
+    let message = format!("unknown rule table{}", hint::of_word(text, &known));
     report.value(item.place, path, message, allowed(&kind));
     None
 }
