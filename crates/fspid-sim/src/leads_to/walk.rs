@@ -71,7 +71,7 @@ impl<'a> Walk<'a> {
         }
         let led = |airspeed_m_s: Option<f64>| {
             let target = self.most_telling(number);
-            is_mode.then(|| Led { mode: number, target, airspeed_m_s, leg })
+            is_mode.then_some(Led { mode: number, target, airspeed_m_s, leg })
         };
         let place = |led, plant| Some(Place { standing: standing_number, led, plant });
         match there {
