@@ -169,21 +169,26 @@ pub(crate) fn is_lost(
     let rows = scenario.timing.rows();
     let ends = Ends::of(scenario, controller);
     let length = rows / 5;
-    if ends.are_none() || length < LEAST_FIFTH || trace.rows() < rows || rows > SAMPLES[1] {
+    if ends.are_none() || length < LEAST_FIFTH || trace.rows() < rows {
         return false;
     }
     // Moving air is that of a way that ends with the flight.
     let is_linear = scenario.plant.linear().is_some() && scenario.surroundings.weather.is_none();
-    if !is_linear || has_come_to_rest(scenario, &ends, trace) {
+    let Some(moves) = moves().filter(|_| is_linear) else { return false };
+    let pieces = pieces_of(scenario, &ends, trace);
+    if has_come_to_rest(scenario, &pieces) {
         return false;
     }
+    // One that is as long as that is its own answer.
+    if rows > SAMPLES[1] {
+        return pieces.goes_on(Moved::of(scenario).least_growth(moves));
+    }
     // What cannot be flown on says nothing.
-    let flown = moves().and_then(|moves| flies_on_and_is_lost(scenario, controller, &ends, moves));
-    flown.unwrap_or(false)
+    flies_on_and_is_lost(scenario, controller, &ends, moves).unwrap_or(false)
 }
 
-/// True where the flight itself has come to rest, or has met no limit under noise, which would go on for ever.
-fn has_come_to_rest(scenario: &Scenario, ends: &Ends, trace: &Trace) -> bool {
+/// The flight itself in five pieces, and what is left.
+fn pieces_of<'a>(scenario: &Scenario, ends: &'a Ends, trace: &Trace) -> Pieces<'a> {
     let at_servo = scenario.loads_rad(Entry::Servo);
     let mut pieces = Pieces::new(ends, trace.rows() / 5);
     for k in 0..trace.rows() {
@@ -191,6 +196,11 @@ fn has_come_to_rest(scenario: &Scenario, ends: &Ends, trace: &Trace) -> bool {
         let error_rad = trace.setpoint_rad[k] - trace.theta_rad[k];
         pieces.push(error_rad, trace.command_rad[k], load_rad, trace.elevator_rad[k]);
     }
+    pieces
+}
+
+/// True where the flight itself has come to rest, or has met no limit under noise, which would go on for ever.
+fn has_come_to_rest(scenario: &Scenario, pieces: &Pieces<'_>) -> bool {
     let whole = pieces.whole();
     match Moved::of(scenario) {
         Moved::Nothing => pieces.tail().rests(whole),

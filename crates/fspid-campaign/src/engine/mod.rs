@@ -10,6 +10,7 @@ mod single;
 
 use fspid_core::Faults;
 use fspid_scenario::file::{RangeRule, Study};
+use fspid_scenario::measure::Family;
 use fspid_sim::aircraft::{AIRCRAFT_COLUMNS, Forces};
 use fspid_sim::autopilot::AUTOPILOT_COLUMNS;
 use fspid_sim::{EarlyEnd, EndCause, Exit, Plant, Prepared, SimError, Trace};
@@ -224,7 +225,8 @@ impl FlightResult {
     /// alone says nothing of how it was flown.
     fn is_unsettled(&self) -> bool {
         let verdict = self.metrics.verdict;
-        let is_asked = self.judgements.iter().any(|judgement| !judgement.is_of_aircraft());
+        let is_of_aircraft = |it: &Judgement| it.requirement.measure.family() == Family::Airframe;
+        let is_asked = self.judgements.iter().any(|judgement| !is_of_aircraft(judgement));
         !is_asked && !verdict.is_good() && !verdict.is_failure()
     }
 

@@ -58,7 +58,7 @@ impl fmt::Display for Led {
             write!(f, ", which holds {} at {value} {unit},", quantity.in_words())?;
         }
         let when = match self.leg {
-            Leg::End => "in time",
+            Leg::End => "in the end",
             Leg::OnTheWay => "on the way there",
             Leg::Turn => {
                 return f.write_str(

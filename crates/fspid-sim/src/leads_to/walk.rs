@@ -57,6 +57,14 @@ impl<'a> Walk<'a> {
         self.mode(number).map_or(0.0, |(_, mode)| mode.entry.at_s)
     }
 
+    /// False for a mode that another one ends soon, whatever there is.
+    fn lasts(&self, number: usize) -> bool {
+        let ends_s = self
+            .mode(number + 1)
+            .and_then(|(_, next)| next.entry.conditions.is_empty().then_some(next.entry.at_s));
+        ends_s.is_none_or(|ends_s| ends_s - self.begins_s(number) > LASTS_S)
+    }
+
     /// What is asked of where a mode leads; nothing where it was asked already or is not flown with that aircraft.
     pub(super) fn place(
         &self,
@@ -106,23 +114,27 @@ impl<'a> Walk<'a> {
             return vec![(seeker.end(&self.untouched(from.as_ref(), &seeker)), Leg::End)];
         };
         let engaged = Engaged { autopilot, mode };
-        if engaged.turns() && engaged.throttle().is_none() {
+        if engaged.turns() && !engaged.holds_airspeed() && self.lasts(number) {
             return vec![(Err(Nowhere::NoFlight), Leg::Turn)];
         }
-        let held = self.held(&engaged, number, from.as_ref(), &seeker);
+        let mut held = self.held(&engaged, number, from.as_ref(), &seeker);
+        held.dedup();
         let ends = held.iter().map(|wanted| (seeker.end(wanted), Leg::End));
         let on_the_way = held.iter().filter_map(|wanted| {
             let way = self.on_the_way(&engaged, wanted, from.as_ref())?;
             let there = seeker.end(&Wanted { way, ..*wanted });
             let left_m = wanted.altitude_m - from.as_ref().unwrap_or(&self.start).target.altitude_m;
+            let airspeed_m_s = self.start.target.airspeed_m_s;
             let climb_m_s = match (&there, way) {
                 (Ok(trim), _) => seeker.climb_m_s(trim),
                 (Err(_), Way::Climb(climb_m_s)) => climb_m_s,
-                (Err(_), Way::OverGround(path_rad)) => {
-                    self.start.target.airspeed_m_s * libm::tan(path_rad)
+                (Err(_), Way::OverGround(path_rad)) => airspeed_m_s * libm::tan(path_rad),
+                (Err(_), Way::Pitch(theta_rad)) => {
+                    airspeed_m_s * libm::sin(theta_rad - self.start.point.alpha_rad)
                 }
-                (Err(_), _) => return None,
+                (Err(_), Way::Through(_) | Way::Airspeed(_)) => return None,
             };
+            let there = there.map_err(|_| Nowhere::NoFlight);
             let lasts = left_m.abs() > LASTS_S * climb_m_s.abs();
             // Who goes the other way does not come there, which another question sees.
             (lasts && left_m * climb_m_s > 0.0).then_some((there, Leg::OnTheWay))
@@ -247,7 +259,14 @@ impl<'a> Walk<'a> {
         let mover = Mover { controller: &outer.controller, per_unit: outer.units.moved };
         let by_gain = outer.units.held * outer.controller.nominal().kp * left_m / mover.per_unit;
         let [least, most] = mover.ends().unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
-        let command = by_gain.max(least).min(most);
+        let end = if left_m > 0.0 { most } else { least };
+        // An integral, and gains that move, go to the end of what is allowed while the way lasts.
+        let is_plain =
+            matches!(outer.controller, Controller::Fixed(_)) && !has_integral(&outer.controller);
+        let command = match is_plain || !end.is_finite() {
+            true => by_gain.max(least).min(most),
+            false => end,
+        };
         match outer.moves {
             Moves::Pitch => Some(Way::Pitch(self.base_rad + command)),
             Moves::Loop(below) => match engaged.autopilot.loops().get(below)?.holds {
@@ -310,6 +329,11 @@ impl Engaged<'_> {
     fn mover(&self, moves: Moves) -> Option<Mover<'_>> {
         let found = self.loops().map(|(_, it)| it).find(|it| it.moves == moves)?;
         Some(Mover { controller: &found.controller, per_unit: found.units.moved })
+    }
+
+    /// True where the airspeed is one that is held, by throttle or by pitch.
+    fn holds_airspeed(&self) -> bool {
+        self.throttle().is_some() || self.holds() == Some(Quantity::Airspeed)
     }
 
     /// True where it flies a bank that is more than slight.

@@ -136,10 +136,10 @@ impl Seeker<'_> {
                     let moved = next.target.airspeed_m_s / at.target.airspeed_m_s - 1.0;
                     at = next;
                     if moved.abs() < 0.1 * SAME {
-                        break;
+                        return Some(at);
                     }
                 }
-                Some(at)
+                None
             }
         }
     }

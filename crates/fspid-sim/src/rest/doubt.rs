@@ -74,8 +74,8 @@ pub enum Doubt {
         /// Spectral radius of all small motions, sample to sample.
         spectral_radius: f64,
     },
-    /// Pitch that is held on with the throttle of the start brings an aircraft to another airspeed, where it grows: by the set-point
-    /// of the end, or by a configuration or fuel of later.
+    /// Pitch that is held on with the throttle of the start brings an aircraft to another airspeed, where it grows: by set-point,
+    /// loads and errors of the pitch sensor of the end, or by a configuration or fuel of later.
     #[error(
         "held on, the pitch of the end brings the aircraft, as it is by then and with the throttle of its trim at the start, to another airspeed, at which the loop is unstable ({}): a longer flight shows it",
         in_words(*spectral_radius)

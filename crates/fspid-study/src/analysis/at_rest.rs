@@ -105,7 +105,7 @@ impl AtRest {
         }
     }
 
-    /// The same of a flight that ended at a limit with an error that grows, whatever small motions do.
+    /// The same of a flight that is lost at a limit, in itself or flown on, whatever small motions do.
     #[must_use]
     pub(crate) fn lost_at_a_limit(self) -> Self {
         let lost = || Undecided::at_trim(Doubt::BeyondLimits);

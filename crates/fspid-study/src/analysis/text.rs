@@ -61,7 +61,9 @@ fn verdict(found: &AnalysedLoop) -> String {
         return format!("UNDECIDED {gains}: {doubt}");
     }
     if stability != Stability::Stable {
-        let modes_hold = found.modes.iter().all(|it| it.stability() == Stability::Stable);
+        // Gains that move add at a rest what is asked of the pitch loop by itself.
+        let is_fixed = matches!(found.equilibrium, Equilibrium::Fixed(_));
+        let modes_hold = is_fixed && found.around() == Stability::Stable;
         let (alone, with_modes) = match (modes, modes_hold && stability == Stability::Unstable) {
             (1.., true) => (" by itself", "; stable with the outer loops of each mode"),
             _ => ("", ""),
@@ -207,7 +209,7 @@ fn push_turning(out: &mut String, plant: &PlantLoop) {
     // Written so that NaN is told, too.
     if !(gain < 1.0) {
         out.push_str(&format!(
-            "  half sample rate   the gain is {gain:.3} there, where a sample of delay turns the sign: the loop bears less than one\n"
+            "  half sample rate   the gain is {gain:.3} there, where a sample of delay turns the sign: the loop bears less than one sample\n"
         ));
     }
 }

@@ -99,13 +99,12 @@ impl Around {
             .then(|| format!("{word} with the outer loops of {modes} {}", names.join(", ")))
     }
 
-    /// With whether everything is known to hold.
-    pub(super) fn json(&self, held: bool) -> Value {
+    pub(super) fn json(&self) -> Value {
         let mode = |mode: &AnalysedMode| {
             let is_stable = mode.stability().known();
             json!({ "name": mode.name, "stable": is_stable, "spectral_radius": mode.poles.spectral_radius })
         };
-        json!({ "held": held, "modes": self.modes.iter().map(mode).collect::<Vec<_>>() })
+        json!({ "held": self.is_held(), "modes": self.modes.iter().map(mode).collect::<Vec<_>>() })
     }
 }
 

@@ -7,8 +7,8 @@ use serde_json::{Value, json};
 use super::scope::{Told, told_deg};
 use super::text::found;
 use super::{
-    Certification, Certified, CheckedFile, Comparison, DisturbanceAnswer, NotProvable, Seal,
-    family, nonlinear,
+    Around, Certification, Certified, CheckedFile, Comparison, DisturbanceAnswer, NotProvable,
+    Seal, family, nonlinear,
 };
 use crate::json::{merged, present, with_null_reasons};
 
@@ -73,7 +73,7 @@ fn result(certified: &Certified) -> Value {
         |reason: &NotProvable| json!({ "verdict": "not provable", "reason": reason.to_string() });
     let family = certified.family.as_ref().map(family::in_json);
     let trouble = certified.trouble();
-    let around = certified.around.as_ref().map(|it| it.json(trouble.is_none()));
+    let around = certified.around.as_ref().map(Around::json);
     let not_bounded = certified.disturbances.as_ref().and_then(DisturbanceAnswer::trouble);
     let nonlinear = certified.nonlinear.as_ref().map(nonlinear::in_json);
     let besides = present(json!({

@@ -2,7 +2,7 @@
 
 use fspid_sim::Doubt;
 use fspid_study::analysis::{Analysis, Question};
-use fspid_study::simulation::ControllerResult;
+use fspid_study::simulation::{ControllerResult, Simulation};
 
 use crate::flying::{NAVION, column, doubt, result, study};
 
@@ -181,6 +181,10 @@ fn a_pitch_loop_that_grows_by_itself_is_flown_as_its_modes_hold_it() {
     let [least, most] = late.iter().fold([f64::INFINITY, f64::NEG_INFINITY], ends);
     assert!(most - least < 1e-6, "{least} to {most}");
     let asked = study(CAPTURE, &climbing);
+    // What is required of the flight is judged by it, and `stable` is what the flight is.
+    let required = format!("{CAPTURE}\n[[requirement]]\nmeasure = \"stable\"\nleast = 1\n");
+    let judged = Simulation::of(&study(&required, &climbing)).expect("it flies").judgements;
+    assert!(judged.len() > 1 && judged.iter().all(|it| it.met), "{judged:?}");
     let text = Analysis::of(&asked, Question::default()).expect("a loop").text();
     let told = "UNSTABLE by itself with kp 0.8200, ki 0.4300, kd 0.1650; stable with the outer loops of each mode";
     assert!(text.contains(told), "{text}");

@@ -224,10 +224,10 @@ fn a_mode_is_asked_with_the_gains_that_a_self_tuner_around_the_pitch_loop_comes_
         "outer_loop[0].least=-50.0",
         "outer_loop[0].most=50.0",
     ];
-    let leaks = [&gathers[..], &["outer_loop[0].leakage_per_s=0.02", "loop.duration_s=200.0"]];
+    let leaks = [&gathers[..], &["outer_loop[0].leakage_per_s=0.02", "loop.duration_s=300.0"]];
     let flight = flown(&leaks.concat());
     assert_eq!(flight.at_rest.unstable.expect("it grows").mode, Some(0));
-    let [before, after] = off_m(&flight, [120, 200]);
+    let [before, after] = off_m(&flight, [200, 300]);
     assert!(after > 1.0 && after > 2.0 * before, "{before} {after}");
     // Without a leak they never stand still.
     let flight = flown(&gathers);

@@ -1,4 +1,4 @@
-//! Controllers against the one that all are compared with.
+//! Controllers against one of them: the one that all are compared with, or the first.
 
 use std::cmp::Ordering;
 

@@ -86,17 +86,13 @@ fn decision(outcome: &Outcome, first: usize) -> (bool, String) {
     }
 }
 
-/// Places of those that the first is not known to be better than, in the order of the ranking. Of the one that all are
-/// compared with the comparison counts that the tables tell.
+/// Places of those that the first is not known to be better than, in the order of the ranking: by the comparisons of everybody
+/// with it, whomever the tables compare with.
 fn open(outcome: &Outcome, first: usize) -> Vec<usize> {
-    let is_better = |it: &Comparison| it.standing == Standing::Better && it.is_sure;
     let is_worse = |it: &Comparison| it.standing == Standing::Worse && it.is_sure;
-    let is_behind = |place: usize| match outcome.comparison(first) {
-        Some(found) if place == outcome.judged.against => is_better(found),
-        _ => {
-            let mut beside = outcome.beside_first.iter().flatten();
-            beside.any(|it| it.contestant == place && is_worse(it))
-        }
+    let is_behind = |place: usize| {
+        let mut beside = outcome.beside_first.iter().flatten();
+        beside.any(|it| it.contestant == place && is_worse(it))
     };
     let ranking = outcome.first().ranking.into_iter();
     ranking.filter(|place| *place != first && !is_behind(*place)).collect()

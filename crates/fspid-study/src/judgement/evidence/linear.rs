@@ -104,7 +104,7 @@ pub(super) fn loops(
 /// A measure of the loops at rest: a case for each plant and each rest.
 pub(super) fn cases(
     loops: &[PlantEvidence],
-    result: &ControllerResult,
+    (result, has_modes): (&ControllerResult, bool),
     requirement: &Requirement,
 ) -> Result<Vec<Case>, NotEvaluated> {
     let mut cases = Vec::new();
@@ -112,6 +112,10 @@ pub(super) fn cases(
         cases.extend(diverged(result).into_iter().chain(growing_mode(result)));
         if cases.is_empty() {
             require_decided(result)?;
+        }
+        // What outer loops hold is no pitch loop by itself, whose throttle stays.
+        if has_modes && cases.is_empty() && result.at_rest.unstable.is_none() {
+            return Ok(vec![Case { value: 1.0, place: CasePlace::default() }]);
         }
     }
     cases.extend(rest_cases(loops, requirement)?);

@@ -105,7 +105,10 @@ impl<'a> Evidence<'a> {
                 self.require_stability()?;
                 flown::cases(self.study, self.result, requirement)
             }
-            Family::Loop => linear::cases(self.loops()?, self.result, requirement),
+            Family::Loop => {
+                let has_modes = self.study.scenario.autopilot.is_some();
+                linear::cases(self.loops()?, (self.result, has_modes), requirement)
+            }
             Family::Frozen => {
                 frozen::require_whole_map(&self.named()?.controller)?;
                 frozen::cases(self.mapped()?, requirement)
@@ -130,8 +133,11 @@ impl<'a> Evidence<'a> {
     /// A flight of a loop that is unstable at rest proves nothing, however calm its window is.
     fn require_stability(&self) -> Result<(), NotEvaluated> {
         let scenario = &self.study.scenario;
-        // Without equations there is nothing but the flight.
+        // Without equations there is nothing but the flight; with outer loops the flight is told by their modes.
         let Flyer::Own(named) = self.flyer else { return Ok(()) };
+        if scenario.autopilot.is_some() {
+            return Ok(());
+        }
         let held = self.held.get_or_init(|| linear::require_stability(scenario, named));
         held.clone()
     }

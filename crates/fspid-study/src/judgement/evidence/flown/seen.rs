@@ -16,7 +16,8 @@ const RISEN: f64 = 0.9;
 impl Flown<'_> {
     /// An overshoot whose peak is seen: of a response that goes on at its last sample only the next one would tell how far.
     ///
-    /// What has settled, and is seen to stay so, goes no further; and what is more than is allowed does not get less.
+    /// What has settled, and is seen to stay so, goes no further; and what is more than is allowed does not get less. Of a step
+    /// that another one ends nothing more is flown, however long the flight is.
     pub(super) fn peaked(
         &self,
         case: Case,
@@ -26,7 +27,8 @@ impl Flown<'_> {
         let is_too_much = most_pct.is_some_and(|most_pct| case.value > most_pct);
         let settled_s = edge.step.settling_time_s;
         let is_settled = settled_s.is_ok_and(|time_s| is_seen_to_stay(time_s, edge.window_s));
-        if is_too_much || is_settled || self.is_peak_seen(edge, most_pct) {
+        let is_ended = self.window(edge).end() + 1 < self.trace.rows();
+        if is_too_much || is_settled || is_ended || self.is_peak_seen(edge, most_pct) {
             return Ok(case);
         }
         Err(NotEvaluated::StillRising { window_s: edge.window_s, place: Box::new(case.place) })

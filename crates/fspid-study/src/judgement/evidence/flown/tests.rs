@@ -340,6 +340,12 @@ fn an_overshoot_is_told_when_its_peak_is_seen() {
     let slow = [0.0, 0.0, 0.2, 0.4, 0.6, 0.8, 1.0, 1.3, 1.8, 2.06, 2.061];
     near(told(slow, Some(5.0)).expect("told"), 3.05);
     assert!(matches!(told(slow, Some(3.1)), Err(NotEvaluated::StillRising { .. })));
+    // Another step ends the first one as it is commanded.
+    let steps = [edge(0, 0.0, 2.0), edge(9, 2.0, 0.0)];
+    let flight = Whole::of(&[2.0; 11], &before, &steps);
+    let asked = requirement(Measure::Overshoot, Conditions::default());
+    let first = flight.flown().steps(&asked);
+    assert!(!matches!(first, Err(NotEvaluated::StillRising { .. })), "{first:?}");
     // What has settled and creeps on goes no further.
     let creeping = [0.0, 0.5, 1.0, 1.5, 1.8, 1.97, 1.98, 1.985, 1.99, 1.995, 2.01];
     near(told(creeping, Some(5.0)).expect("told"), 0.5);
