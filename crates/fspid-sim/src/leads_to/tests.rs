@@ -443,12 +443,18 @@ fn a_mode_that_leads_nowhere_else_than_the_trim_is_asked_there_alone() {
     let level = mode("level", &[VERTICAL_SPEED]);
     let slower = to_hold(mode("slower", &[THROTTLE]), &[(Quantity::Airspeed, 50.0)]);
     let steep = to_hold(mode("steep", &[VERTICAL_SPEED]), &[(Quantity::VerticalSpeed, 40.0)]);
-    let scenario = scenario(navion(), Some(autopilot(vec![level, slower, steep])));
+    // As far as the throttle goes, with a pitch that nobody moves.
+    let fast = to_hold(mode("fast", &[THROTTLE]), &[(Quantity::Airspeed, 150.0)]);
+    let scenario = scenario(navion(), Some(autopilot(vec![level, slower, steep, fast])));
     let held = (&pitch(), pitch().nominal());
     let found = places(&scenario, &navion(), &[standing(navion())], held);
     let led: Vec<_> =
         found.iter().map(|it| (it.led.expect("a mode"), it.plant.is_some())).collect();
-    let [(slower, is_flown), (steep, climbs)] = led.as_slice() else { panic!("{led:?}") };
+    let [(slower, is_flown), (steep, climbs), (fast, flies)] = led.as_slice() else {
+        panic!("{led:?}")
+    };
+    let fastest_m_s = fast.airspeed_m_s.expect("it is flown");
+    assert!(fast.mode == 3 && *flies && fastest_m_s > SPEED_M_S && fastest_m_s < 100.0);
     assert_eq!(
         (slower.mode, slower.target, *is_flown),
         (1, Some((Quantity::Airspeed, 50.0)), true)

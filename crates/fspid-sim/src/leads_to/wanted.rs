@@ -80,11 +80,9 @@ pub(super) struct Seeker<'a> {
 impl Seeker<'_> {
     /// The flight in which this is held, or the pitch that may be commanded next to it.
     pub(super) fn end(&self, wanted: &Wanted) -> Result<Trim, Nowhere> {
-        let none = match wanted.way {
-            Way::Pitch(_) => Nowhere::NotAsked,
-            Way::Through(_) | Way::OverGround(_) | Way::Climb(_) | Way::Airspeed(_) => {
-                Nowhere::NoFlight
-            }
+        let none = match (wanted.way, wanted.power) {
+            (Way::Pitch(_), Power::Throttle(_)) => Nowhere::NotAsked,
+            _ => Nowhere::NoFlight,
         };
         let found = self.powered(wanted, wanted.way).ok_or(none)?;
         let theta_rad = pitch_rad(&found);
