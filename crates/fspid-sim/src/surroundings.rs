@@ -28,6 +28,14 @@ impl Surroundings {
         let mut models = sensors.map(Sensor::model);
         models.any(|it| it.noise_density > 0.0 || it.drift > 0.0)
     }
+
+    /// The same with sensors whose bias and scale stay.
+    pub(crate) fn without_noise(&self) -> Self {
+        let mut own = self.clone();
+        let sensors = own.pitch_sensor.iter_mut().chain(&mut own.rate_sensor);
+        sensors.for_each(|sensor| *sensor = sensor.without_noise());
+        own
+    }
 }
 
 /// The path that a linear plant is taken to fly: straight, at constant airspeed.

@@ -51,26 +51,18 @@ impl AboveChance {
 
 #[cfg(test)]
 mod tests {
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::{Rng, SeedableRng};
+
     use super::*;
     use crate::statistics::rank::ranks;
     use crate::statistics::share::Classes;
     use crate::summary::SensitivityTarget;
 
-    /// SplitMix64 of G. L. Steele, D. Lea, C. H. Flood (2014), on [0, 1).
-    struct Uniform(u64);
-
-    impl Uniform {
-        fn next(&mut self) -> f64 {
-            self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-            let mut mixed = self.0;
-            mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-            mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-            ((mixed ^ (mixed >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-        }
-
-        fn column(&mut self, runs: usize, value: impl Fn(f64) -> f64) -> Vec<f64> {
-            (0..runs).map(|_| value(self.next())).collect()
-        }
+    /// Numbers on [0, 1), each turned into another.
+    fn column(random: &mut ChaCha8Rng, runs: usize, value: impl Fn(f64) -> f64) -> Vec<f64> {
+        let mut uniform = || (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
+        (0..runs).map(|_| value(uniform())).collect()
     }
 
     fn sensitivity(measure: &[f64], parameters: &[Vec<f64>]) -> Sensitivity {
@@ -92,28 +84,28 @@ mod tests {
     }
 
     /// Parameters as dispersions draw them: even numbers, a choice of two, one of three of which two are rare, seeds.
-    fn parameters(random: &mut Uniform, runs: usize) -> Vec<Vec<f64>> {
+    fn parameters(random: &mut ChaCha8Rng, runs: usize) -> Vec<Vec<f64>> {
         let choice = |x: f64| if x < 0.8 { 0.5 } else { 1.5 };
         let rare = |x: f64| if x < 0.9 { 0.0 } else { libm::floor(20.0 * x) };
-        let even = [0; 3].map(|_| random.column(runs, |x| x));
-        let [choice, rare] = [random.column(runs, choice), random.column(runs, rare)];
+        let even = [0; 3].map(|_| column(random, runs, |x| x));
+        let [choice, rare] = [column(random, runs, choice), column(random, runs, rare)];
         even.into_iter()
-            .chain([choice, rare, random.column(runs, |x| libm::floor(1e12 * x))])
+            .chain([choice, rare, column(random, runs, |x| libm::floor(1e12 * x))])
             .collect()
     }
 
     /// Measures of twenty kinds: even, far-tailed, counted, mostly zero.
-    fn measures(random: &mut Uniform, runs: usize) -> Vec<Vec<f64>> {
+    fn measures(random: &mut ChaCha8Rng, runs: usize) -> Vec<Vec<f64>> {
         let far = |x: f64| 1.0 / (1.0 - x);
         let zeros = |x: f64| if x < 0.9 { 0.0 } else { x };
         let kinds: [fn(f64) -> f64; 3] = [|x| x, far, zeros];
         let mut all: Vec<Vec<f64>> = kinds
             .into_iter()
             .flat_map(|kind| [kind; 5])
-            .map(|it| random.column(runs, it))
+            .map(|it| column(random, runs, it))
             .collect();
         for share in [0.05, 0.1, 0.2, 0.4, 0.5] {
-            all.push(random.column(runs, |x| if x < share { 1.0 } else { 0.0 }));
+            all.push(column(random, runs, |x| if x < share { 1.0 } else { 0.0 }));
         }
         all
     }
@@ -123,7 +115,7 @@ mod tests {
     fn a_table_of_parameters_without_any_influence_names_one_in_a_twentieth_of_campaigns_at_most() {
         const TABLES: usize = 400;
         for runs in [16, 20, 30, 50, 100] {
-            let mut random = Uniform(runs as u64);
+            let mut random = ChaCha8Rng::seed_from_u64(runs as u64);
             let mut naming = 0;
             for _ in 0..TABLES {
                 let parameters = parameters(&mut random, runs);
@@ -140,13 +132,13 @@ mod tests {
     #[test]
     fn a_parameter_that_does_much_is_named_among_many_that_do_nothing() {
         for runs in [30, 100] {
-            let mut random = Uniform(7);
+            let mut random = ChaCha8Rng::seed_from_u64(7);
             let mut naming = 0;
             for _ in 0..100 {
                 let parameters = parameters(&mut random, runs);
                 let mut measures = measures(&mut random, runs);
                 // Nine tenths of the variance are the first parameter's.
-                let noise = random.column(runs, |x| x / 3.0);
+                let noise = column(&mut random, runs, |x| x / 3.0);
                 measures[0] = parameters[0].iter().zip(noise).map(|(x, noise)| x + noise).collect();
                 let all: Vec<Sensitivity> =
                     measures.iter().map(|it| sensitivity(it, &parameters)).collect();

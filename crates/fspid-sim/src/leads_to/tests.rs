@@ -153,7 +153,7 @@ fn held(walk: &Walk<'_>, number: usize, from: Option<&Trim>) -> Wanted {
     let plant = navion();
     let (autopilot, mode) = walk.mode(number).expect("a mode");
     let seeker = Seeker { plant: &plant, air: Air::default() };
-    let all = walk.held(&Engaged { autopilot, mode }, number, from, &seeker);
+    let all = walk.held(&Engaged { autopilot, mode }, number, &walk.came(from), &seeker);
     assert_eq!(all.len(), 1, "every loop has an integral");
     all[0]
 }

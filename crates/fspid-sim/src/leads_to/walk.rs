@@ -1,7 +1,7 @@
 //! What the modes of a flight hold, one after another.
 
-use fspid_aircraft::Trim;
 use fspid_aircraft::trim::Power;
+use fspid_aircraft::{Trim, TrimTarget};
 
 use super::targets::{Targets, true_ones, written};
 use super::wanted::{Air, Nowhere, Seeker, Wanted, Way};
@@ -109,50 +109,28 @@ impl<'a> Walk<'a> {
     ) -> Vec<(Result<Trim, Nowhere>, Leg)> {
         let Some(plant) = &standing.plant else { return vec![(Err(Nowhere::NotAsked), Leg::End)] };
         let seeker = Seeker { plant, air: self.air };
-        let from = from.copied();
+        let came = self.came(from);
         let Some((autopilot, mode)) = self.mode(number) else {
-            return vec![(seeker.end(&self.untouched(from.as_ref(), &seeker)), Leg::End)];
+            return vec![(seeker.end(&came.untouched(&seeker)), Leg::End)];
         };
         let engaged = Engaged { autopilot, mode };
         if engaged.turns() && !engaged.holds_airspeed() && self.lasts(number) {
             return vec![(Err(Nowhere::NoFlight), Leg::Turn)];
         }
-        let mut held = self.held(&engaged, number, from.as_ref(), &seeker);
+        let mut held = self.held(&engaged, number, &came, &seeker);
         held.dedup();
         let ends = held.iter().map(|wanted| (seeker.end(wanted), Leg::End));
         let on_the_way = held.iter().filter_map(|wanted| {
-            let way = self.on_the_way(&engaged, wanted, from.as_ref())?;
-            let there = seeker.end(&Wanted { way, ..*wanted });
-            let left_m = wanted.altitude_m - from.as_ref().unwrap_or(&self.start).target.altitude_m;
-            let airspeed_m_s = self.start.target.airspeed_m_s;
-            let climb_m_s = match (&there, way) {
-                (Ok(trim), _) => seeker.climb_m_s(trim),
-                (Err(_), Way::Climb(climb_m_s)) => climb_m_s,
-                (Err(_), Way::OverGround(path_rad)) => airspeed_m_s * libm::tan(path_rad),
-                (Err(_), Way::Pitch(theta_rad)) => {
-                    airspeed_m_s * libm::sin(theta_rad - self.start.point.alpha_rad)
-                }
-                (Err(_), Way::Through(_) | Way::Airspeed(_)) => return None,
-            };
-            let there = there.map_err(|_| Nowhere::NoFlight);
-            let lasts = left_m.abs() > LASTS_S * climb_m_s.abs();
-            // Who goes the other way does not come there, which another question sees.
-            (lasts && left_m * climb_m_s > 0.0).then_some((there, Leg::OnTheWay))
+            let there = self.on_the_way(&engaged, wanted, &came, &seeker)?;
+            Some((there, Leg::OnTheWay))
         });
         ends.chain(on_the_way).collect()
     }
 
-    /// What is held with nobody at throttle and pitch.
-    fn untouched(&self, from: Option<&Trim>, seeker: &Seeker<'_>) -> Wanted {
+    /// From where a mode is flown.
+    pub(super) fn came(&self, from: Option<&Trim>) -> Came {
         let theta_rad = from.map_or(self.base_rad, pitch_rad);
-        let from = from.unwrap_or(&self.start);
-        Wanted {
-            power: Power::Throttle(from.point.throttle),
-            way: Way::Pitch(theta_rad),
-            altitude_m: from.target.altitude_m,
-            throttle: seeker.throttle(),
-            pitch_rad: None,
-        }
+        Came { trim: *from.unwrap_or(&self.start), theta_rad }
     }
 
     /// What is held in a mode, all that it may be where loops have no integral.
@@ -160,12 +138,12 @@ impl<'a> Walk<'a> {
         &self,
         engaged: &Engaged<'_>,
         number: usize,
-        from: Option<&Trim>,
+        came: &Came,
         seeker: &Seeker<'_>,
     ) -> Vec<Wanted> {
-        let untouched = self.untouched(from, seeker);
-        let (powers, throttle) = self.powers(engaged, number, from, &untouched);
-        let ways = self.ways(engaged, number, from, &untouched);
+        let untouched = came.untouched(seeker);
+        let (powers, throttle) = self.powers(engaged, number, &untouched, came.trim.target);
+        let ways = self.ways(engaged, number, &untouched, came.trim.target);
         let altitude_m = self.target(number, Quantity::Altitude).unwrap_or(untouched.altitude_m);
         let ends = engaged.pitch().and_then(|it| it.ends());
         let range = ends.map(|ends| ends.map(|end| self.base_rad + end));
@@ -186,14 +164,13 @@ impl<'a> Walk<'a> {
         &self,
         engaged: &Engaged<'_>,
         number: usize,
-        from: Option<&Trim>,
         untouched: &Wanted,
+        came: TrimTarget,
     ) -> (Vec<Power>, [f64; 2]) {
         let Some(mover) = engaged.throttle() else {
             return (vec![untouched.power], untouched.throttle);
         };
-        let start = from.unwrap_or(&self.start).target;
-        let held = self.target(number, Quantity::Airspeed).unwrap_or(start.airspeed_m_s);
+        let held = self.target(number, Quantity::Airspeed).unwrap_or(came.airspeed_m_s);
         let mut powers = vec![Power::Airspeed(held)];
         // Without an integral the airspeed ends somewhere between the one that is held and that of a throttle that stays.
         if !has_integral(mover.controller) {
@@ -207,12 +184,11 @@ impl<'a> Walk<'a> {
         &self,
         engaged: &Engaged<'_>,
         number: usize,
-        from: Option<&Trim>,
         untouched: &Wanted,
+        came: TrimTarget,
     ) -> Vec<Way> {
-        let start = from.unwrap_or(&self.start).target;
         let written = |quantity: Quantity| self.target(number, quantity);
-        let climb_m_s = start.airspeed_m_s * libm::sin(start.flight_path_rad) + self.air.up_m_s;
+        let climb_m_s = came.airspeed_m_s * libm::sin(came.flight_path_rad) + self.air.up_m_s;
         let holds = engaged.holds();
         let way = match holds {
             None | Some(Quantity::Heading) => untouched.way,
@@ -221,13 +197,13 @@ impl<'a> Walk<'a> {
                 Way::Climb(written(Quantity::VerticalSpeed).unwrap_or(climb_m_s))
             }
             Some(Quantity::FlightPath) => written(Quantity::FlightPath)
-                .map_or(Way::Through(start.flight_path_rad), Way::OverGround),
+                .map_or(Way::Through(came.flight_path_rad), Way::OverGround),
             Some(Quantity::GlideSlope) => {
                 let beam = engaged.autopilot.glide_slope();
                 Way::OverGround(beam.map_or(0.0, |beam| -beam.angle_rad))
             }
             Some(Quantity::Airspeed) => {
-                Way::Airspeed(written(Quantity::Airspeed).unwrap_or(start.airspeed_m_s))
+                Way::Airspeed(written(Quantity::Airspeed).unwrap_or(came.airspeed_m_s))
             }
         };
         let mut ways = vec![way];
@@ -236,21 +212,41 @@ impl<'a> Walk<'a> {
         let outermost = engaged.outermost().filter(|_| !gathers);
         if let Some(outer) = outermost.filter(|it| !has_integral(&it.controller)) {
             ways.push(match outer.moves {
-                Moves::Loop(_) => Way::Through(start.flight_path_rad),
+                Moves::Loop(_) => Way::Through(came.flight_path_rad),
                 Moves::Pitch | Moves::Throttle | Moves::Bank => untouched.way,
             });
         }
         ways
     }
 
-    /// How an altitude is come to that is far: as fast as the loop that holds it commands.
+    /// The flight on the way to an altitude, where that lasts; none where no altitude is held by a path.
     fn on_the_way(
         &self,
         engaged: &Engaged<'_>,
         wanted: &Wanted,
-        from: Option<&Trim>,
-    ) -> Option<Way> {
-        let left_m = wanted.altitude_m - from.unwrap_or(&self.start).target.altitude_m;
+        came: &Came,
+        seeker: &Seeker<'_>,
+    ) -> Option<Result<Trim, Nowhere>> {
+        let left_m = wanted.altitude_m - came.trim.target.altitude_m;
+        let way = self.way_there(engaged, left_m)?;
+        let airspeed_m_s = self.start.target.airspeed_m_s;
+        let commanded_m_s = match way {
+            Way::Climb(climb_m_s) => climb_m_s,
+            Way::OverGround(path_rad) => airspeed_m_s * libm::tan(path_rad),
+            Way::Pitch(theta_rad) => {
+                airspeed_m_s * libm::sin(theta_rad - self.start.point.alpha_rad)
+            }
+            Way::Through(_) | Way::Airspeed(_) => return None,
+        };
+        let there = seeker.end(&Wanted { way, ..*wanted }).map_err(|_| Nowhere::NoFlight);
+        let flown_m_s = there.as_ref().map_or(commanded_m_s, |it| seeker.climb_m_s(it));
+        // Who goes the other way, as far as pitch may go, never comes there.
+        let climb_m_s = if flown_m_s * left_m > 0.0 { flown_m_s } else { commanded_m_s };
+        (left_m.abs() > LASTS_S * climb_m_s.abs()).then_some(there)
+    }
+
+    /// How an altitude is come to that is so far: as fast as the loop that holds it commands.
+    fn way_there(&self, engaged: &Engaged<'_>, left_m: f64) -> Option<Way> {
         if engaged.mode.total_energy {
             let most_rad = engaged.autopilot.total_energy()?.most_path_rad;
             return Some(Way::OverGround(most_rad.copysign(left_m)));
@@ -275,6 +271,26 @@ impl<'a> Walk<'a> {
                 _ => None,
             },
             Moves::Throttle | Moves::Bank => None,
+        }
+    }
+}
+
+/// From where a mode is flown.
+pub(super) struct Came {
+    trim: Trim,
+    /// Pitch that stays where nobody moves it, rad.
+    theta_rad: f64,
+}
+
+impl Came {
+    /// What is held with nobody at throttle and pitch.
+    fn untouched(&self, seeker: &Seeker<'_>) -> Wanted {
+        Wanted {
+            power: Power::Throttle(self.trim.point.throttle),
+            way: Way::Pitch(self.theta_rad),
+            altitude_m: self.trim.target.altitude_m,
+            throttle: seeker.throttle(),
+            pitch_rad: None,
         }
     }
 }

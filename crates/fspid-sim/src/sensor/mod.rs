@@ -114,6 +114,11 @@ impl Sensor {
         &self.model
     }
 
+    /// The same without noise and drift, with its bias.
+    pub(crate) fn without_noise(self) -> Self {
+        Self { model: SensorModel { noise_density: 0.0, drift: 0.0, ..self.model }, ..self }
+    }
+
     /// What small motions around rest see of it: scale and age.
     pub(crate) fn around_rest(self, dt_s: f64, seeing: Seeing) -> Self {
         let Sensing { samples, part, at_largest_age, .. } = Sensing::through(Some(&self), dt_s);

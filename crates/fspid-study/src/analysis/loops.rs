@@ -7,8 +7,7 @@ use fspid_sim::aircraft::AfterBurning;
 use fspid_sim::loop_model::{BreakPoint, SampledPlant};
 use fspid_sim::stability::doubt_beyond;
 use fspid_sim::{
-    AircraftPlant, Controller, Doubt, LinearPlant, NamedController, Rest, RestPoint, Scenario,
-    Side, SimError,
+    Controller, Doubt, LinearPlant, NamedController, Rest, RestPoint, Scenario, Side, SimError,
 };
 
 use super::Question;
@@ -389,30 +388,30 @@ pub(crate) struct AskedPlant {
 
 /// The plants that last, and at the end of a flight that burns fuel the aircraft with what is left of it.
 pub(crate) fn asked_plants(scenario: &Scenario) -> Result<Vec<AskedPlant>, SimError> {
-    scenario.plant.require_equations()?;
-    let reached = |(from_s, plant): (f64, Option<LinearPlant>)| AskedPlant {
-        from_s,
-        plant,
-        is_reached: true,
-    };
-    let Some(aircraft) = scenario.plant.aircraft() else {
-        let linear = scenario.lasting_plants().into_iter();
-        return Ok(linear.map(|(from_s, plant)| reached((from_s, Some(plant.clone())))).collect());
-    };
+    let reached = |(from_s, plant)| AskedPlant { from_s, plant, is_reached: true };
     let from_s = scenario.timing.end_s();
-    let burnt = aircraft
-        .after_burning(from_s)
-        .map(|AfterBurning { plant, is_reached }| AskedPlant { from_s, plant, is_reached });
-    Ok(aircraft.lasting()?.into_iter().map(reached).chain(burnt).collect())
+    let burnt = scenario.plant.aircraft().and_then(|aircraft| aircraft.after_burning(from_s));
+    let burnt =
+        burnt.map(|AfterBurning { plant, is_reached }| AskedPlant { from_s, plant, is_reached });
+    Ok(standing_plants(scenario)?.into_iter().map(reached).chain(burnt).collect())
 }
 
 /// The plants that last, an aircraft's linear model at its trim in its place.
 pub(crate) fn lasting_plants(scenario: &Scenario) -> Result<Vec<(f64, LinearPlant)>, SimError> {
+    let standing = standing_plants(scenario)?.into_iter();
+    Ok(standing.filter_map(|(at, plant)| Some((at, plant?))).collect())
+}
+
+/// The same, none in place of an aircraft of later that has no trim.
+fn standing_plants(scenario: &Scenario) -> Result<Vec<(f64, Option<LinearPlant>)>, SimError> {
     scenario.plant.require_equations()?;
-    let trimmed = scenario.plant.aircraft().map(AircraftPlant::lasting).transpose()?;
-    let around_trim = trimmed.into_iter().flatten().filter_map(|(at, plant)| Some((at, plant?)));
-    let linear = scenario.lasting_plants();
-    Ok(around_trim.chain(linear.into_iter().map(|(at, plant)| (at, plant.clone()))).collect())
+    match scenario.plant.aircraft() {
+        Some(aircraft) => aircraft.lasting(),
+        None => {
+            let linear = scenario.lasting_plants().into_iter();
+            Ok(linear.map(|(from_s, plant)| (from_s, Some(plant.clone()))).collect())
+        }
+    }
 }
 
 #[cfg(test)]

@@ -6,34 +6,7 @@ use fspid_study::metrics::Verdict;
 use crate::flying::result;
 
 /// An unstable plant under a load that it holds with nine tenths of its limit, and to which it comes with a jump.
-const AT_A_LIMIT: &str = r#"
-schema = 1
-name = "at a limit"
-[plant]
-numerator = [1.0]
-denominator = [1.0, 0.6, -0.4]
-elevator_sign = "nose-up-positive"
-[loop]
-sample_period_s = 0.02
-duration_s = 15.0
-[setpoint]
-kind = "ramp"
-amplitude_deg = 1.0
-at_s = 0.0
-width_s = 2.0
-[[disturbance]]
-kind = "step"
-enters_at = "servo"
-amplitude_deg = 9.0
-at_s = 1.0
-[[controller]]
-name = "PID"
-kind = "pid"
-kp = 3.0
-ki = 0.5
-kd = 1.5
-output_limits_deg = [-10.0, 10.0]
-"#;
+const AT_A_LIMIT: &str = include_str!("../data/at_a_limit.toml");
 
 /// It went through 467 deg and further, without a step that it could have failed to settle after: "flown", `stable` met.
 #[test]
@@ -269,5 +242,15 @@ fn a_short_flight_whose_swing_at_limits_grows_or_stays_when_it_goes_on_is_undeci
         };
         let decided = |set| result(text, &[set]).at_rest.undecided.is_none();
         assert!(decided(small) && decided(wide), "{text}");
+    }
+    // A little noise made it "stable" again: its swing neither grows nor shrinks.
+    let noise = "[[disturbance]]\nkind = \"noise\"\nenters_at = \"measurement\"\nstandard_deviation_deg = 0.001\nat_s = 0.0\nseed = 1\n";
+    for noise in [noise, "[sensor]\npreset = \"mems\"\n"] {
+        let found = |set: &[&str]| {
+            let found = result(&format!("{SWINGS_FOR_EVER}{noise}"), set);
+            found.at_rest.undecided.map(|it| it.doubt)
+        };
+        assert_eq!(found(&[]), Some(Doubt::BeyondLimits), "{noise}");
+        assert_eq!(found(&["setpoint.amplitude_deg=-1.0"]), None, "{noise}");
     }
 }

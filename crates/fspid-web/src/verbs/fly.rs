@@ -42,40 +42,16 @@ mod tests {
     use super::*;
 
     /// An unstable plant under a load; a limit holds 10 deg of it.
-    const LOADED: &str = r#"
-schema = 1
-name = "at a limit"
-[plant]
-numerator = [1.0]
-denominator = [1.0, 0.6, -0.4]
-elevator_sign = "nose-up-positive"
-[loop]
-sample_period_s = 0.02
-duration_s = 1.5
-[setpoint]
-kind = "ramp"
-amplitude_deg = 1.0
-at_s = 0.0
-width_s = 2.0
-[[disturbance]]
-kind = "step"
-enters_at = "servo"
-amplitude_deg = 9.0
-at_s = 1.0
-[[controller]]
-name = "PID"
-kind = "pid"
-kp = 3.0
-ki = 0.5
-kd = 1.5
-output_limits_deg = [-10.0, 10.0]
-"#;
+    const LOADED: &str = include_str!("../../../fspid-study/tests/data/at_a_limit.toml");
 
     #[test]
     fn a_flight_that_is_undecided_at_rest_is_not_called_good() {
         let is_good = |load_deg: f64| {
-            let load = format!("disturbance[0].amplitude_deg={load_deg:?}");
-            let study = file::parse(LOADED, "test.toml", None, &[load]).expect("a scenario");
+            let set = [
+                format!("disturbance[0].amplitude_deg={load_deg:?}"),
+                "loop.duration_s=1.5".to_owned(),
+            ];
+            let study = file::parse(LOADED, "test.toml", None, &set).expect("a scenario");
             let simulation = Simulation::of(&study).expect("it flies");
             trace(&mut Answer::of(Value::Null), &simulation.results[0])["good"].clone()
         };

@@ -74,8 +74,9 @@ impl LoopFamily {
     /// Margins of the loop with these gains, if the quick way is sure of them.
     ///
     /// `None` where it is not, and [`SampledLoop::margins`] has to be asked: a loop that is unstable or nearly so, a
-    /// disk margin below 0.1, a gain of 1 or more at half the sample rate, limits of the gain that nearly coincide, gains that are not finite or of another number,
-    /// a plant whose numbers over- or underflow, a closed-loop pole within a millionth of z = 1.
+    /// disk margin below 0.1, a gain of 1 or more at half the sample rate, limits of the gain that nearly coincide, gains
+    /// that are not finite or of another number, a plant whose numbers over- or underflow, a closed-loop pole within a
+    /// millionth of z = 1.
     /// Nothing is proved of the peaks: they are reached, and no point of the grid is higher.
     ///
     /// Poles are eigenvalues, and disks around them that hold all poles lie within the unit circle. Crossings are found
