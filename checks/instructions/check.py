@@ -71,7 +71,7 @@ PROFILES = {"release": "release", "dev": "debug"}
 
 def built(profile: str) -> Path:
     # With the features of the whole workspace the tests have built nearly all of it.
-    packages = ["--workspace"] if profile == "dev" else ["-p", "fspid-study"]
+    packages = ["--workspace"] if profile == "dev" else ["-p", "fspid-certify"]
     subprocess.run(
         ["cargo", "build", "--profile", profile, "--locked", "--quiet", *packages, "--example", "instructions"],
         # Built in steps, a program has other functions in line: a fifth more instructions.

@@ -1,6 +1,6 @@
 //! Arbitrary text as a certificate: refused, or written and read again as itself. Whether a claim holds is not asked.
 
-use fspid_study::certify::{from_text, to_text};
+use fspid_certify::{from_text, to_text};
 
 pub(crate) fn read(bytes: &[u8]) -> Option<()> {
     let (certificate, origin) = from_text(std::str::from_utf8(bytes).ok()?).ok()?;

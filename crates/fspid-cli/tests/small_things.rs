@@ -430,7 +430,7 @@ fn the_long_version_tells_commit_machine_compiler_and_the_schemas_that_are_writt
     assert_eq!(version, concat!("fspid ", env!("CARGO_PKG_VERSION")));
     assert!(commit.starts_with("commit ") || commit == "of no known commit", "{told}");
     assert!(machine.contains(std::env::consts::ARCH) && machine.contains("rustc"), "{told}");
-    let certificates = format!("certificates of schema {}", fspid_study::certify::SCHEMA);
+    let certificates = format!("certificates of schema {}", fspid_certify::SCHEMA);
     assert!(schemas.contains(&certificates), "{told}");
     let refused = json(&fspid(&["check", "none.toml", "--format", "json"], folder.path()));
     assert!(schemas.contains(&format!("answers of schema {}", refused["schema"])), "{told}");

@@ -45,6 +45,12 @@ pub fn without_zeros(text: &str) -> &str {
     if is_plain { text.trim_end_matches('0').trim_end_matches('.') } else { text }
 }
 
+/// At most six decimals, none that say nothing: times and angles for people.
+#[must_use]
+pub fn to_six_decimals(value: f64) -> String {
+    without_zeros(&format!("{value:.6}")).to_owned()
+}
+
 /// A number with its digits in groups of three: `1 234 567`.
 #[must_use]
 pub fn grouped(number: u64) -> String {

@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use fspid::scenario::file::{self, Study};
-use fspid::study::certify::{
+use fspid::certify::{
     self, Cases, CasesError, CertificateFile, Certification, CertifiedCases, CheckedFile, Effort,
     NotWritable, Question,
 };
+use fspid::scenario::file::{self, Study};
 use fspid::tune::{NotRight, Source, WrongCase};
 use pyo3::prelude::*;
 

@@ -201,7 +201,7 @@ fn a_proof_answers_what_is_asked_beside_stability_and_its_certificates_hold_alon
     let controller = &found["json"]["controllers"][0];
     assert_eq!(controller["nonlinear"]["verdict"], "proved", "{controller:#}");
     let certificate = found["certificates"][0]["text"].as_str().expect("a certificate");
-    let checked = fspid_study::certify::check_text(certificate).expect("a certificate");
+    let checked = fspid_certify::check_text(certificate).expect("a certificate");
     assert!(checked.holds());
     assert_eq!(checked.json()["nonlinear"]["verdict"], "proved");
     let (found, _) = asked(json!({ "disturbances": true }));

@@ -9,7 +9,7 @@ use fspid_core::{Gains, Limits};
 use crate::controller::Controller;
 use crate::flown_on;
 use crate::plant::LinearPlant;
-use crate::rest::{RestPoint, pitches_without_integral};
+use crate::rest::{Doubt, RestPoint, pitches_without_integral};
 use crate::scenario::Scenario;
 use crate::signal::Entry;
 use crate::trace::Trace;
@@ -168,19 +168,23 @@ fn last_load_rad(scenario: &Scenario, entry: Entry) -> f64 {
     values.last().copied().unwrap_or(0.0)
 }
 
-/// True where a flight of a plant that does not come to rest by itself ends at a limit of controller or servo with an error
-/// that grows, through the last tenth of it, at every sample; or where a linear plant's, flown on, meets limits in a swing that
-/// does not shrink, or is lost.
+/// Why nothing at rest speaks of a flight of a plant that does not come to rest by itself: [`Doubt::RunsAway`] where it ends at a
+/// limit of controller or servo with an error that grows, through the last tenth of it, at every sample; and
+/// [`Doubt::SwingAtLimits`] where a linear plant's, flown on, meets limits in a swing that does not shrink, or is lost.
 #[must_use]
-pub fn is_lost_at_a_limit(scenario: &Scenario, controller: &Controller, trace: &Trace) -> bool {
+pub fn lost_at_a_limit(
+    scenario: &Scenario,
+    controller: &Controller,
+    trace: &Trace,
+) -> Option<Doubt> {
     let moves = || {
         let plant = last_plant(scenario).filter(moves_by_itself)?;
         Some(if has_pole_from(&plant, AT_REST) { Moves::Away } else { Moves::On })
     };
     if runs_away(scenario, controller, trace) {
-        return moves().is_some();
+        return moves().map(|_| Doubt::RunsAway);
     }
-    flown_on::is_lost(scenario, controller, trace, moves)
+    flown_on::is_lost(scenario, controller, trace, moves).then_some(Doubt::SwingAtLimits)
 }
 
 /// True where each sample of the last tenth is at a limit, and further off than the one before.

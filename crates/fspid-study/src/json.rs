@@ -61,7 +61,8 @@ pub(crate) fn finite_all(values: &[f64]) -> Value {
 }
 
 /// An object without its keys that have no value.
-pub(crate) fn present(mut object: Value) -> Value {
+#[must_use]
+pub fn present(mut object: Value) -> Value {
     if let Some(keys) = object.as_object_mut() {
         keys.retain(|_, value| !value.is_null());
     }
@@ -74,7 +75,8 @@ pub(crate) fn unless_empty<T>(list: &[T], one: fn(&T) -> Value) -> Option<Value>
 }
 
 /// The keys of several objects as one object, in their order.
-pub(crate) fn merged<const N: usize>(objects: [Value; N]) -> Value {
+#[must_use]
+pub fn merged<const N: usize>(objects: [Value; N]) -> Value {
     let maps = objects.into_iter().filter_map(|object| match object {
         Value::Object(keys) => Some(keys),
         _ => None,

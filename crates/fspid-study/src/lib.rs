@@ -13,9 +13,9 @@
 
 pub mod aircraft;
 pub mod analysis;
-pub mod certify;
 pub mod difference;
 pub mod export;
+pub mod flight;
 pub mod fly;
 pub mod fuzzy_system;
 pub mod inference;

@@ -1,8 +1,6 @@
 //! All integration tests in one binary: linking one takes less than linking many.
 
 mod analysis;
-mod certify;
-mod designs;
 mod envelope;
 mod fly;
 mod flying;

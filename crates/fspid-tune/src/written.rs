@@ -5,9 +5,9 @@ use std::collections::BTreeSet;
 use std::fmt;
 use std::path::Path;
 
+use fspid_certify::CasesError;
 use fspid_diagnostics::digits::counted;
 use fspid_scenario::file::{Extra, LoadError, Problems, Template, TunedIn};
-use fspid_study::certify::CasesError;
 use serde_json::{Value, json};
 
 use crate::error::WrongCase;

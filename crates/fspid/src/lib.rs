@@ -37,7 +37,8 @@
 //! | [`fuzzy`] | the supervisor, general fuzzy systems, audits |
 //! | [`sim`] | the sampled closed loop: scenario in, trace out |
 //! | [`scenario`] | scenarios, fuzzy systems and requirements as text, and what is true of them |
-//! | [`study`] | measures, verdicts, margins, certificates, reports |
+//! | [`study`] | measures, verdicts, margins, reports |
+//! | [`certify`] | proofs of stability as files that are checked anew |
 //! | [`campaign`], [`tune`] | many flights; searches, classical rules, contests |
 //! | [`limit`] | how good any controller could be |
 //! | [`export`] | a controller in other languages, with the same bits |
@@ -49,6 +50,7 @@
 
 pub use fspid_aircraft as aircraft;
 pub use fspid_campaign as campaign;
+pub use fspid_certify as certify;
 pub use fspid_core as core;
 pub use fspid_export as export;
 pub use fspid_external as external;
@@ -67,6 +69,7 @@ pub use fspid_tune as tune;
 
 /// What most programs need: `use fspid::prelude::*;`.
 pub mod prelude {
+    pub use fspid_certify::Certification;
     pub use fspid_core::{
         AntiWindup, ConfigError, ControllerSetting, Derivative, Fspid, GainLimits, Gains,
         InputScale, Law, Limits, Pid, PidConfig, Sample, SelfTuner, SetpointWeights, State,
@@ -82,7 +85,6 @@ pub mod prelude {
         SimError, Timing, Trace, simulate,
     };
     pub use fspid_study::analysis::{Analysis, Question};
-    pub use fspid_study::certify::Certification;
     pub use fspid_study::metrics::{FlightMetrics, Verdict};
     pub use fspid_study::simulation::Simulation;
 }

@@ -11,11 +11,11 @@ use super::progress::{Telling, alive, tell};
 use super::{Format, json_text};
 use crate::argument::{Folder, InFile};
 use crate::exit::{Failure, note, print};
-use fspid_scenario::file::{self, Study, Template};
-use fspid_study::certify::{
-    self, Answer, Cases, CertificateFile, Certification, CertifiedCases, CheckedFile, Effort,
-    NotWritable, Question,
+use fspid_certify::{
+    Answer, Cases, CertificateFile, Certification, CertifiedCases, CheckedFile, Effort,
+    NotWritable, Question, Wrong, check_text,
 };
+use fspid_scenario::file::{self, Study, Template};
 use fspid_study::{output, shell};
 use fspid_tune::problems_of_certified;
 
@@ -245,8 +245,8 @@ fn check(path: &Path, arguments: &Arguments) -> Result<(), Failure> {
 /// A certificate, checked; each problem of a text that is none stands behind the name of its file.
 pub(super) fn read(path: &Path) -> Result<CheckedFile, Failure> {
     let text = file::read_text(path).map_err(Failure::input)?;
-    certify::check_text(&text).map_err(|refused| {
-        let located = |it: &certify::Wrong| format!("{}: {it}", path.display());
+    check_text(&text).map_err(|refused| {
+        let located = |it: &Wrong| format!("{}: {it}", path.display());
         let lines: Vec<String> = refused.problems.iter().map(located).collect();
         Failure::input(lines.join("\n"))
     })

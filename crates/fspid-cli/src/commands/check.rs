@@ -8,10 +8,10 @@ use serde_json::json;
 use super::Format;
 use crate::argument::InFile;
 use crate::exit::{Failure, note};
+use fspid_certify::CheckedFile;
 use fspid_diagnostics::digits::counted;
 use fspid_scenario::file::{self, LoadError, Template};
 use fspid_scenario::fuzzy_system;
-use fspid_study::certify::CheckedFile;
 use fspid_study::json::with_null_reasons;
 use fspid_tune::Written;
 

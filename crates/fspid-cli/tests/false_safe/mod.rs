@@ -7,9 +7,9 @@ pub(crate) mod bad;
 use bad::{Bad, Drawn};
 use fspid_campaign::engine;
 
+use fspid_certify::{Certification, Effort};
 use fspid_scenario::file::{self, Study};
 use fspid_study::analysis::{Analysis, AtRest, Question, Stability};
-use fspid_study::certify::{Certification, Effort};
 use fspid_study::metrics::Verdict;
 use fspid_study::simulation::Simulation;
 

@@ -1,6 +1,7 @@
 //! Figures 5, 6, 8a, 8b and 9 under both fits.
 
 use crate::report::templates::render;
+use fspid_diagnostics::digits::to_six_decimals;
 use serde::Serialize;
 
 use crate::report::Paper;
@@ -8,7 +9,6 @@ use crate::{FIGURES, Fit, FlownFigure, JudgedClaim, Status};
 use fspid_page::context;
 use fspid_page::number::exact;
 use fspid_page::page::{Figure, PageSection, PageTable};
-use fspid_study::metrics::short;
 use fspid_study::report::measures;
 use fspid_study::report::traces::Drawing;
 
@@ -91,7 +91,7 @@ fn figure(flown: &FlownFigure, fit: &str) -> Figure {
         "Fig. {} with {fit}. Window {} s, sampled every {} s; controllers {}. From above: pitch angle, command, and \
          the three gains of the FSPID.{}",
         flown.figure.id,
-        short(timing.end_s()),
+        to_six_decimals(timing.end_s()),
         exact(timing.dt_s()),
         names.join(", "),
         drawing.spikes(),

@@ -5,12 +5,12 @@ use fspid_proof::{Bearing, Claim, Effort, Outcome, Verdict};
 
 use crate::report::Paper;
 use crate::{FIGURES, Fit};
+use fspid_certify::{Certification, Certified, scope_in_short};
 use fspid_page::context;
 use fspid_page::number::fixed;
 use fspid_page::page::{Cell, PageSection, PageTable};
 use fspid_scenario::file::Study;
 use fspid_study::analysis::{AnalysedLoop, Analysis, Margins, Question, flown_inputs};
-use fspid_study::certify::{Certification, Certified, scope_in_short};
 
 /// Verdicts alone: the report does not ask for the largest output scale, nor for proofs that take long.
 fn effort() -> Effort {

@@ -1,9 +1,9 @@
 //! Proofs of stability.
 
-use fspid_scenario::file::Template;
-use fspid_study::certify::{
+use fspid_certify::{
     Cases, CertificateFile, Certification, CertifiedCases, Effort, NotWritable, Question,
 };
+use fspid_scenario::file::Template;
 use fspid_tune::problems_of_certified;
 use serde_json::{Value, json};
 

@@ -1,6 +1,6 @@
 //! Certificates proved anew.
 
-use fspid_study::certify::check_text_until;
+use fspid_certify::check_text_until;
 use serde_json::{Value, json};
 
 use super::proof::{stopped_with, stops};

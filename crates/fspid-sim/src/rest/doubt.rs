@@ -123,12 +123,21 @@ pub enum Doubt {
         "gains of a loop around the pitch loop move with its error and multiply what it holds (a set-point weight other than 1, the literal integral, no integral), and what comes of that may grow"
     )]
     OuterGains,
-    /// What is held at the end of the flight takes more than a limit leaves, of a plant that does not come to rest by itself; or
-    /// the flight of one ended at a limit with an error that grows, or meets limits for ever, flown on.
+    /// What is held at the end of the flight takes more than a limit leaves, of a plant that does not come to rest by itself.
     #[error(
-        "the plant does not come to rest by itself, and at the end of the flight set-point and loads take more elevator than a limit leaves, or the command is at a limit and the error grows, or the flight, flown on, meets limits and does not come to rest"
+        "the plant does not come to rest by itself, and at the end of the flight set-point and loads take more elevator than a limit leaves"
     )]
     BeyondLimits,
+    /// A flight of such a plant ended at a limit, with an error that grew through its last tenth.
+    #[error(
+        "the plant does not come to rest by itself, and the flight ends with its command at a limit and an error that grows: a longer flight shows what becomes of it"
+    )]
+    RunsAway,
+    /// A flight of such a plant, flown on, is lost, or meets limits in a swing that does not shrink.
+    #[error(
+        "the plant does not come to rest by itself, and flown on for ten times as long the flight still meets limits in a swing that does not shrink, or is lost: a longer flight shows it"
+    )]
+    SwingAtLimits,
 }
 
 /// A spectral radius; who leaves a rest within the few samples that were flown has none that is a number.
@@ -160,7 +169,9 @@ impl Doubt {
             | Self::Kink
             | Self::FastMotion
             | Self::OuterGains
-            | Self::BeyondLimits => true,
+            | Self::BeyondLimits
+            | Self::RunsAway
+            | Self::SwingAtLimits => true,
         }
     }
 }

@@ -2,17 +2,19 @@
 //! constant load off.
 
 use fspid_core::{Gains, Law};
+use fspid_diagnostics::digits::to_six_decimals;
 use fspid_sim::load::{ConstantLoad, constant_load};
 use fspid_sim::stability::{GrowthAtRest, Undecided, Unstable, growth_at_rest};
 use fspid_sim::{Controller, Doubt, RestPoint, Scenario, SimError};
 
 use super::equilibrium::{Equilibrium, added_at_rest, equilibrium};
-use crate::metrics::short;
 use fspid_scenario::units::degrees;
 
 /// What is held at a rest, in words.
-pub(crate) fn held_in_words(at: RestPoint) -> String {
-    let [setpoint_deg, load_deg] = [at.setpoint_rad, at.load_rad].map(|rad| short(degrees(rad)));
+#[must_use]
+pub fn held_in_words(at: RestPoint) -> String {
+    let [setpoint_deg, load_deg] =
+        [at.setpoint_rad, at.load_rad].map(|rad| to_six_decimals(degrees(rad)));
     let load = match at.load_rad == 0.0 {
         true => String::new(),
         false => format!(" under a constant load of {load_deg} deg"),
@@ -105,11 +107,10 @@ impl AtRest {
         }
     }
 
-    /// The same of a flight that is lost at a limit, in itself or flown on, whatever small motions do.
+    /// The same of a flight that is lost at a limit, in itself or flown on, of which small motions at rest say nothing.
     #[must_use]
-    pub(crate) fn lost_at_a_limit(self) -> Self {
-        let lost = || Undecided::at_trim(Doubt::BeyondLimits);
-        Self { undecided: self.undecided.or_else(|| self.unstable.is_none().then(lost)), ..self }
+    pub(crate) fn lost_at_a_limit(self, doubt: Doubt) -> Self {
+        Self { undecided: Some(Undecided::at_trim(doubt)), ..self }
     }
 
     /// Of a controller without equations, of which nothing can be asked.

@@ -396,8 +396,11 @@ pub(crate) fn asked_plants(scenario: &Scenario) -> Result<Vec<AskedPlant>, SimEr
     Ok(standing_plants(scenario)?.into_iter().map(reached).chain(burnt).collect())
 }
 
-/// The plants that last, an aircraft's linear model at its trim in its place.
-pub(crate) fn lasting_plants(scenario: &Scenario) -> Result<Vec<(f64, LinearPlant)>, SimError> {
+/// The plants that last, an aircraft's linear model at its trim in its place, with the time from which each does, s.
+///
+/// # Errors
+/// [`SimError`] where an aircraft has no linear model.
+pub fn lasting_plants(scenario: &Scenario) -> Result<Vec<(f64, LinearPlant)>, SimError> {
     let standing = standing_plants(scenario)?.into_iter();
     Ok(standing.filter_map(|(at, plant)| Some((at, plant?))).collect())
 }

@@ -9,6 +9,7 @@
 //! in these numbers: see the frozen-gain map for every gain it can have while they stand still.
 
 mod answer;
+mod around;
 mod at_rest;
 mod equilibrium;
 mod externals;
@@ -24,28 +25,29 @@ mod rank;
 mod stability;
 mod step;
 mod text;
+mod too_large;
 
 use fspid_plot::Svg;
 use fspid_sim::{Scenario, SimError};
 
-use crate::simulation::too_large;
 use fspid_scenario::file::Study;
 
 pub use answer::{Margins, decibels};
-pub(crate) use at_rest::held_in_words;
-pub use at_rest::{AtRest, RestGains};
+pub use around::Around;
+pub use at_rest::{AtRest, RestGains, held_in_words};
 pub use equilibrium::{Equilibrium, equilibrium};
 pub use externals::FlownExternal;
 pub use flights::Flights;
 pub use flown::flown_inputs;
 pub use frozen::{Frozen, FrozenGains, FrozenMap, FrozenPoint, FrozenReach};
 pub use fspid_sim::loop_model::BreakPoint;
-pub use loops::{AnalysedLoop, PlantLoop, RestLoop};
-pub(crate) use loops::{asked_plants, held_at_rest, lasting_plants};
+pub use loops::{AnalysedLoop, PlantLoop, RestLoop, lasting_plants};
+pub(crate) use loops::{asked_plants, held_at_rest};
 pub use modes::AnalysedMode;
 pub use nonlinear_parts::not_in_the_linear_loop;
 pub use stability::Stability;
 pub(crate) use step::step_responses;
+pub(crate) use too_large::too_large;
 
 /// What to analyse.
 #[derive(Clone, Copy, Debug, PartialEq)]

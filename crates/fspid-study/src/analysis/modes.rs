@@ -1,14 +1,13 @@
 //! The poles of an autopilot's modes: everything around the pitch loop, one mode after another.
 
 use fspid_core::Gains;
-use fspid_diagnostics::digits::to_digits;
+use fspid_diagnostics::digits::{to_digits, to_six_decimals};
 use fspid_lti::Complex;
 use fspid_sim::stability::MODE_RADIUS;
 use fspid_sim::{Controller, ModePoles, Scenario, SimError, mode_poles};
 use serde_json::{Value, json};
 
 use super::Stability;
-use crate::metrics::short;
 
 /// A mode with a controller.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,7 +35,11 @@ impl AnalysedMode {
             let mode = modes.get(poles.mode)?;
             let name = match poles.from_s > mode.entry.at_s {
                 true => {
-                    format!("{}, with the aircraft from {} s on", mode.name, short(poles.from_s))
+                    format!(
+                        "{}, with the aircraft from {} s on",
+                        mode.name,
+                        to_six_decimals(poles.from_s)
+                    )
                 }
                 false => mode.name.clone(),
             };
@@ -87,7 +90,11 @@ impl AnalysedMode {
             format!(", slowest pole {} 1/s{time}", to_digits(pole.re, 3))
         });
         let damped = self.least_damped().map_or(String::new(), |[damping, frequency_rad_s]| {
-            format!(", least damped {} at {} rad/s", to_digits(damping, 3), short(frequency_rad_s))
+            format!(
+                ", least damped {} at {} rad/s",
+                to_digits(damping, 3),
+                to_six_decimals(frequency_rad_s)
+            )
         });
         let word = match self.stability() {
             Stability::Stable => "stable",

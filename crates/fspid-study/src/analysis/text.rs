@@ -90,7 +90,10 @@ pub(crate) fn held_where_worst(plant: &PlantLoop) -> String {
 fn push_loop(out: &mut String, found: &AnalysedLoop) {
     for plant in &found.plants {
         if found.plants.len() > 1 {
-            out.push_str(&format!("  plant from {} s on\n", crate::metrics::short(plant.from_s)));
+            out.push_str(&format!(
+                "  plant from {} s on\n",
+                fspid_diagnostics::digits::to_six_decimals(plant.from_s)
+            ));
         }
         push_plant(out, plant);
         match &plant.frozen {

@@ -1,5 +1,6 @@
 //! The controller's side of the conversation.
 
+use fspid_diagnostics::digits::to_six_decimals;
 use std::fmt;
 
 use fspid_core::Sample;
@@ -10,7 +11,6 @@ use super::latched::HOLDING;
 use super::line::{Angles, Line, Request};
 use super::log::{Log, Summary};
 use super::rate::RateFilter;
-use crate::metrics::short;
 use fspid_diagnostics::known_words;
 
 /// Of the period: how far `dt_s` may lie beside it and still be kept. As for events in a scenario.
@@ -149,7 +149,7 @@ impl Pilot {
         let stepped = self.flyer.step(Sample { setpoint_rad, measurement_rad, rate_rad_s });
         let (answer, fault) = (self.command(stepped.command_rad), stepped.fault);
         if let Some(loss) = stepped.loss {
-            let what = format!("the controller {loss} at t = {} s", short(time_s));
+            let what = format!("the controller {loss} at t = {} s", to_six_decimals(time_s));
             self.log.lost(&what);
             self.log.summary.held += 1;
             return answer;

@@ -1,8 +1,8 @@
 //! Whether requirements are met.
 
 use super::{Case, CasePlace, Evidence, NotEvaluated};
+use crate::flight::ControllerResult;
 use crate::metrics::Absent;
-use crate::simulation::ControllerResult;
 use fspid_diagnostics::digits;
 use fspid_scenario::file::Study;
 use fspid_scenario::measure::Family;

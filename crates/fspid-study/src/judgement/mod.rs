@@ -7,7 +7,6 @@
 mod case;
 mod evidence;
 mod judge;
-mod own_flight;
 mod reason;
 mod slopes;
 
@@ -15,6 +14,5 @@ pub use case::{Case, CasePlace, FrozenAt, PlantAt, StepAt};
 pub use evidence::Evidence;
 pub(crate) use judge::is_of_aircraft;
 pub use judge::{AIRCRAFT, Judgement, judge};
-pub(crate) use own_flight::flown as flown_on_their_own;
 pub use reason::NotEvaluated;
 pub use slopes::{SlopeOf, Sloped, add_slopes, is_of_this_air, of_loop};

@@ -8,9 +8,9 @@ use fspid_sim::{EarlyEnd, Exit, Outcome, Timing, Trace};
 
 use super::{
     Absent, CommandEffort, ErrorIntegrals, Measured, Metric, StepMetrics, StepWindow,
-    is_seen_to_stay, largest_error_rad, left_validity, short,
+    is_seen_to_stay, largest_error_rad, left_validity,
 };
-use fspid_diagnostics::digits::to_digits;
+use fspid_diagnostics::digits::{to_digits, to_six_decimals};
 use fspid_scenario::measure::Measure;
 
 /// What a flight comes to, in one word.
@@ -43,7 +43,7 @@ pub enum Verdict {
         mode: usize,
     },
     /// It left the range of its aircraft's data, which its scenario does not allow. Its measures are there, and are of
-    /// data that do not hold: [`Ending`](crate::simulation::Ending) says it of a flight, its metrics never do.
+    /// data that do not hold: [`Ending`](crate::flight::Ending) says it of a flight, its metrics never do.
     LeftRange(Exit),
 }
 
@@ -100,7 +100,7 @@ impl fmt::Display for Verdict {
         match self {
             Self::Settled => f.write_str("settled"),
             Self::NotSettled { window_s, since_s } => {
-                write!(f, "not settled within {} s", short(*window_s))?;
+                write!(f, "not settled within {} s", to_six_decimals(*window_s))?;
                 let Some(since_s) = since_s else { return Ok(()) };
                 write!(f, ": in its band after {since_s:.3} s, too late to see it stay")
             }

@@ -14,7 +14,7 @@ pub use metric::{Bad, METRICS, Metric};
 pub(crate) use step::is_seen_to_stay;
 pub use step::{StepMetrics, StepWindow};
 
-use fspid_diagnostics::digits::without_zeros;
+use fspid_diagnostics::digits::to_six_decimals;
 use fspid_sim::{Doubt, EarlyEnd};
 
 /// Why a measure has no value.
@@ -22,7 +22,7 @@ use fspid_sim::{Doubt, EarlyEnd};
 #[non_exhaustive]
 pub enum Absent {
     /// The flight ended before its last sample.
-    #[error("{} at t = {} s", .0.cause, short(.0.at_s))]
+    #[error("{} at t = {} s", .0.cause, to_six_decimals(.0.at_s))]
     EndedEarly(EarlyEnd),
     /// The loop is unstable, whatever the window shows.
     #[error("the loop is unstable: spectral radius {spectral_radius:.6} of the sampled loop")]
@@ -34,13 +34,13 @@ pub enum Absent {
     #[error("the response is not finite")]
     NotFinite,
     /// The response never came within a tenth of the new set-point.
-    #[error("did not rise to 90 % within {} s", short(*window_s))]
+    #[error("did not rise to 90 % within {} s", to_six_decimals(*window_s))]
     NotRisen {
         /// Length of the window, s.
         window_s: f64,
     },
     /// The response was outside the band at the end of the window.
-    #[error("not settled within {} s", short(*window_s))]
+    #[error("not settled within {} s", to_six_decimals(*window_s))]
     NotSettled {
         /// Length of the window, s.
         window_s: f64,
@@ -80,9 +80,3 @@ pub enum Absent {
 
 /// A measure, or why there is none.
 pub type Measured = Result<f64, Absent>;
-
-/// A time for people: at most six decimals, none that say nothing.
-#[must_use]
-pub fn short(value: f64) -> String {
-    without_zeros(&format!("{value:.6}")).to_owned()
-}

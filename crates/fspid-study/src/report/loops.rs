@@ -162,7 +162,11 @@ fn margins(analysis: &Analysis) -> Chapter {
 fn row(found: &AnalysedLoop, plant: &PlantLoop) -> Vec<Datum> {
     let name = match found.plants.len() {
         0 | 1 => found.name.clone(),
-        _ => format!("{}, plant from {} s", found.name, crate::metrics::short(plant.from_s)),
+        _ => format!(
+            "{}, plant from {} s",
+            found.name,
+            fspid_diagnostics::digits::to_six_decimals(plant.from_s)
+        ),
     };
     let gains = match &found.equilibrium {
         Equilibrium::Fixed(gains) | Equilibrium::AtRest(gains) => format!(

@@ -1,6 +1,7 @@
 //! The report of a user's own scenario: verdict first.
 
 use fspid_core::{GainCoupling, InputSets, SecondInput, SelfTuner};
+use fspid_diagnostics::digits::to_six_decimals;
 use fspid_fuzzy::UNITS;
 use fspid_sim::{Controller, EarlyEnd, EndCause, Plant};
 use serde::Serialize;
@@ -8,7 +9,7 @@ use serde::Serialize;
 use super::supervisor;
 use super::traces::{Drawing, fails, is_cut_short};
 use super::{command, measures, settings};
-use crate::metrics::{EdgeMetrics, Verdict, short};
+use crate::metrics::{EdgeMetrics, Verdict};
 use crate::report::templates::render;
 use crate::simulation::{ControllerResult, Simulation};
 use fspid_page::context;
@@ -122,7 +123,7 @@ fn first_step(result: &ControllerResult) -> String {
     let first = result.metrics.first_step();
     let from_s = result.metrics.edges.first().and_then(EdgeMetrics::measured_with_load_from_s);
     let load = from_s.map_or(String::new(), |from_s| {
-        format!(", with what disturbs from {} s on in it", short(from_s))
+        format!(", with what disturbs from {} s on in it", to_six_decimals(from_s))
     });
     format!(
         "First step{load}: rise time {}, overshoot {}.",

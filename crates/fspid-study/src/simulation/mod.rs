@@ -1,107 +1,20 @@
 //! Flying a study: every controller's trace, measures and verdict, and whether requirements are met.
 
 mod csv;
-mod ending;
 mod json;
+mod own_flight;
 mod text;
-mod words;
 
-pub(crate) use ending::on_its_own;
-pub use ending::{Ending, FAILS_BY_ITSELF, FailedFlight};
-pub(crate) use json::own_flight;
-pub use words::WRONG_WAY;
-
-use fspid_lti::LtiError;
-use fspid_sim::signal::Edge;
-use fspid_sim::stability::{Unstable, instability, is_lost_at_a_limit};
-use fspid_sim::{
-    Controller, Flyer, NamedController, RestPoint, Scenario, SimError, Trace, simulate,
-};
-
-use crate::analysis::{AtRest, RestGains};
+pub use crate::flight::{ControllerResult, Ending, FAILS_BY_ITSELF, FailedFlight, WRONG_WAY};
 pub use crate::judgement::Judgement;
-use crate::judgement::{flown_on_their_own, judge};
-use crate::metrics::{Absent, FlightMetrics, Verdict};
+pub(crate) use json::own_flight;
+
+use fspid_sim::stability::{Unstable, instability};
+use fspid_sim::{Flyer, RestPoint, Scenario, SimError, simulate};
+
+use crate::analysis::{AtRest, too_large};
+use crate::judgement::judge;
 use fspid_scenario::file::{RangeRule, Study};
-
-/// One controller's flight.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ControllerResult {
-    /// Name of the controller.
-    pub name: String,
-    /// What happened.
-    pub trace: Trace,
-    /// What it amounts to.
-    pub metrics: FlightMetrics,
-    /// The loop at the gains that it has at rest.
-    pub at_rest: AtRest,
-    /// What is made of leaving the range of the aircraft's data.
-    pub range_rule: RangeRule,
-    /// How long the flight should have been, s.
-    pub duration_s: f64,
-    /// The air moves around the aircraft.
-    pub in_moving_air: bool,
-}
-
-impl ControllerResult {
-    /// A flight of a study and its measures; `unstable` is what its loop at rest counts for there.
-    #[must_use]
-    pub fn of(
-        study: &Study,
-        name: &str,
-        (trace, edges): (Trace, &[Edge]),
-        (at_rest, unstable): (AtRest, Option<Unstable>),
-    ) -> Self {
-        let scenario = &study.scenario;
-        let (timing, pushes_s) = (scenario.timing, scenario.pushes_s());
-        let named = scenario.controllers.iter().find(|it| it.name == name);
-        // Who flies without equations is no controller that could fly on.
-        let has_equations = at_rest.gains != RestGains::Unknown;
-        let is_open = has_equations && at_rest.unstable.is_none() && at_rest.undecided.is_none();
-        let is_lost =
-            is_open && named.is_some_and(|it| is_lost_at_a_limit(scenario, &it.controller, &trace));
-        let at_rest = if is_lost { at_rest.lost_at_a_limit() } else { at_rest };
-        let mut metrics = FlightMetrics::of(&trace, edges, timing, unstable, &pushes_s);
-        if named.is_none() {
-            metrics.saturated_share = metrics.saturated_share.and(Err(Absent::OwnWord));
-        }
-        Self {
-            name: name.to_owned(),
-            metrics,
-            trace,
-            at_rest,
-            range_rule: study.range_rule,
-            duration_s: timing.end_s(),
-            in_moving_air: scenario.has_moving_air(),
-        }
-    }
-
-    /// How the flight ended.
-    #[must_use]
-    pub fn ending(&self) -> Ending {
-        let (measured, exit) = (self.metrics.verdict, self.trace.exit);
-        Ending { measured, exit, range_rule: self.range_rule }
-    }
-
-    /// What the flight comes to.
-    #[must_use]
-    pub fn verdict(&self) -> Verdict {
-        self.ending().verdict()
-    }
-
-    /// Why the flight fails whatever is required of it; empty for one that does not.
-    #[must_use]
-    pub fn failures(&self) -> Vec<String> {
-        self.ending().failures()
-    }
-
-    /// The flight, if it fails whatever is required of it.
-    pub(crate) fn failed(&self, own_step_deg: Option<f64>) -> Option<FailedFlight> {
-        let failures = self.failures();
-        let controller = self.name.clone();
-        (!failures.is_empty()).then_some(FailedFlight { controller, own_step_deg, failures })
-    }
-}
 
 /// A study that has been flown.
 #[derive(Clone, Debug, PartialEq)]
@@ -126,7 +39,7 @@ impl Simulation {
     pub fn of(study: &Study) -> Result<Self, SimError> {
         let mut simulation = Self::as_commanded(study)?;
         let Self { judgements, failed_own_flights, .. } = &mut simulation;
-        *failed_own_flights = flown_on_their_own(study, judgements)?;
+        *failed_own_flights = own_flight::flown(study, judgements)?;
         Ok(simulation)
     }
 
@@ -203,20 +116,4 @@ fn at_rest(scenario: &Scenario, flyer: Flyer<'_>) -> Result<AtRest, SimError> {
         instability(scenario, &named.controller).map_err(|error| too_large(error, named))?;
     }
     Ok(AtRest::of(scenario, &named.controller))
-}
-
-/// A sampled loop that leaves the range of numbers, blamed on the gain that is farthest out.
-pub(crate) fn too_large(error: SimError, named: &NamedController) -> SimError {
-    let SimError::Linear(LtiError::NotFinite { .. } | LtiError::OutOfRange { .. }) = error else {
-        return error;
-    };
-    let gains = named.controller.nominal();
-    let all = [("kp", gains.kp), ("ki", gains.ki), ("kd", gains.kd)];
-    let rate = ("rate_gain", named.controller.config().rate_gain_s);
-    let largest = all.into_iter().fold(rate, |a, b| if b.1.abs() > a.1.abs() { b } else { a });
-    let key = match &named.controller {
-        Controller::SelfTuning(_) if largest.0 != "rate_gain" => format!("nominal.{}", largest.0),
-        _ => largest.0.to_owned(),
-    };
-    SimError::TooLarge { key: format!("controller.{}.{key}", named.name), found: largest.1 }
 }

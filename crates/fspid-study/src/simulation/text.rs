@@ -1,6 +1,7 @@
 //! The answer for people.
 
-use super::{ControllerResult, Judgement, Simulation, on_its_own};
+use super::{ControllerResult, Judgement, Simulation};
+use crate::flight::on_its_own;
 use crate::metrics::{Absent, Measured, StepMetrics};
 use fspid_scenario::units::degrees;
 

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
+use fspid_certify::{self as certify, Certification, Effort};
 use fspid_scenario::count::MAP_POINTS;
 use fspid_study::analysis::{Analysis, Columns, Question as Asked};
-use fspid_study::certify::{self, Certification, Effort};
 use fspid_study::verify::interval::{self, IntervalError};
 use fspid_study::verify::{self, verify_text};
 use serde_json::{Value, json};

@@ -8,9 +8,9 @@ use fspid_sim::air::WindKind;
 use fspid_sim::{Timing, Trace};
 
 use super::aircraft;
+use crate::flight::ControllerResult;
 use crate::judgement::{Case, CasePlace, NotEvaluated, StepAt};
 use crate::metrics::{Absent, EdgeMetrics, FlightMetrics, is_seen_to_stay};
-use crate::simulation::ControllerResult;
 use fspid_scenario::file::Study;
 use fspid_scenario::measure::{Family, Measure};
 use fspid_scenario::requirement::{Air, Conditions, Requirement};

@@ -8,9 +8,9 @@ use fspid_sim::{
 use crate::analysis::{
     Analysis, Margins, PlantLoop, Question, RestLoop, asked_plants, decibels, held_at_rest,
 };
+use crate::flight::ControllerResult;
 use crate::judgement::{Case, CasePlace, NotEvaluated, PlantAt};
 use crate::metrics::Absent;
-use crate::simulation::ControllerResult;
 use fspid_scenario::measure::Measure;
 use fspid_scenario::requirement::Requirement;
 use fspid_scenario::units::degrees;

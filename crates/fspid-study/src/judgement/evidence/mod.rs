@@ -12,8 +12,8 @@ use std::cell::OnceCell;
 use fspid_sim::{Controller, Flyer, NamedController};
 
 use super::{Case, NotEvaluated};
+use crate::flight::ControllerResult;
 use crate::metrics::Verdict;
-use crate::simulation::ControllerResult;
 use fspid_scenario::file::Study;
 use fspid_scenario::measure::{Family, Measure};
 use fspid_scenario::requirement::Requirement;

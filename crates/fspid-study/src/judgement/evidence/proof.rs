@@ -3,8 +3,8 @@
 use fspid_proof::{Asked, Effort, LoopDescription, is_proved};
 use fspid_sim::NamedController;
 
+use crate::analysis::Around;
 use crate::analysis::lasting_plants;
-use crate::certify::Around;
 use crate::judgement::{Case, CasePlace, NotEvaluated, PlantAt};
 use fspid_scenario::file::Study;
 

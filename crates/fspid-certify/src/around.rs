@@ -1,0 +1,39 @@
+//! Why a flight does not hold although its loop may be proved: the outer loops of an autopilot, the rest of an aircraft, what
+//! it comes to later.
+
+use fspid_diagnostics::digits::{to_digits, to_six_decimals};
+use fspid_sim::stability::Unstable;
+use fspid_sim::{Controller, Scenario};
+
+use fspid_study::analysis::{AtRest, held_in_words};
+use fspid_study::metrics::Absent;
+
+/// That a flight grows at rest, with a plant or an aircraft of later, by what is no pitching or with the outer loops around the
+/// certified one, of which a certificate does not speak; that this is not known counts as well. None where everything holds.
+pub(super) fn not_held_in_words(scenario: &Scenario, controller: &Controller) -> Option<String> {
+    let at_rest = AtRest::stability(scenario, controller);
+    let beyond = at_rest.undecided.filter(|it| it.doubt.is_beyond_the_loop());
+    match (at_rest.unstable, beyond) {
+        (Some(unstable), _) => Some(grows_in_words(scenario, &unstable)),
+        (None, Some(undecided)) => Some(Absent::Undecided(undecided.doubt).to_string()),
+        (None, None) => None,
+    }
+}
+
+/// Where a flight grows at rest.
+fn grows_in_words(scenario: &Scenario, unstable: &Unstable) -> String {
+    let mode = unstable.mode.and_then(|mode| scenario.autopilot.as_ref()?.modes().get(mode));
+    let with = match mode {
+        Some(mode) => format!("with the outer loops of mode {}", mode.name),
+        None => held_in_words(unstable.at),
+    };
+    let from = match unstable.from_s {
+        0.0 => String::new(),
+        from_s => format!(", with the plant from {} s on", to_six_decimals(from_s)),
+    };
+    let radius = to_digits(unstable.spectral_radius, 7);
+    format!("UNSTABLE {with}{from} (spectral radius {radius})")
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,176 @@
+//! Certified cases in words and for programs.
+
+use fspid_diagnostics::digits::to_six_decimals;
+use fspid_proof::{LeftOut, Verdict};
+use serde_json::{Value, json};
+
+use super::{CertifiedCase, CertifiedCases};
+use crate::json::NULLS;
+use crate::scope::range_in_words;
+use crate::text::{found, sentence};
+use crate::{Certified, DisturbanceAnswer, family};
+use fspid_study::json::{merged, present, with_null_reasons};
+
+impl CertifiedCases {
+    /// The answer of `certify --cases --format text`: a line for each loop, and what all of them amount to.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let mut out = format!(
+            "{}: stability while the gains move, at {} {}\n",
+            self.scenario,
+            self.changes.len(),
+            self.which.words()
+        );
+        for case in &self.cases {
+            out.push_str(&format!("\n{}\n", case.change.name));
+            for certified in &case.certification.results {
+                out.push_str(&line(certified));
+            }
+        }
+        out.push_str(&format!("\n{}\n", self.verdict()));
+        for one in self.left_out() {
+            out.push_str(&format!("  not in this claim  {one}\n"));
+        }
+        out
+    }
+
+    /// What some claim of stability does not speak of, each once.
+    fn left_out(&self) -> Vec<LeftOut> {
+        let results = self.cases.iter().flat_map(|case| &case.certification.results);
+        let claims = results.filter_map(|it| found(it.outcome.as_ref().ok()?));
+        let stable = claims.filter(|(certificate, _)| certificate.claim.is_of_stability());
+        let mut all: Vec<LeftOut> = stable
+            .flat_map(|(certificate, rechecked)| certificate.scope(rechecked).left_out)
+            .collect();
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
+    /// What all of them amount to, in a sentence for each controller.
+    fn verdict(&self) -> String {
+        let names = self.controllers();
+        let sentences = names.iter().map(|name| {
+            let not_proved: Vec<&str> = self.not_proved(name).collect();
+            let count = self.cases.len();
+            let verdict = match not_proved.len() {
+                0 => format!("{name}: PROVED at all {count} {}", self.which.words()),
+                missing => format!(
+                    "{name}: NOT PROVED at {missing} of {count} {}: {}",
+                    self.which.words(),
+                    not_proved.join("; ")
+                ),
+            };
+            let disturbed = self.disturbed_in_words(name).into_iter();
+            let disturbed = disturbed.map(|it| format!("\n  disturbances       {it}"));
+            let near_trim = self.near_trim_in_words(name).into_iter();
+            let near_trim = near_trim.map(|it| format!("\n  nonlinear          {it}"));
+            verdict + &disturbed.chain(near_trim).collect::<String>()
+        });
+        sentences.collect::<Vec<_>>().join("\n")
+    }
+
+    /// Names of the controllers, each once.
+    fn controllers(&self) -> Vec<&str> {
+        let mut names: Vec<&str> = Vec::new();
+        for certified in self.cases.iter().flat_map(|case| &case.certification.results) {
+            if !names.contains(&certified.controller.as_str()) {
+                names.push(&certified.controller);
+            }
+        }
+        names
+    }
+
+    /// Names of the cases at which a loop of a controller is not proved.
+    fn not_proved<'a>(&'a self, controller: &'a str) -> impl Iterator<Item = &'a str> {
+        let is_missing = move |case: &&CertifiedCase| {
+            let mut own =
+                case.certification.results.iter().filter(|it| it.controller == controller);
+            own.any(|it| !it.is_proved())
+        };
+        self.cases.iter().filter(is_missing).map(|case| case.change.name.as_str())
+    }
+
+    /// The answer of `certify --cases --format json`.
+    #[must_use]
+    pub fn json(&self) -> Value {
+        let mut null = serde_json::Map::new();
+        let mut schema = Value::Null;
+        let cases = self.cases.iter().map(|case| {
+            let mut answer = case.certification.json();
+            if let Some(reasons) = answer.get("null").and_then(Value::as_object) {
+                null.extend(reasons.clone());
+            }
+            schema = answer["schema"].take();
+            json!({
+                "name": case.change.name,
+                "set": case.change.set,
+                "controllers": answer["controllers"].take(),
+            })
+        });
+        let cases: Vec<Value> = cases.collect();
+        let answer = json!({
+            "schema": schema,
+            "scenario": self.scenario,
+            "of": self.which.words(),
+            "all_proved": self.all_proved(),
+            "cases": cases,
+        });
+        let mut everywhere = with_null_reasons(self.in_every_case(), &NULLS);
+        if let Some(Value::Object(reasons)) = everywhere.get_mut("null").map(Value::take) {
+            null.extend(reasons);
+        }
+        let reasons = (!null.is_empty()).then_some(null);
+        merged([answer, everywhere, present(json!({ "null": reasons }))])
+    }
+
+    /// What of all that was asked beside stability holds in every case of each controller; empty where nothing was.
+    fn in_every_case(&self) -> Value {
+        let each = self.controllers().into_iter().map(|name| {
+            let of = json!({ "name": name });
+            merged([of, self.disturbed_in_json(name), self.near_trim_in_json(name)])
+        });
+        let each: Vec<Value> = each.collect();
+        let has_more = |it: &Value| it.as_object().is_some_and(|keys| keys.len() > 1);
+        let told = each.iter().any(has_more).then_some(each);
+        present(json!({ "in_every_case": told }))
+    }
+}
+
+/// One loop in a line.
+fn line(certified: &Certified) -> String {
+    let name = match certified.from_s {
+        0.0 => certified.controller.clone(),
+        from_s => format!("{}, plant from {} s on", certified.controller, to_six_decimals(from_s)),
+    };
+    let told = match &certified.outcome {
+        Err(reason) => format!("NOT PROVABLE: {reason}"),
+        Ok(outcome) => {
+            let claimed = found(outcome).map(|(certificate, rechecked)| {
+                let range = range_in_words(&certificate.scope(rechecked));
+                format!("{}; {range}", sentence(certificate))
+            });
+            let because = outcome.open_because.as_ref().map(|it| format!(": {it}"));
+            let claimed = claimed.unwrap_or_else(|| "neither proved nor refuted".to_owned());
+            match outcome.verdict {
+                Verdict::Proved(..) if certified.is_proved() => format!("PROVED: {claimed}"),
+                Verdict::Proved(..) => {
+                    format!("NOT PROVED as a whole; the loop as it is: {claimed}")
+                }
+                Verdict::Refuted(..) => format!("REFUTED: {claimed}"),
+                Verdict::Open => format!("OPEN{}; {claimed}", because.unwrap_or_default()),
+            }
+        }
+    };
+    let mut out = format!("  {name}: {told}\n");
+    if let Some(reason) = certified.disturbances.as_ref().and_then(DisturbanceAnswer::trouble) {
+        out.push_str(&format!("    disturbances NOT BOUNDED: {reason}\n"));
+    }
+    if let Some(nonlinear) = &certified.nonlinear {
+        out.push_str(&format!("    nonlinear aircraft {}\n", nonlinear.in_short()));
+    }
+    if let Some(family) = &certified.family {
+        out.push_str(&format!("    all that is drawn: {}\n", family::in_words(family)));
+    }
+    out
+}
