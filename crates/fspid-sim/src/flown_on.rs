@@ -1,4 +1,4 @@
-//! Whether a flight of a linear plant that does not come to rest by itself, and that meets limits, comes to rest when it goes on.
+//! Extends a flight of a linear plant behind limits that has not come to rest, to see whether it settles.
 //!
 //! Around a rest that limits leave, small motions decay; a swing that meets limits may grow from there on, or stay. Of such a
 //! flight nothing at rest speaks, so that it is flown on: with what is held at its end, and with what swings.
@@ -23,6 +23,14 @@ const LEAST_FIFTH: usize = 10;
 const RESTS: f64 = 1e-3;
 /// What has moved so many times as much has grown.
 const GROWN: f64 = 1.05;
+/// With nothing that moves it, a swing that does not shrink by a hundredth stays.
+const STAYS: f64 = 0.99;
+/// Under noise two parts of a flight differ by chance: what has doubled has grown.
+const GROWN_IN_NOISE: f64 = 2.0;
+/// Swings whose extremes differ by no more than this share of their size repeat.
+const ALIKE: f64 = 1e-3;
+/// A flight that has shown so many periods of what swings has shown which limits are met.
+const PERIODS: f64 = 2.0;
 /// A limit of rate is met a thousandth before it, for rounding.
 const AT_RATE: f64 = 0.999;
 
@@ -53,9 +61,21 @@ impl Span {
         (self.most_rad - self.least_rad).max(0.0)
     }
 
-    /// True for the end of a flight that has come to rest, of which `all` is the whole.
+    /// True for the end of a flight that stands still, of which `all` is the whole.
+    fn stands(self, all: Self) -> bool {
+        self.size_rad() <= RESTS * all.size_rad()
+    }
+
+    /// True for the end of a flight that has come to rest within the limits.
     fn rests(self, all: Self) -> bool {
-        !self.meets && self.size_rad() <= RESTS * all.size_rad()
+        !self.meets && self.stands(all)
+    }
+
+    /// True for swings of the same extremes.
+    fn is_like(self, other: Self) -> bool {
+        let apart_rad =
+            (self.least_rad - other.least_rad).abs().max((self.most_rad - other.most_rad).abs());
+        apart_rad <= ALIKE * self.size_rad()
     }
 }
 
@@ -112,14 +132,27 @@ impl<'a> Pieces<'a> {
         std::array::from_fn(|part| Span::of(&self.all[part * pieces / 5..(part + 1) * pieces / 5]))
     }
 
-    /// True where limits are met near the end, and the error moves there at least so many times as much as before: a last fifth
-    /// beside the one before it; or of a swing that is longer, the last two beside the first two.
-    fn goes_on(&self, times: f64) -> bool {
+    /// True where limits are met near the end, and the error moves there as one does that will not settle: a last fifth beside
+    /// the one before it; or of a swing that is longer, the last two beside the first two.
+    ///
+    /// With nothing that moves it, a swing that does not shrink stays. Moved by swings it grows; and the error of a plant that
+    /// runs away has to repeat what it did, for at a limit such a plant may be held by luck. Under noise it doubles.
+    fn goes_on(&self, moved: Moved, moves: Moves) -> bool {
         let [first, second, _, fourth, fifth] = self.fifths();
         let (start, end) = (first.and(second), fourth.and(fifth));
-        let stays = fifth.size_rad() >= times * fourth.size_rad();
-        let has_grown = end.size_rad() >= times.max(GROWN) * start.size_rad();
-        end.meets && (stays || has_grown)
+        let grows = |times: f64| {
+            fifth.size_rad() >= times * fourth.size_rad()
+                || end.size_rad() >= times.max(GROWN) * start.size_rad()
+        };
+        end.meets
+            && match (moved, moves) {
+                // What a limit keeps short of its set-point stands still there.
+                (Moved::Nothing, Moves::Back) if end.stands(self.whole()) => false,
+                (Moved::Nothing, _) => grows(STAYS),
+                (Moved::BySwings, Moves::Away) => !fifth.is_like(fourth),
+                (Moved::BySwings, Moves::On | Moves::Back) => grows(GROWN),
+                (Moved::ByNoise, _) => grows(GROWN_IN_NOISE),
+            }
     }
 }
 
@@ -144,22 +177,10 @@ impl Moved {
             (false, false) => Self::Nothing,
         }
     }
-
-    /// How many times as much an error that is lost moves in a last fifth, at limits, as in the one before it. With nothing that
-    /// moves it, one that does not shrink by a hundredth stays. Moved by swings it grows; and a plant that runs away is held at a
-    /// limit by luck, however it has gone so far. Under noise, whose fifths differ by chance, it doubles.
-    fn least_growth(self, moves: Moves) -> f64 {
-        match (self, moves) {
-            (Self::Nothing, _) => 0.99,
-            (Self::BySwings, Moves::Away) => 0.0,
-            (Self::BySwings, Moves::On) => GROWN,
-            (Self::ByNoise, _) => 2.0,
-        }
-    }
 }
 
-/// True where a flight of a linear plant meets limits, and flown on it is lost, or still meets them in a swing that does not
-/// shrink. The plant is one that does not come to rest by itself.
+/// True where a flight of a linear plant behind limits has not come to rest, and flown on is lost, or still meets limits in a
+/// swing that does not shrink.
 pub(crate) fn is_lost(
     scenario: &Scenario,
     controller: &Controller,
@@ -168,27 +189,31 @@ pub(crate) fn is_lost(
 ) -> bool {
     let rows = scenario.timing.rows();
     let ends = Ends::of(scenario, controller);
-    let length = rows / 5;
-    if ends.are_none() || length < LEAST_FIFTH || trace.rows() < rows {
-        return false;
-    }
     // Moving air is that of a way that ends with the flight.
     let is_linear = scenario.plant.linear().is_some() && scenario.surroundings.weather.is_none();
-    let Some(moves) = moves().filter(|_| is_linear) else { return false };
+    if ends.are_none() || !is_linear || trace.rows() < rows {
+        return false;
+    }
     let pieces = pieces_of(scenario, &ends, trace);
     if has_come_to_rest(scenario, &pieces) {
         return false;
     }
+    let Some(moves) = moves() else { return false };
+    let moved = Moved::of(scenario);
     // One that is as long as that is its own answer.
     if rows > SAMPLES[1] {
-        return pieces.goes_on(Moved::of(scenario).least_growth(moves));
+        return pieces.goes_on(moved, moves);
     }
     // What cannot be flown on says nothing.
     let flies_on =
         |own: &Scenario| flies_on_and_is_lost(own, controller, &ends, moves).unwrap_or(false);
-    // Noise hides a swing that stays: without it nothing but the limits keeps one up.
-    let is_hidden = || Moved::of(scenario) == Moved::ByNoise && flies_on(&without_noise(scenario));
-    flies_on(scenario) || is_hidden()
+    if moved != Moved::ByNoise {
+        return flies_on(scenario);
+    }
+    // Noise hides a swing that stays: without it nothing but the limits keeps one up. A plant that runs away may be carried over
+    // the edge by the noise itself.
+    flies_on(&without_noise(scenario))
+        || (moves == Moves::Away && pieces.whole().meets && flies_on(scenario))
 }
 
 /// The scenario with the same errors but without noise at servo, elevator and measurement, or of sensors.
@@ -202,7 +227,7 @@ fn without_noise(scenario: &Scenario) -> Scenario {
 /// The flight itself in five pieces, and what is left.
 fn pieces_of<'a>(scenario: &Scenario, ends: &'a Ends, trace: &Trace) -> Pieces<'a> {
     let at_servo = scenario.loads_rad(Entry::Servo);
-    let mut pieces = Pieces::new(ends, trace.rows() / 5);
+    let mut pieces = Pieces::new(ends, (trace.rows() / 5).max(1));
     for k in 0..trace.rows() {
         let load_rad = at_servo.as_ref().and_then(|it| it.get(k)).copied().unwrap_or(0.0);
         let error_rad = trace.setpoint_rad[k] - trace.theta_rad[k];
@@ -211,14 +236,27 @@ fn pieces_of<'a>(scenario: &Scenario, ends: &'a Ends, trace: &Trace) -> Pieces<'
     pieces
 }
 
-/// True where the flight itself has come to rest, or has met no limit under noise, which would go on for ever.
+/// True where the flight itself has come to rest; or where something moves it for ever, it has shown that without limits.
 fn has_come_to_rest(scenario: &Scenario, pieces: &Pieces<'_>) -> bool {
     let whole = pieces.whole();
     match Moved::of(scenario) {
-        Moved::Nothing => pieces.tail().rests(whole),
-        Moved::BySwings => false,
-        Moved::ByNoise => !whole.meets,
+        // Of a few samples nothing is said.
+        Moved::Nothing => pieces.length >= LEAST_FIFTH && pieces.tail().rests(whole),
+        Moved::BySwings | Moved::ByNoise => !whole.meets && has_shown_its_swings(scenario),
     }
+}
+
+/// True where a flight holds some periods of everything that swings.
+fn has_shown_its_swings(scenario: &Scenario) -> bool {
+    let end_s = scenario.timing.end_s();
+    let periods = scenario
+        .disturbances
+        .iter()
+        .filter_map(Disturbance::period_s)
+        .chain(scenario.setpoint.period_s());
+    periods
+        .into_iter()
+        .all(|(from_s, period_s)| from_s > end_s || from_s + PERIODS * period_s <= end_s)
 }
 
 fn flies_on_and_is_lost(
@@ -229,7 +267,7 @@ fn flies_on_and_is_lost(
 ) -> Option<bool> {
     let rows = scenario.timing.rows();
     let prepared = held_on(scenario, (TIMES * rows).clamp(SAMPLES[0], SAMPLES[1]))?;
-    let mut pieces = Pieces::new(ends, rows / 5);
+    let mut pieces = Pieces::new(ends, (rows / 5).max(LEAST_FIFTH));
     let moved = Moved::of(scenario);
     let mut rested = false;
     let outcome = fly(&prepared, controller, |instant| {
@@ -241,7 +279,7 @@ fn flies_on_and_is_lost(
         if rested { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
     let is_lost = !matches!(outcome.ok()?, Outcome::Completed);
-    Some(!rested && (is_lost || pieces.goes_on(moved.least_growth(moves))))
+    Some(!rested && (is_lost || pieces.goes_on(moved, moves)))
 }
 
 /// The flight as it goes on to so many samples: what stands still at its end is held, what swings swings on, and what would

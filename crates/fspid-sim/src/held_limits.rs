@@ -6,11 +6,12 @@
 use fspid_aircraft::ForceModel;
 use fspid_core::{Gains, Limits};
 
+use crate::closed_loop::simulate;
 use crate::controller::Controller;
 use crate::flown_on;
 use crate::plant::LinearPlant;
 use crate::rest::{Doubt, RestPoint, pitches_without_integral};
-use crate::scenario::Scenario;
+use crate::scenario::{NamedController, Scenario};
 use crate::signal::Entry;
 use crate::trace::Trace;
 
@@ -89,6 +90,20 @@ pub(crate) enum Moves {
     Away,
     /// It goes on: a pole lies on the axis.
     On,
+    /// It comes back to where it was.
+    Back,
+}
+
+impl Moves {
+    fn of(plant: &LinearPlant) -> Self {
+        if has_pole_from(plant, AT_REST) {
+            Self::Away
+        } else if moves_by_itself(plant) {
+            Self::On
+        } else {
+            Self::Back
+        }
+    }
 }
 
 /// What a rest takes, rad of elevator, nose up positive.
@@ -168,23 +183,30 @@ fn last_load_rad(scenario: &Scenario, entry: Entry) -> f64 {
     values.last().copied().unwrap_or(0.0)
 }
 
-/// Why nothing at rest speaks of a flight of a plant that does not come to rest by itself: [`Doubt::RunsAway`] where it ends at a
-/// limit of controller or servo with an error that grows, through the last tenth of it, at every sample; and
-/// [`Doubt::SwingAtLimits`] where a linear plant's, flown on, meets limits in a swing that does not shrink, or is lost.
+/// Why nothing at rest speaks of a flight: [`Doubt::RunsAway`] where that of a plant that does not come to rest by itself ends at
+/// a limit of controller or servo with an error that grows, through the last tenth of it, at every sample; and
+/// [`Doubt::SwingAtLimits`] where that of a linear plant, flown on, meets limits in a swing that does not shrink, or is lost.
 #[must_use]
 pub fn lost_at_a_limit(
     scenario: &Scenario,
     controller: &Controller,
     trace: &Trace,
 ) -> Option<Doubt> {
-    let moves = || {
-        let plant = last_plant(scenario).filter(moves_by_itself)?;
-        Some(if has_pole_from(&plant, AT_REST) { Moves::Away } else { Moves::On })
-    };
-    if runs_away(scenario, controller, trace) {
-        return moves().map(|_| Doubt::RunsAway);
+    let moves = || last_plant(scenario).map(|plant| Moves::of(&plant));
+    if runs_away(scenario, controller, trace) && moves().is_some_and(|it| it != Moves::Back) {
+        return Some(Doubt::RunsAway);
     }
     flown_on::is_lost(scenario, controller, trace, moves).then_some(Doubt::SwingAtLimits)
+}
+
+/// What the flight of one of a scenario's controllers shows of [`lost_at_a_limit`], for who has not flown it; none where it cannot
+/// be flown.
+#[must_use]
+pub fn lost_when_flown(scenario: &Scenario, named: &NamedController) -> Option<Doubt> {
+    let alone =
+        Scenario { controllers: vec![named.clone()], externals: Vec::new(), ..scenario.clone() };
+    let trace = simulate(&alone).ok()?.traces.pop()?;
+    lost_at_a_limit(&alone, &named.controller, &trace)
 }
 
 /// True where each sample of the last tenth is at a limit, and further off than the one before.

@@ -133,9 +133,9 @@ pub enum Doubt {
         "the plant does not come to rest by itself, and the flight ends with its command at a limit and an error that grows: a longer flight shows what becomes of it"
     )]
     RunsAway,
-    /// A flight of such a plant, flown on, is lost, or meets limits in a swing that does not shrink.
+    /// A flight, flown on, is lost, or meets limits in a swing that does not shrink.
     #[error(
-        "the plant does not come to rest by itself, and flown on for ten times as long the flight still meets limits in a swing that does not shrink, or is lost: a longer flight shows it"
+        "limits are met, and flown on for ten times as long the flight does not settle: it swings on between them or is lost, as a longer flight shows; wider limits, smaller or slower commands, or lower gains may hold it"
     )]
     SwingAtLimits,
 }

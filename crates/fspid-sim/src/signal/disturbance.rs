@@ -76,6 +76,11 @@ impl Disturbance {
         self.shape.goes_on()
     }
 
+    /// As [`Shape::period_s`].
+    pub(crate) fn period_s(&self) -> Option<(f64, f64)> {
+        self.shape.period_s()
+    }
+
     /// Its amplitude, rad, and its shape.
     pub(crate) fn part(&self) -> (f64, &Shape) {
         (self.amplitude_rad, &self.shape)

@@ -86,6 +86,14 @@ impl Profile {
         matches!(&self.0, Kind::Shape { shape, .. } if shape.goes_on())
     }
 
+    /// As [`Shape::period_s`].
+    pub(crate) fn period_s(&self) -> Option<(f64, f64)> {
+        match &self.0 {
+            Kind::Shape { shape, .. } => shape.period_s(),
+            Kind::Table { .. } => None,
+        }
+    }
+
     pub(crate) fn is_noise(&self) -> bool {
         matches!(self.0, Kind::Shape { shape: Shape::Noise { .. }, .. })
     }

@@ -108,6 +108,15 @@ impl Shape {
         matches!(self, Self::Square { .. } | Self::Sine { .. } | Self::Noise { .. })
     }
 
+    /// From when on and with which period it swings, s; none for what does not.
+    pub(crate) fn period_s(&self) -> Option<(f64, f64)> {
+        match *self {
+            Self::Square { at_s, half_period_s, .. } => Some((at_s, 2.0 * half_period_s)),
+            Self::Sine { at_s, frequency_hz } => Some((at_s, 1.0 / frequency_hz)),
+            _ => None,
+        }
+    }
+
     /// Adds `amplitude` times the shape to `values`, one entry a sample. `stream` keeps the noises
     /// of one seed apart.
     pub(crate) fn add_to(&self, values: &mut [f64], amplitude: f64, timing: Timing, stream: u64) {

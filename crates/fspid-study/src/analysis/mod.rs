@@ -101,7 +101,11 @@ impl Analysis {
     /// # Errors
     /// [`SimError`] where a plant has no linear model or cannot be sampled.
     pub fn of(study: &Study, question: Question) -> Result<Self, SimError> {
-        Self::of_scenario(&study.scenario, question)
+        let mut analysis = Self::of_scenario(&study.scenario, question)?;
+        for (found, named) in analysis.loops.iter_mut().zip(&study.scenario.controllers) {
+            found.doubt_flight(&study.scenario, named);
+        }
+        Ok(analysis)
     }
 
     /// Analyses every controller of a scenario.
