@@ -35,7 +35,7 @@ false-safe|100 000 loops that are bad by construction, none called good|cargo ru
 hostile|a hundred million bad samples through every structure of controller|cargo run --release --locked -p fspid-options --example hostile_samples -- 100000000 "$(date +%Y%m%d)"
 peers|one bad sample, shown to other PID controllers too|checks/peers/check.sh
 faults|a thousand disturbed writes|python3 checks/faults/matrix.py target/release/fspid --kills 72
-rare|intervals of rare failures|checks/rare/coverage.sh
+rare|intervals of rare failures|checks/rare/intervals.sh
 flood|the server, flooded for ten minutes|checks/serve/flood.sh
 slow-loops|margins of 10 000 loops with slow modes, refuted from outside|cargo run --release --locked -p fspid-lti --example slow_loops -- 10000 "$(date +%Y%m%d)" >target/nightly/loops.csv && python3 oracles/check_slow_loops.py target/nightly/loops.csv
 proofs|flights against proofs|cargo run --release --locked -p fspid-proof --example refute_proofs -- --count 100

@@ -1,4 +1,4 @@
-//! How often the intervals of rare failures hold probabilities that are known: `checks/rare/coverage.sh`.
+//! How often the intervals of rare failures hold probabilities that are known: `checks/rare/intervals.sh`.
 
 #![allow(clippy::print_stdout, reason = "a table for people")]
 

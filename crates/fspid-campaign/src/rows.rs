@@ -1,4 +1,4 @@
-//! What a flight leaves behind: one row of a table, and what its columns mean.
+//! The result table of a campaign: one row for each flight, and the meaning of its columns.
 //!
 //! Names, units and meanings of the columns are part of the format: they are documented in
 //! `docs/campaigns.md` and change with [`FORMAT`] only.

@@ -1,4 +1,4 @@
-//! Either controller, for what does not care which.
+//! A controller with fixed or with self-tuned gains, for code that handles both alike.
 
 use fspid_numeric::Real;
 

@@ -1,4 +1,4 @@
-//! Keeping one bad sample from doing harm.
+//! Input validation at run time: samples that are not finite or out of range hold the last command and latch a fault.
 
 use core::fmt;
 

@@ -6,7 +6,7 @@ use crate::controller_setting::ControllerSetting;
 use crate::error::{ConfigError, at_least};
 use crate::limits::Limits;
 
-/// What the integral remembers when its gain changes.
+/// Form of the integral term: whether its state is the integral of the error or of the gain times the error.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum IntegralForm {
     /// $I_k = I_{k-1} + k_i e_k T$: a new gain bends the integral, the command never jumps.
@@ -17,7 +17,7 @@ pub enum IntegralForm {
     Literal,
 }
 
-/// What happens to the integral while the command is cut.
+/// Anti-windup method: how the integral behaves while the command is saturated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AntiWindup<R> {
     /// Nothing: it winds up.

@@ -1,4 +1,4 @@
-//! Everything of a PID controller but where its gains come from.
+//! The settings of a PID controller apart from its gains: sample period, limits, derivative, anti-windup, weights.
 
 use fspid_numeric::Real;
 

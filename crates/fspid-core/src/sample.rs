@@ -1,6 +1,6 @@
-//! What goes into a step.
+//! The inputs of one controller step: set-point, measured pitch and measured pitch rate.
 
-/// What a controller is given at a sample.
+/// Inputs of a controller at one sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample<R> {
     /// Commanded pitch, rad.

@@ -1,4 +1,4 @@
-//! What the supervisor sees beside the error, and how the sets of its inputs lie.
+//! The supervisor's second input (change of error, pitch rate or reference-model error) and the spacing of its fuzzy sets.
 
 use fspid_numeric::{Real, Scalar};
 

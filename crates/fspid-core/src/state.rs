@@ -1,4 +1,4 @@
-//! What comes out of a step, and what is remembered from one to the next.
+//! The result of one controller step, and the state that is carried to the next one.
 
 use fspid_numeric::Real;
 
@@ -8,7 +8,7 @@ use crate::guard::Faults;
 use crate::sample::Sample;
 use crate::second_input::ModelState;
 
-/// What a controller answers.
+/// Outputs of one controller step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step<R> {
     /// Command, rad; positive is nose up.
@@ -39,7 +39,7 @@ pub struct State<R> {
     pub faults: Faults,
 }
 
-/// What a controller remembers of the last good sample.
+/// State kept from the last valid sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Previous<R> {
     /// Its error, rad.

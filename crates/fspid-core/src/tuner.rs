@@ -1,4 +1,4 @@
-//! The self-tuning law: from the loop's error to the gains of the moment.
+//! The self-tuning law: gains from the nominal ones and the supervisor's increments, memoryless or accumulated.
 
 use fspid_fuzzy::Supervisor;
 use fspid_numeric::Real;
@@ -21,7 +21,7 @@ pub enum ErrorSign {
     MeasurementMinusSetpoint,
 }
 
-/// What the supervisor sees as change of error.
+/// Definition of the supervisor's change-of-error input.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Change {
     /// Rate: $(e_k - e_{k-1}) / T$.

@@ -1,4 +1,5 @@
-//! Somebody who knows plant, past and present, and not what comes: a reference beside the limit, which proves nothing.
+//! Best causal planner: a reference controller that knows the plant, the past and the present but not the future. A
+//! comparison beside the limit, not a bound.
 //!
 //! At every sample at which set-point, disturbances or air are not what they were, the rest of the flight is planned anew by
 //! the same programme, as if everything stayed as it is now. A planner that had a travel to spend would spend all of it on
@@ -25,7 +26,7 @@ const EXPONENTS: [i32; 2] = [-8, 3];
 /// Halvings of what lies between two of them.
 const HALVINGS: usize = 9;
 
-/// What a flight reached, and what it took.
+/// Error reached by a flight, and the travel it took.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reached {
     /// The measure, rad.
@@ -52,7 +53,7 @@ impl Reached {
     }
 }
 
-/// Somebody who plans without a future, with every flight that he made.
+/// A causal planner, with every flight that it has simulated.
 #[derive(Debug)]
 pub struct Planner<'a> {
     scenario: &'a Scenario,

@@ -4,7 +4,7 @@ use fspid_lti::LtiError;
 use fspid_proof::check::NotProved;
 use fspid_sim::SimError;
 
-/// A part of a scenario of which no limit can be told.
+/// A feature of a scenario for which no limit can be computed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Refusal {

@@ -1,4 +1,4 @@
-//! What of the error is asked for.
+//! The error measure that is minimised: IAE, ISE or largest error.
 
 /// A measure of the error $e = r - \theta$ over all samples of a flight, as reports print it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -25,7 +25,7 @@ pub struct Programme<'a> {
     entering: Vec<Vec<f64>>,
 }
 
-/// What a solver answers.
+/// Solution of the linear or quadratic programme.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution {
     /// Least measure by the solver's own words, rad.

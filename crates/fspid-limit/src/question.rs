@@ -1,4 +1,4 @@
-//! A flight as a question to a linear programme: the sampled plant, what enters it, and what commands may do.
+//! A flight as a linear programme: the sampled plant, its exogenous inputs, and constraints on the command.
 
 use fspid_numeric::scalar::{Interval, Scalar};
 use fspid_proof::check::{ActuatorLag, IntervalMatrix, PrintedPlant, printed};
@@ -11,7 +11,7 @@ use crate::travel::Travel;
 /// More samples take minutes and gigabytes.
 const MOST_SAMPLES: usize = 30_000;
 
-/// What of a scenario stays out of the limit, or is in it only so.
+/// Effects of a scenario that the limit neglects or simplifies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum SaidBeside {
@@ -30,7 +30,7 @@ pub enum SaidBeside {
     Air,
 }
 
-/// What is taken of commands beside what the actuator allows.
+/// Constraints assumed on the command in addition to those of the actuator.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Assumed {
     /// Of an actuator without limits: they are within ± this, rad.
@@ -116,7 +116,7 @@ pub(crate) struct Between {
     pub(crate) response: Vec<Interval>,
 }
 
-/// A flight, whoever commands it.
+/// A flight with its command left free: the data of the linear programme.
 #[derive(Clone, Debug)]
 pub struct Question {
     pub(crate) dt_s: f64,

@@ -1,4 +1,4 @@
-//! The limit: proved from below, reached from above.
+//! The performance limit of a flight: lower bound by duality, upper bound by simulation.
 
 use fspid_sim::Scenario;
 

@@ -1,4 +1,4 @@
-//! What a controller spends: how far the elevator or the command goes.
+//! Control effort: the total travel of elevator or command.
 
 /// Whose way counts as travel: the sum of the sizes of its changes from sample to sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

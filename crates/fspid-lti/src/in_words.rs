@@ -1,4 +1,4 @@
-//! Numbers in messages, none of which a reader has to know the bits of.
+//! Formatting of numbers in error messages: NaN and infinities are spelled out.
 
 use std::fmt;
 

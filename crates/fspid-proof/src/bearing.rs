@@ -1,4 +1,4 @@
-//! What a claim, once its inequalities are proved, says of the loop as it flies.
+//! What a proved claim implies for the flown loop: whether loop and gains of the certificate are those of the scenario.
 
 use core::fmt;
 
@@ -8,7 +8,7 @@ use crate::certificate::{Certificate, Claim};
 use crate::recheck::Rechecked;
 use crate::scope::LeftOut;
 
-/// What proved inequalities bear on.
+/// What the proved inequalities imply for the flown loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bearing {
     /// The flown loop is stable, within the scope that the certificate states.

@@ -1,4 +1,4 @@
-//! What a disturbance that moves as it likes does to the loop at most, from rest.
+//! Input-output bounds from rest: the worst-case effect of an arbitrary disturbance on pitch and command (L2 gain and peak).
 //!
 //! A certificate of stability speaks of loads that stand still and of calm air. Here a disturbance w is any signal,
 //! between samples too. Over a sample it adds $E u$ to the state of the plant, with $|u|^2$ no more than its energy over

@@ -1,4 +1,4 @@
-//! An ellipsoid in which no limit acts, so that the linear proof is one of the loop with its limits.
+//! Ellipsoidal region of attraction in which no limit is active, so that the linear proof holds for the loop with its limits.
 //!
 //! Where $z^T P z$ decreases, a state that is inside of $z^T P z \le c$ stays inside. With
 //!

@@ -1,4 +1,5 @@
-//! What gains that remember make of the part of the command that stands still.
+//! Accumulating gains times a constant: the deviation of a remembered gain from its equilibrium as an extra state of the
+//! loop.
 //!
 //! With a set-point weight b other than 1 the command that holds a set-point r has a part $h(k_p) = k_p (b - 1) r$, and
 //! off rest it is off by $c d$, with $d = k_p - k_0$ counted from the gain at rest and a bounded c. Under the

@@ -1,4 +1,4 @@
-//! Where a loop comes to rest while set-point and load stand still, and what its command does there.
+//! Equilibria of a loop under constant set-point and load, and the command there.
 
 use fspid_core::{Fspid, IntegralForm, Law, SecondInput};
 use fspid_numeric::scalar::Interval;

@@ -1,4 +1,4 @@
-//! What a claim is made for, and what it leaves out.
+//! The scope of a claim: set-points and loads that it covers, and the effects that it excludes.
 
 use core::fmt;
 
@@ -96,7 +96,7 @@ pub struct Scope {
     pub left_out: Vec<LeftOut>,
 }
 
-/// What a claim does not speak of. The sentence is its `Display`.
+/// An effect that a claim excludes. The sentence is its `Display`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum LeftOut {
     /// Rounding of the controller's own arithmetic.

@@ -1,4 +1,5 @@
-//! Whether something grows about the trims of a nonlinear aircraft: pitch, everything else, and the modes of an autopilot.
+//! Local stability of a nonlinear aircraft about each of its trims: the pitch loop, the lateral and airspeed dynamics, and
+//! every mode of the autopilot.
 
 use fspid_core::Gains;
 use fspid_lti::{eigenvalues, modulus};

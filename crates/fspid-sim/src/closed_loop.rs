@@ -1,4 +1,4 @@
-//! The loop itself: measure, decide, move.
+//! The simulation loop of one flight: measure, compute the command, advance the plant by one sample.
 
 use crate::aircraft::AircraftSample;
 use crate::instant::Instant;

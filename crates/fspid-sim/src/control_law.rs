@@ -10,7 +10,7 @@ use crate::aircraft::AircraftSample;
 use crate::external::{Answers, Asked, ControllerLoss};
 use crate::in_flight::Seen;
 
-/// What a control law wants at a sample.
+/// Outputs of a control law at one sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LawAnswer {
     /// The command of the elevator from the trim, nose up positive, rad.

@@ -1,4 +1,4 @@
-//! Controllers that have no equations here: programs that are asked for a command at each sample.
+//! Controllers without equations in this crate: external programs that are asked for a command at each sample.
 //!
 //! What is known of one is its file. Whoever starts it is not here either: a process is no business of a simulation, and
 //! a program that can start some says so once with [`set_host`].
@@ -14,7 +14,7 @@ use crate::error::SimError;
 use crate::flight_stack::{FlightStack, Unfit};
 use crate::{AircraftSample, Seen};
 
-/// A controller that is asked and not computed.
+/// A controller that runs as an external program.
 #[derive(Clone, Debug, PartialEq)]
 pub struct External {
     /// What is loaded.
@@ -40,7 +40,7 @@ pub struct Renamed {
     pub name: String,
 }
 
-/// What a controller takes and answers, and a plant.
+/// A signal exchanged with an external controller or plant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// The commanded pitch.
@@ -110,7 +110,7 @@ impl fmt::Debug for Contents {
     }
 }
 
-/// What an external controller is.
+/// Kind and location of an external controller.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ExternalSource {
     /// A shared library with the functions of `fspid_external.h`.
@@ -222,7 +222,7 @@ pub enum ControllerLoss {
     Foreign(Foreign),
 }
 
-/// What came that is not of a flight stack's protocol.
+/// Received data that does not follow a flight stack's protocol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Foreign {
     /// A packet that begins with another number.
@@ -356,7 +356,7 @@ pub trait Answers: fmt::Debug + Send {
     }
 }
 
-/// What an external controller asks for beside its command.
+/// Requests of an external controller in addition to its command.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Asked {
     /// The throttle, as a fraction of its travel.
@@ -375,7 +375,7 @@ impl Answers for Lost {
     }
 }
 
-/// What starts external controllers.
+/// Launcher of external controllers, provided by the host program.
 pub trait Host: Send + Sync {
     /// Starts one, at rest. One that is lost on the way answers with that loss.
     ///

@@ -112,7 +112,7 @@ pub enum JsbsimSpeed {
     Mach(f64),
 }
 
-/// What a simulator says of its aircraft at a sample.
+/// State of an external simulator's aircraft at one sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PlantSample {
     /// Pitch angle, rad.
@@ -286,7 +286,7 @@ impl fmt::Display for PlantLoss {
     }
 }
 
-/// What a simulator is told before a flight.
+/// Initial conditions given to a simulator before a flight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Beginning {
     /// Length of its steps, s.
@@ -300,7 +300,7 @@ pub struct Beginning {
     pub moves_throttle: bool,
 }
 
-/// What enters one step of a simulator.
+/// Inputs of one simulator step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepInput {
     /// Elevator in its middle, trailing edge down positive, rad.
@@ -309,7 +309,7 @@ pub struct StepInput {
     pub air_m_s: [f64; 3],
 }
 
-/// What is held over a sample.
+/// Inputs that are held constant over a sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SampleInput {
     /// The throttle that is asked for, 0 to 1; nobody hears of it where nothing moves it.
@@ -332,7 +332,7 @@ pub trait Simulates: fmt::Debug + Send {
     ) -> Result<PlantSample, PlantLoss>;
 }
 
-/// What starts other simulators.
+/// Launcher of external simulators, provided by the host program.
 pub trait PlantHost: Send + Sync {
     /// Starts a flight.
     ///

@@ -1,4 +1,5 @@
-//! Extends a flight of a linear plant behind limits that has not come to rest, to see whether it settles.
+//! Extended simulation of a linear plant behind limits whose flight has not come to rest, or ends in a limit cycle: does it
+//! settle when the simulation continues past the end of the flight?
 //!
 //! Around a rest that limits leave, small motions decay; a swing that meets limits may grow from there on, or stay. Of such a
 //! flight nothing at rest speaks, so that it is flown on: with what is held at its end, and with what swings.

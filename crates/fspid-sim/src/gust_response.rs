@@ -1,4 +1,4 @@
-//! What air that changes within a sample adds to a linear plant.
+//! The response of a linear plant to gusts and turbulence that vary within one sample.
 //!
 //! A sample is flown with the air held as it is at its beginning, which is what a trace shows, and by superposition what the
 //! change since then adds is computed apart, once for all controllers:

@@ -1,4 +1,5 @@
-//! Whether limits leave what holds a plant where its flight ends that does not come to rest by itself.
+//! Saturation at the end of a flight: whether actuator and command limits leave enough authority to hold an unstable or
+//! integrating plant at the final set-points and loads.
 //!
 //! Around a rest limits do not act. Where there is none, because what is held takes more command than there is, a plant that is
 //! unstable by itself, or integrates, leaves for good, however stable the loop would be around it.

@@ -1,4 +1,4 @@
-//! What enters a linear plant at every sample whoever commands it.
+//! Inputs of a linear plant that do not depend on the controller: disturbances and gusts at every sample.
 
 use crate::error::SimError;
 use crate::plant::LinearPlant;

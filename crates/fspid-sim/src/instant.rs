@@ -1,4 +1,4 @@
-//! A loop at one sample.
+//! Everything observable of a loop at one sample: set-point, motion, measurement, gains, command.
 
 use fspid_core::Step;
 

@@ -7,7 +7,7 @@
 //! with noise and delay. Without them the loop is that of the paper, bit for bit.
 //!
 //! No features. Not here: measures and verdicts (`fspid-study`). [`stability`] is the exception that the loop itself
-//! must answer: whether fixed gains hold the plant at all.
+//! must answer: whether it is locally stable at all, about each equilibrium, with fixed gains, self-tuners and autopilots alike.
 #![cfg_attr(
     test,
     allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")

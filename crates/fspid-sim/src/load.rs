@@ -1,4 +1,5 @@
-//! What a constant load does to a loop around rest, and whether the controller takes it off again.
+//! Rejection of constant loads: the steady-state effect of a constant disturbance at the servo, and whether the controller
+//! removes it within the flight.
 //!
 //! A trim that is off, a shifted centre of gravity, a biased servo: each is a constant at the servo. An integral takes
 //! its effect away in time; a controller without one, or whose integral is slow beside the flight, does not.

@@ -27,7 +27,7 @@ impl ElevatorSign {
     }
 }
 
-/// What is controlled.
+/// The plant.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Plant {
     /// A transfer function.

@@ -1,5 +1,6 @@
-//! The ways from one sample to the next: plant and actuator as one linear system, leg by leg of the actuator, in an
-//! aircraft, or in another simulator. All stages of a flight are of one kind, so that a motion always meets its own.
+//! Propagation of plant and actuator over one sample, by one of four methods: a single linear system, segment by segment of a
+//! nonlinear actuator, numerical integration of an aircraft, or another simulator. All stages of one flight use the same
+//! method, so that its state keeps one form when the plant changes.
 
 use crate::actuated::{Actuated, ActuatedState, Held};
 use crate::aircraft::{AircraftFlight, AircraftMotion, AircraftSample};

@@ -1,4 +1,5 @@
-//! Flights again, with something else than the supervisor's answer: what tells adaptation from answers to the moment.
+//! Replays flights with other gains than the supervisor's: separates adaptation to the plant from scheduling on the
+//! manoeuvre.
 //!
 //! Only the gains are replaced. What follows them, memory, reference model, limits, servo and sensors are those of the
 //! flight, so that a flight replayed with its own gains, or its own inputs, has its own bits, and one at the nominal gains

@@ -26,7 +26,7 @@ pub struct NamedController {
     pub controller: Controller,
 }
 
-/// One of those who answer, with equations or without.
+/// A controller of the scenario, internal or external.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Flyer<'a> {
     /// With equations.
@@ -64,7 +64,7 @@ impl<'a> Flyer<'a> {
     }
 }
 
-/// What answers samples.
+/// The controller that computes the commands of a flight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Respondent<'a> {
     /// Equations.

@@ -1,7 +1,10 @@
-//! Whether fixed gains hold the plant: the spectral radius of the sampled closed loop.
+//! Local stability of a scenario's loops: the spectral radius of the sampled closed loop, linearised about each equilibrium.
 //!
-//! A loop that grows slowly looks good in a short window. This looks at its one-sample matrix
-//! instead, the [`loop_model`](crate::loop_model)'s.
+//! A slow divergence looks good in a short window. This asks the poles of the one-sample transition matrix instead, the
+//! [`loop_model`](crate::loop_model)'s. [`instability`] judges fixed gains about the origin; [`growth_at_rest`] judges every
+//! controller at every equilibrium of the scenario: self-tuners with the gains that they have there, nonlinear aircraft by
+//! their linear model at the trim, autopilots by the poles of each mode. Not here: large motions, which need a certificate
+//! (`fspid-proof`), and gains that move.
 
 use fspid_core::{Gains, PidConfig};
 use fspid_lti::{Complex, Matrix, eigenvalues, spectral_radius};
@@ -21,7 +24,7 @@ pub use crate::held_limits::{lost_at_a_limit, lost_when_flown};
 /// A radius this close below 1 cannot be told from 1 after rounding; it counts as unstable.
 const MARGIN: f64 = 1e-9;
 
-/// A loop with fixed gains that does not hold.
+/// An unstable closed loop: how unstable, from when, and about which equilibrium.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unstable {
     /// Spectral radius of the sampled closed loop, 1 or above.
@@ -136,16 +139,16 @@ fn is_in_range(closed: &Matrix) -> Result<(), SimError> {
     Ok(())
 }
 
-/// Whether a loop grows around rest, whoever's gains they are and whatever limits act elsewhere.
+/// Local instability of a loop about its equilibria, for every kind of controller; limits that do not act there are left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GrowthAtRest {
-    /// The first plant and rest around which something grows for certain.
+    /// The first plant and equilibrium that are certainly unstable.
     pub certain: Option<Unstable>,
-    /// Where nothing grows for certain: the first at which that is not decided.
+    /// Where none is certainly unstable: the first equilibrium whose stability is undecided.
     pub undecided: Option<Undecided>,
 }
 
-/// A rest of which nobody can tell whether it holds.
+/// An equilibrium whose local stability could not be decided.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Undecided {
     /// What is held meanwhile.

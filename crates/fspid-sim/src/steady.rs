@@ -1,4 +1,5 @@
-//! What of a scenario stands still: the set-points and loads around which its loop comes to rest.
+//! The constant operating conditions of a scenario: set-points, loads and sensor offsets that last, and so define the loop's
+//! equilibria.
 
 use fspid_core::PidConfig;
 

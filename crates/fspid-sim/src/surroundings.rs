@@ -1,4 +1,4 @@
-//! What a flight has beyond plant and actuator: moving air and sensors.
+//! The environment of a flight beyond plant and actuator: wind, gusts and turbulence, and sensor models.
 
 use crate::actuated::Held;
 use crate::air::{AirMotion, AirPlace, GRID_S, Grid, Shaping, Turbulence, Wind, sum_at};

@@ -1,4 +1,4 @@
-//! What happened: the columns of a flight.
+//! Time histories of a flight: its columns, one value a sample, and how it ended.
 
 use fspid_aircraft::Departure;
 use fspid_core::{Faults, Gains};

@@ -83,7 +83,7 @@ const SPEED_BY_PITCH: usize = 3;
 const FLIGHT_PATH: usize = 4;
 const BEAM: usize = 5;
 
-/// With the gains of `checks/autopilot/poles.py`.
+/// With the gains of `oracles/make_outer_loop_poles.py`.
 fn loops() -> Vec<OuterLoop> {
     use Quantity as Q;
     vec![

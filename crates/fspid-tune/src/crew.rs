@@ -1,4 +1,4 @@
-//! Who flies what searches and contests ask for: threads of this machine, or others who get it as orders.
+//! Execution of flights for searches and contests: on threads of this machine, or by external workers that receive orders.
 //!
 //! ```text
 //! points ─order▶ engine ─parts of it▶ workers ─flights, their numbers as bits▶ engine ─▶ scores

@@ -1,4 +1,4 @@
-//! What a candidate is worth: costs of flights, and how they become one.
+//! Scalar cost of a candidate: how the costs of its flights are combined.
 
 use fspid_campaign::engine::FlightResult;
 use fspid_scenario::requirement::Requirement;

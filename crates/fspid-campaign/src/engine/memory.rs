@@ -1,4 +1,4 @@
-//! Memory that flights leave to the next ones: asking the system for it again costs as much as measuring a flight.
+//! Reuse of trace buffers from flight to flight: allocating them anew costs as much as measuring a flight.
 
 use fspid_core::Faults;
 use fspid_sim::batch::LANES;

@@ -1,4 +1,4 @@
-//! What measures need of flights side by side: a few columns of all lanes, made traces at the end.
+//! Recording of flights that are simulated in lanes: the few columns that measures need, assembled into traces at the end.
 
 use fspid_core::Faults;
 use fspid_sim::batch::BatchRow;

@@ -1,4 +1,4 @@
-//! Random numbers of a place in the search, and of nothing else: no order and no thread shows in them.
+//! Counter-based random numbers, keyed by their place in the search: independent of order and of threads.
 
 use fspid_scenario::dispersion::{SEED_LIMIT, standard_normal};
 use rand_chacha::ChaCha8Rng;

@@ -1,4 +1,4 @@
-//! The ladder: levels of the score that are a fifth as likely each as the one before, found by a team that climbs ahead.
+//! Intermediate levels of subset simulation: each has a conditional probability of a fifth, set by a pilot team.
 //!
 //! Levels and lengths of steps are chosen here, from flights that count for nothing else. The teams that follow take both as
 //! given, so that what they count is not biased by the choice.

@@ -1,4 +1,4 @@
-//! The limit state of flights: how near a flight is to not meeting a requirement.
+//! The limit-state function of rare-event estimation: how far a flight is from violating a requirement.
 
 use fspid_scenario::dispersion::{Dispersion, Distribution, Drawn, SEED_LIMIT, standard_normal};
 use fspid_scenario::file::{NewValue, SettingPath, Study, known_words};

@@ -1,4 +1,4 @@
-//! Teams that climb a ladder, each on its own: each has an estimate of the probability, and together they say how sure it is.
+//! Independent repetitions (teams) of subset simulation: each gives an estimate, and their scatter the confidence interval.
 //!
 //! $$ \hat p = \prod_{j=1}^{m} \frac{n_j}{n} \cdot \frac{f}{n}, \qquad E[\hat p] = p $$
 //!

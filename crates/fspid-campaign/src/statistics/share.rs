@@ -1,4 +1,4 @@
-//! Which parameter the spread of a measure comes from.
+//! Variance-based sensitivity: the share of a measure's variance that each parameter explains.
 
 use std::collections::BTreeMap;
 

@@ -31,7 +31,7 @@ fn covered(
     (holding, given, estimates / given.max(1) as f64)
 }
 
-/// `checks/rare/coverage.sh` asks a hundred seeds of each case down to 10⁻⁹. Of 60 intervals that hold with 95 % fewer than
+/// `checks/rare/intervals.sh` asks a hundred seeds of each case down to 10⁻⁹. Of 60 intervals that hold with 95 % fewer than
 /// 49 do once in 20 000.
 #[test]
 fn ninety_five_intervals_of_a_hundred_hold_the_probability() {

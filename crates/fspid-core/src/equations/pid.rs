@@ -1,4 +1,4 @@
-//! From the gains of a sample to its command.
+//! The PID equations of one sample: from gains and inputs to the command.
 
 use fspid_numeric::{Real, Scalar};
 

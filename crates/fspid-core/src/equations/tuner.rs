@@ -1,4 +1,4 @@
-//! From a sample to what the supervisor sees, and from its increments to the gains.
+//! The self-tuning equations of one sample: scaling of the supervisor's inputs, and gains from its increments.
 
 use fspid_numeric::{Real, Scalar};
 

@@ -1,4 +1,4 @@
-//! One question, one answer for each output.
+//! Evaluation of a fuzzy system at one input vector.
 
 use core::fmt;
 

@@ -1,5 +1,5 @@
-//! Loops with dead times of any number of samples: whether they hold, at a cost that grows with the samples and not with
-//! their cube.
+//! Stability of loops with long dead times: unstable poles are counted by winding number, at a cost linear in the number of
+//! delay samples.
 //!
 //! A dead time is no state here but a power of z. What it multiplies is a small system, so that the closed loop's
 //! poles are the zeros of

@@ -1,4 +1,4 @@
-//! How often the characteristic function turns around 0 along a circle.
+//! Winding number of the characteristic function about 0 along a circle.
 
 use core::f64::consts::PI;
 

@@ -1,4 +1,4 @@
-//! How far a loop is from its limit of stability.
+//! Stability margins of continuous loops with dead time: gain, phase and delay.
 
 use core::f64::consts::PI;
 

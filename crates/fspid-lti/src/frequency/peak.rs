@@ -1,4 +1,4 @@
-//! The highest points of closed-loop responses of continuous loops.
+//! Resonance peaks of the closed-loop frequency response of continuous loops: sensitivity and complementary sensitivity.
 
 use super::FrequencyResponse;
 use crate::error::LtiError;

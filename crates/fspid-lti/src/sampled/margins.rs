@@ -20,7 +20,7 @@ pub struct SampledCrossover {
     pub delay_s: f64,
 }
 
-/// What is known of the stability of a sampled loop.
+/// Stability of a sampled loop, as far as it is known.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Stability {
     /// All closed-loop poles lie within the unit circle.
@@ -69,7 +69,7 @@ pub struct SampledMargins {
     pub spectral_radius: f64,
 }
 
-/// What is proved of the peaks of a stable loop.
+/// Proved bounds on the peaks of a stable loop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Proved {
     /// Of the largest sensitivity.

@@ -1,4 +1,4 @@
-//! A sampled loop in the coordinates in which its response costs least and loses least.
+//! Similarity transformation of a sampled loop for fast and accurate frequency responses.
 
 use super::quick::hessenberg;
 use crate::balance::balance;

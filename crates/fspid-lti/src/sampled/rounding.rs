@@ -1,4 +1,4 @@
-//! Whether the poles of a loop are known well enough to call it stable or unstable.
+//! Error bounds of computed poles: can a loop be called stable or unstable in spite of rounding?
 
 use super::reduced::Reduced;
 use crate::complex::{Complex, modulus, quotient};

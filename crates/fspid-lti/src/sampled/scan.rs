@@ -1,4 +1,4 @@
-//! Where a function changes its sign, once the places at which it may are known from elsewhere.
+//! Sign changes of a function between known candidate frequencies: bracketed roots.
 
 /// Steps of one search; halving alone needs some sixty for all digits.
 const STEPS_MAX: usize = 200;

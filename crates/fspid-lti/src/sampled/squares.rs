@@ -1,4 +1,4 @@
-//! Where a loop has the gain 1 and where it is real, as eigenvalues of matrices of its own order.
+//! Gain and phase crossover frequencies of a sampled loop as eigenvalue problems of the loop's own order.
 
 use super::quick::quick_eigenvalues;
 use super::reduced::Reduced;

@@ -1,4 +1,4 @@
-//! What a disturbance that moves as it likes may do to a plant within a sample.
+//! Effect of an arbitrary disturbance on a sampled plant within one sample, bounded by its energy (controllability Gramian).
 //!
 //! For every disturbance w whose square can be integrated over the sample, by Cauchy and Schwarz,
 //!

@@ -1,4 +1,4 @@
-//! Whether boxes leave nothing of a box out.
+//! Coverage test: do the given boxes cover a box of parameters completely?
 
 /// Ends of each side.
 type Ends = [[f64; 2]];

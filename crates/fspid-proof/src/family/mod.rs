@@ -100,7 +100,7 @@ pub struct Family {
     pub pace: Option<Pace>,
 }
 
-/// What was re-checked of a family.
+/// Result of a family's re-check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CheckedFamily {
     /// Parts.

@@ -1,4 +1,4 @@
-//! What numbers that move within a sample add to the loops of a part.
+//! Additional uncertainty of a part's loops when parameters vary within a sample.
 
 use fspid_numeric::scalar::Interval;
 

@@ -1,4 +1,5 @@
-//! Looks for the pace at which the numbers of a proved family may move: patches of the box that overlap, and a form for each.
+//! Search for the admissible rate of parameter variation in a proved family: overlapping patches of the parameter box, each
+//! with a Lyapunov function of its own.
 
 use fspid_lti::{Matrix, spectral_radius};
 

@@ -1,4 +1,4 @@
-//! Scales of sensors between bounds.
+//! Uncertain sensor scale factors between bounds.
 
 use fspid_numeric::scalar::Interval;
 use fspid_sim::loop_model::LoopSettings;

@@ -1,4 +1,5 @@
-//! Looks for the proof of a family: a form at the middle of a part, asked for the whole part, which is cut where it fails.
+//! Search for a family's proof: a Lyapunov function for the midpoint of a part is verified for the whole part, which is
+//! bisected where that fails.
 
 use fspid_lti::Matrix;
 use fspid_numeric::scalar::Interval;
@@ -21,7 +22,7 @@ const MOST_LOOKS: usize = 3 * MOST_PARTS;
 /// A part of this share of the box along each side that is still open stays so.
 const SMALLEST: f64 = 1.0 / 1024.0;
 
-/// What came of a family.
+/// Outcome of the search for a family's proof.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FamilyVerdict {
     /// Every member is stable.

@@ -1,4 +1,4 @@
-//! The plane of the supervisor's inputs in double cones.
+//! Partition of the supervisor's input plane into double cones.
 
 use core::f64::consts::PI;
 

@@ -1,4 +1,4 @@
-//! What gains that move make of the part of the command that stands still.
+//! Varying gains times a constant: bounds on how the part of the command that holds the set-point varies with the gains.
 //!
 //! At rest with a constant set-point the command holds the plant, and a constant part of it is multiplied by
 //! a gain: $A k_p + C k_i$, with A and C within bounds. Off rest that part moves with the gains, by

@@ -1,4 +1,4 @@
-//! Gains over any box of the supervisor's inputs, enclosed as they are asked for.
+//! On-demand enclosures of the gains over arbitrary boxes of the supervisor's inputs.
 
 use fspid_core::fuzzy::OutOfRange;
 use fspid_core::{Law, SelfTuner, SetCentres};

@@ -1,4 +1,4 @@
-//! Gains that a tuner really produces, computed as it computes them.
+//! Gains that a tuner attains at given inputs, computed by its own arithmetic; inner points of the gain set.
 
 use fspid_core::{GainLimits, Gains, Law, Limits, SelfTuner};
 

@@ -1,4 +1,4 @@
-//! Which combinations of gains an accumulating law reaches: a convex body, not the box around it.
+//! The reachable set of an accumulating law's gains: a convex body, tighter than its bounding box.
 //!
 //! The three gains are means of three increments of the *same* inputs, each with the same weights:
 //!

@@ -1,4 +1,4 @@
-//! How steep the increments of the gains are over the supervisor's inputs.
+//! Bounds on the slopes of the gain increments with respect to the supervisor's inputs.
 
 use fspid_core::fuzzy::OutOfRange;
 use fspid_core::{Law, SelfTuner, SetCentres};

@@ -68,7 +68,7 @@ pub struct Nonlinear {
     pub level: f64,
 }
 
-/// What was re-checked of a claim about the nonlinear aircraft.
+/// Result of the re-check of a claim about the nonlinear aircraft.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CheckedNonlinear {
     /// Matrices between which every sample lies.

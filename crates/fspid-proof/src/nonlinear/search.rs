@@ -55,7 +55,7 @@ const STIFF: usize = 2;
 /// Samples of the flight that the box has its shape of.
 const FLIGHT_SAMPLES: usize = 6000;
 
-/// What came of a claim about the nonlinear aircraft.
+/// Outcome of the search for a proof of the nonlinear aircraft.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NonlinearVerdict {
     /// Proved, with what its re-check found.
@@ -83,7 +83,7 @@ pub enum NotNonlinear {
     NotProved(NonlinearError),
 }
 
-/// Looks for a box around the trim that motions of the nonlinear aircraft do not leave, and in which they come to rest.
+/// Searches for an invariant neighbourhood of the trim in which motions of the nonlinear aircraft converge to it.
 ///
 /// # Errors
 /// As [`certify`](crate::certify).

@@ -64,7 +64,7 @@ impl Default for Effort {
     }
 }
 
-/// What came of it.
+/// Outcome of a proof attempt.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
     /// The answer, for the whole range of set-points and loads that was asked for.

@@ -1,4 +1,4 @@
-//! Claims about all gains, of the box around them first.
+//! Re-check of claims for all gains, starting with their bounding box.
 
 use fspid_numeric::scalar::Interval;
 use fspid_sim::loop_model::LoopModel;

@@ -30,7 +30,7 @@ pub(crate) use disturbed::DrivenLoop;
 pub(crate) use moving::{Corner, part_in};
 pub use remains::Remains;
 
-/// What was re-checked.
+/// Result of a certificate's re-check.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rechecked {
     /// Boxes of gains that cover everything the tuner can produce.

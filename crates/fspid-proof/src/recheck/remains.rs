@@ -1,5 +1,4 @@
-//! What remains of every motion where something of bounded size never ceases: resolution of the sensors, and
-//! what is not known of the rules to the last digit.
+//! Ultimate bound under persistent bounded disturbances: sensor resolution, and uncertainty of the rules in the last digit.
 //!
 //! With $M^T P M \prec \rho^2 P$ and $z^+ = M z + b_1 w_1 + \dots$, in the norm of P
 //!

@@ -1,4 +1,4 @@
-//! Finite sequences of matrices, written as runs of one letter after the other.
+//! Finite switching sequences of matrices, stored run-length encoded.
 
 /// Least excess of a product's spectral radius over 1 that counts: well above the rounding of eigenvalues.
 const EXCESS_MIN: f64 = 1e-7;

@@ -77,7 +77,7 @@ pub struct Group {
     pub loads_rad: Vec<f64>,
 }
 
-/// What was proved of the flights that a scenario commands.
+/// Proved result for the commanded flights of a scenario.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ended {
     /// Largest set-point, rad.

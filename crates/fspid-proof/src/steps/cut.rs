@@ -1,4 +1,4 @@
-//! What limits make of a number: straight lines through the ends of its range, and how far the limit is from them.
+//! Affine enclosures of saturation functions: the secant through the ends of a range, and the largest deviation from it.
 //!
 //! For a function f of one number between a and b and any slope m, $f(x) = m x + c + \rho \nu$ with $|\nu| \le 1$, where c is
 //! the middle of $f(x) - m x$ and ρ half its range. The slope is that of the line through both ends.

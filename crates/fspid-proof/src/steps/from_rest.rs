@@ -1,4 +1,4 @@
-//! A step from rest, at any time.
+//! Reachable sets of a step of the set-point or load from equilibrium, at any time.
 
 use super::commands::Commands;
 use super::crew::side_by_side;
@@ -39,7 +39,7 @@ pub struct Steps {
     pub loads: usize,
 }
 
-/// What was proved of steps.
+/// Proved result for steps from rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stepped {
     /// Largest step, rad.

@@ -1,4 +1,4 @@
-//! Sets of flights that have come to the same sample, joined to one.
+//! Merging of reachable sets at a common sample into one enclosing set.
 //!
 //! What they have in common is told apart: of every number what it moves by with the set-point and with the load, the same for
 //! all, and beside it whatever it may still be. A load that is all but made up for leaves little of that, so that what comes

@@ -1,4 +1,4 @@
-//! Flights from rest with the limits acting on the way.
+//! Reachable sets of step responses from rest with saturation: affine arithmetic until no limit can act any more.
 //!
 //! An ellipsoid in which no limit acts is small: a step of a degree leaves it at once. But the loop that is at rest when its
 //! set-point steps has one state alone, and all flights of a range of steps differ in two numbers, set-point and load. They

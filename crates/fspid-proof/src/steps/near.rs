@@ -1,4 +1,4 @@
-//! The gains that a loop can have near rest.
+//! Bounds on a loop's gains near its equilibrium.
 
 use fspid_core::{Fspid, Gains};
 use fspid_fuzzy::system::System;

@@ -1,4 +1,4 @@
-//! Which box of set-points or loads is flown next, from one end of them to the other.
+//! Adaptive subdivision of a range of set-points or loads: which box is propagated next, from one end to the other.
 
 /// A box that was flown at once is followed by one so many times as wide.
 const WIDER: f64 = 1.5;

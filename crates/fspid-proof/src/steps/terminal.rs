@@ -1,4 +1,4 @@
-//! A form for the end of a step: in its ellipsoid no limit acts, and it is to be as large as it can be.
+//! Lyapunov function for the terminal set of a step: an ellipsoid, as large as possible, in which no limit is active.
 //!
 //! With the gains at rest, with rows $r_i$ to everything that is limited by $L_i$, and rows $s_j$ to what each gain
 //! multiplies,

@@ -1,4 +1,4 @@
-//! The form for the end of a step of gains that remember, whose ellipsoid reaches furthest along the flights that come to it.
+//! Terminal set for gains that remember: the ellipsoid that reaches furthest along the incoming trajectories.
 //!
 //! First comes the largest error near rest. While the error keeps to it, gains stay in a box, and the form falls at every
 //! corner of that box; neither a limit nor a larger error lies in its ellipsoid, and what is left of the flight of a step

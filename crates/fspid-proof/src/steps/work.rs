@@ -1,4 +1,4 @@
-//! Sets of flights with an account of their work, which a search and a check may not exceed.
+//! Work limits for the propagation of reachable sets, shared by search and re-check.
 
 use std::num::NonZero;
 use std::sync::Arc;

@@ -1,4 +1,5 @@
-//! The legs that an actuator passes through between two samples.
+//! The segments of an actuator's motion between two samples, each with its own linear law: following the command, rate
+//! limited, against a stop, in backlash.
 
 use super::{Actuator, ActuatorState, within};
 

@@ -1,4 +1,4 @@
-//! What changes about an aircraft in flight: how far configurations are out, and fuel.
+//! Aircraft parameters that vary during a flight: deployment of configurations (flaps, gear) and fuel mass.
 
 use fspid_aircraft::aerodynamics::varied::{Deployed, VariedModel};
 use fspid_aircraft::{Consumption, Departure, FuelledBody, Quantity, Range};
@@ -35,7 +35,7 @@ pub struct Fuel {
     pub consumption: Consumption,
 }
 
-/// What changes in a flight of a [`VariedModel`].
+/// Time-varying quantities in a flight of a [`VariedModel`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Changing {
     /// One for each configuration of the model, in its order.

@@ -1,4 +1,4 @@
-//! Where winds are not smooth, and how far a step may go so that it ends there.
+//! Discontinuities in the slope of winds and gusts, and step-size limits so that an integration step ends on each of them.
 
 use crate::air::{AirPlace, Wind};
 

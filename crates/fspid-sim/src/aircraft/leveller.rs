@@ -1,4 +1,4 @@
-//! What looks after the lateral motion while the controller of the study looks after pitch.
+//! A simple wing leveller: stabilises the lateral motion while the controller under study flies pitch.
 
 use fspid_aircraft::{AirMotion, Aircraft, Controls, ForceModel, RigidState, Trim, Vector3};
 

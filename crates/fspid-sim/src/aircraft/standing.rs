@@ -1,4 +1,5 @@
-//! The aircraft that a flight stands with: as it is at the start, after each change of a configuration, with an empty tank.
+//! The aircraft configurations at which a flight is trimmed and judged: at the start, after each change of configuration,
+//! with empty tanks.
 
 use fspid_aircraft::Trim;
 

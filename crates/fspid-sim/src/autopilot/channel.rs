@@ -1,4 +1,4 @@
-//! One controller of the cascade in flight.
+//! One controller of the autopilot's cascade during a flight: its state, engagement and output.
 
 use fspid_core::{Sample, State, Step};
 

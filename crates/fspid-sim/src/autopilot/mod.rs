@@ -51,7 +51,7 @@ use crate::controller::Controller;
 use crate::timing::Timing;
 use fspid_aircraft::ForceModel;
 
-/// What stands around the pitch loop.
+/// The autopilot around the pitch loop.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Autopilot {
     loops: Vec<OuterLoop>,

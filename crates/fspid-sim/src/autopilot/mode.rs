@@ -3,7 +3,7 @@
 use super::quantity::Quantity;
 use super::{Autopilot, Moves};
 
-/// What an engaged loop holds.
+/// Target of an engaged loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Target {
     /// What there was when it became engaged; over modes in which it stays engaged the same.
@@ -30,7 +30,7 @@ pub enum Side {
     Below,
 }
 
-/// What has to be so for a mode to begin.
+/// Engagement condition of a mode.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Condition {
     /// Which quantity.

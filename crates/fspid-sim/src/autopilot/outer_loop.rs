@@ -4,7 +4,7 @@ use super::quantity::Quantity;
 use crate::controller::Controller;
 use crate::sensor::Sensor;
 
-/// What an outer loop moves.
+/// The variable that an outer loop manipulates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Moves {
     /// The pitch set-point, rad, counted from the trim.

@@ -1,4 +1,5 @@
-//! What an outer loop can hold.
+//! The quantities that an outer loop can control: altitude, vertical speed, flight path angle, glide slope, airspeed,
+//! heading.
 
 use crate::aircraft::AircraftSample;
 

@@ -2,7 +2,7 @@
 
 use super::quantity::Quantity;
 
-/// What an autopilot does at a sample.
+/// State of the autopilot at one sample, as traces show it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AutopilotSample {
     /// Number of the mode, from 0.

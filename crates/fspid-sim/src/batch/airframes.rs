@@ -1,4 +1,4 @@
-//! The plants of all lanes between a look and the next: what a controller sees, and where its command goes.
+//! The plants of all lanes between two samples: measurements to the controllers, commands to the actuators.
 
 use super::lane::{Lanes, Mask};
 use super::plant::Plants;

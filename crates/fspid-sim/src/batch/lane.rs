@@ -1,4 +1,4 @@
-//! Numbers of all lanes, and truths about them as masks.
+//! Values of all lanes side by side, and comparisons between them as masks.
 
 /// One number a lane.
 pub(super) type Lanes<const W: usize> = [f64; W];

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// What a group of flights must have in common or must not have.
+/// Reason why flights cannot be simulated side by side: something that a group must share, or must not have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Refusal {

@@ -31,7 +31,7 @@ pub struct LimitCycle {
     pub residual: f64,
 }
 
-/// What describing functions say about limit cycles. An approximation: "none found" is no proof.
+/// Limit cycles predicted by describing functions. An approximation: "none found" is no proof.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LimitCycles {
     /// Nothing in the path of the command is limited.

@@ -1,4 +1,5 @@
-//! Everything that limits a command on its way to the surface, and its describing function.
+//! The nonlinearities between command and control surface (slew, rate and position limits, deadband, backlash), and their
+//! joint describing function.
 
 use fspid_aircraft::ForceModel;
 use fspid_core::{Limits, PidConfig};

@@ -20,7 +20,7 @@ pub struct OpenLoop {
     delay_s: f64,
 }
 
-/// What a command $\cos \omega t$ of amplitude 1 makes around the open loop.
+/// Open-loop frequency response to a command $\cos \omega t$ of amplitude 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Response {
     /// The open loop $L(e^{j \omega T})$: what comes back as a command, sign changed.

@@ -72,7 +72,7 @@ impl Default for EmpiricalOptions {
     }
 }
 
-/// Phase lag that a flight bears.
+/// Phase margin measured by simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhaseMargin {
     /// Frequency at which the all-pass has the lag, rad/s; at lower ones it has less, at higher more.
@@ -81,7 +81,7 @@ pub struct PhaseMargin {
     pub lag_rad: Margin,
 }
 
-/// How much gain, delay and lag a flight bears.
+/// Gain, delay and phase margins measured by simulation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EmpiricalMargins {
     /// Factor above 1 on the command.
@@ -103,7 +103,7 @@ pub struct EmpiricalMargins {
     pub flights: usize,
 }
 
-/// What the flights answered.
+/// Result of the margin search by simulation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum EmpiricalAnswer {
     /// The unperturbed flight holds, and bears so much.
@@ -119,7 +119,7 @@ pub enum EmpiricalAnswer {
     NothingMoves,
 }
 
-/// How much gain, delay and phase lag between controller and servo a flight of the scenario bears.
+/// Gain, delay and phase margins between controller and servo, measured by simulating the scenario.
 ///
 /// # Errors
 /// [`SimError`] where the scenario cannot be flown, or an aircraft has no linear model for the gain

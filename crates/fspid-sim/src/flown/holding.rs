@@ -1,4 +1,4 @@
-//! Whether a flight held: what its error did from one third of the flight to the next.
+//! Convergence test of a perturbed flight: compares the error in successive thirds of the flight.
 
 use std::fmt;
 use std::ops::ControlFlow;
@@ -46,7 +46,7 @@ impl Default for Criterion {
     }
 }
 
-/// What the error of a flight did.
+/// Evolution of a flight's error: its envelope over successive parts of the flight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Envelope {
     /// Largest error, rad.

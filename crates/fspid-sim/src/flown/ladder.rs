@@ -1,4 +1,5 @@
-//! Up a ladder to the first rung that fails, then by halves.
+//! Bracketing search for the largest perturbation that a flight tolerates: a ladder of sizes up to the first failure, then
+//! bisection.
 
 use super::Failure;
 use crate::error::SimError;

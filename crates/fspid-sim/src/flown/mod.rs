@@ -1,4 +1,4 @@
-//! What can be said of a loop by flying it, and along the way that it flew.
+//! Analysis by simulation: empirical stability margins, and linearisation along a flown trajectory.
 //!
 //! [`empirical`] asks how much gain, delay and phase lag the flown scenario bears, by bisection in the
 //! simulation itself: with every limit at work and with gains that move. [`trajectory`] linearises a

@@ -1,4 +1,4 @@
-//! What is put between controller and servo to see how much of it a flight bears.
+//! Perturbations inserted between controller and servo to measure margins by simulation: gain, delay, phase lag.
 
 use std::collections::VecDeque;
 
@@ -44,7 +44,7 @@ impl AllPass {
     }
 }
 
-/// What a command meets on its way from controller to servo; by default nothing.
+/// Perturbation inserted between controller and servo; by default none.
 ///
 /// In this order: the gain, the extra delay, the all-pass. The controller knows of none of them: its
 /// own limits and anti-windup act on the command that it gives.

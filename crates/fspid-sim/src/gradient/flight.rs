@@ -1,4 +1,4 @@
-//! Flights of a group forwards and backwards.
+//! Forward simulation and adjoint backward pass of a group of flights.
 
 use fearless_simd::dispatch;
 use fspid_numeric::InstructionSet;

@@ -1,4 +1,5 @@
-//! What every number of a controller is worth: exact gradients of what flights cost, by one way back through each flight.
+//! Gradients of flight costs with respect to every number of a controller: exact, by reverse-mode differentiation (adjoint)
+//! through the simulation.
 //!
 //! ```text
 //! numbers ─loop, sample by sample▶ error, travel ─cost

@@ -1,4 +1,4 @@
-//! The numbers of a controller in one row: what a gradient has an entry for.
+//! The parameter vector of a controller: the numbers that a gradient has components for.
 
 use fspid_core::equations::{GainNumbers, PidNumbers, TunerEquations, TunerNumbers};
 use fspid_core::fuzzy::{Network, Output};

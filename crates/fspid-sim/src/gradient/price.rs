@@ -1,4 +1,4 @@
-//! What flights cost, and what a little more of each of their samples costs.
+//! Costs of a flight (error and travel), and their derivatives with respect to each of its samples.
 
 use fspid_numeric::{InstructionSet, Scalar};
 
@@ -18,7 +18,7 @@ pub struct Flown {
     pub command_rad: Vec<f64>,
 }
 
-/// What a little more of each sample of a flight costs; samples that a column does not have cost nothing.
+/// Derivative of the cost with respect to each sample of a flight; samples missing from a column count as zero.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Slopes {
     /// By pitch, for each rad.
@@ -38,7 +38,7 @@ impl Slopes {
     }
 }
 
-/// What a flight costs: the sum of these times what it has.
+/// Weights of a flight's cost: a weighted sum of its measures.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Weights {
     /// Of $T \sum |r_k - \theta_k|$, rad s.

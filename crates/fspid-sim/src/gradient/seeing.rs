@@ -1,4 +1,4 @@
-//! What controllers of a group see of pitch and pitch rate, through sensors or as they are, forwards and backwards.
+//! The measurements of a group's controllers (pitch and pitch rate, with or without sensor models), forward and adjoint.
 //!
 //! What a sensor shows is a straight line between two samples of its quantity, and what is added is known before the
 //! flight (`View`). So backwards each thing that is shown hands its worth to the two samples that it was made of.

@@ -1,4 +1,5 @@
-//! A flight that stands at a sample and waits for a command: the loop, open where the controller stands.
+//! A flight that stops at each sample and waits for a command: the simulation loop with the controller left open, for callers
+//! who bring their own.
 
 mod small_motion;
 
@@ -19,7 +20,7 @@ use crate::sensor::{Sensor, SensorState, Truth};
 use crate::surroundings::held;
 use crate::trace::{EndCause, Outcome};
 
-/// What is there at a sample before anybody answers.
+/// Signals available at a sample before the command is computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seen {
     /// Index of the sample.

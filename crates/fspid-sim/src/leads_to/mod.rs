@@ -1,5 +1,5 @@
-//! Where a flight comes to that goes on: the airspeed and altitude to which set-points, the targets of modes, and configurations
-//! lead, with the throttle as it is where nobody moves it, and the way there where that lasts.
+//! The steady flight that a scenario ends in: the airspeed and altitude reached with the final set-points, mode targets and
+//! configuration, with the throttle fixed where nothing controls it. Climbs and turns on the way that last are included.
 
 mod targets;
 #[cfg(test)]
@@ -31,7 +31,7 @@ pub enum Leg {
     Turn,
 }
 
-/// A mode that leads an aircraft away from where it started.
+/// An autopilot mode whose steady flight differs from the initial trim.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Led {
     /// Number of the mode, from 0.

@@ -1,4 +1,4 @@
-//! What is written that modes hold.
+//! The targets that the modes of an autopilot hold, as the scenario states them.
 
 use crate::autopilot::{Autopilot, Mode, Quantity, Target};
 

@@ -1,4 +1,4 @@
-//! What the modes of a flight hold, one after another.
+//! Walks the autopilot's modes in order and collects which quantity each of them holds.
 
 use fspid_aircraft::trim::Power;
 use fspid_aircraft::{Trim, TrimTarget};

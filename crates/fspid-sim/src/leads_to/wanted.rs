@@ -1,4 +1,5 @@
-//! What is to be held, and the straight flight in which it is: the throttle no further than it may go, the path over the ground.
+//! The trim problem of an autopilot mode: the quantities to be held, and the straight flight that holds them within the
+//! throttle's limits and along the ground track.
 
 use fspid_aircraft::trim::{Held, Path, Power};
 use fspid_aircraft::{ForceModel, Trim};

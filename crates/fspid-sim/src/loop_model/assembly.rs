@@ -1,4 +1,4 @@
-//! From plant, queues and controller to one matrix.
+//! Assembles the loop's one-sample transition matrix from plant, delay queues and controller.
 
 use fspid_core::equations::{Memory, PidEquations};
 use fspid_core::{AntiWindup, Gains, PidConfig, Sample};

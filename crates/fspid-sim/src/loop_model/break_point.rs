@@ -1,4 +1,4 @@
-//! Where a loop is broken.
+//! The points at which the loop can be opened for margins.
 
 /// Where a loop is broken. At each point the signal there is replaced by another, and what comes back
 /// to the point, with its sign changed, is the open loop L: closed again, it is $1 + L = 0$.

@@ -1,4 +1,4 @@
-//! Ages of what sensors with clocks of their own show, sample by sample until they come again.
+//! Sample ages of sensors that run at rates of their own: the periodic sequence of delays until it repeats.
 
 use super::{LoopModel, Sensing};
 use crate::scenario::Scenario;

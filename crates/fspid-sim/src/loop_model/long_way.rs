@@ -1,4 +1,4 @@
-//! Loops in which so much is on its way that its samples are no states.
+//! Loop models with delays of so many samples that they are not expanded into states; stability is decided by winding number.
 
 use fspid_core::Gains;
 use fspid_lti::{DelayedLoop, DelayedPath, Matrix};

@@ -1,4 +1,4 @@
-//! What of a controller's memory is part of the loop.
+//! Which of a controller's internal states belong to the linear loop model: integral, derivative filter, previous sample.
 
 use fspid_core::{Gains, PidConfig};
 

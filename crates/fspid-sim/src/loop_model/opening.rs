@@ -1,4 +1,4 @@
-//! The loop broken at a named point, the others closed.
+//! The open loop at a named break point, with all other loops closed.
 
 use super::break_point::BreakPoint;
 use fspid_core::Gains;

@@ -1,4 +1,5 @@
-//! A loop taken apart, for what is not linear in its gains.
+//! The parts of a loop model kept apart (plant, delays, controller), for analyses in which the loop is not affine in the
+//! gains.
 
 use fspid_core::Gains;
 

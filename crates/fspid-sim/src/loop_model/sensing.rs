@@ -1,4 +1,4 @@
-//! How a linear loop sees a quantity through a sensor.
+//! Output equations of the linear loop with sensors: delay, scale and interpolation between samples.
 
 use crate::sensor::Sensor;
 use crate::timing::{Age, SAME_SAMPLE, count};

@@ -3,7 +3,7 @@
 use crate::leads_to::Led;
 use crate::loop_model::MOST_AS_STATES;
 
-/// Why nobody can tell whether a rest holds. A spectral radius is that of the sampled closed loop that is in doubt, as computed.
+/// Why the stability of an equilibrium is undecided. A spectral radius is that of the sampled closed loop that is in doubt, as computed.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Doubt {
     /// Rounding may carry poles across the unit circle.

@@ -1,4 +1,4 @@
-//! The rest of a self-tuner around the pitch loop.
+//! Steady state of a self-tuning outer loop around the pitch loop: the gains and slopes that it rests with.
 
 use fspid_core::{Fspid, Gains, IntegralForm, SecondInput};
 

@@ -1,4 +1,4 @@
-//! Whether the loops around a pitch loop hold at rest.
+//! Whether the outer loops around a pitch loop are stable about the trim.
 
 use fspid_diagnostics::digits::to_digits;
 use fspid_sim::{Controller, Scenario, SimError};

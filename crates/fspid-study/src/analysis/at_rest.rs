@@ -1,5 +1,4 @@
-//! What a controller's loop is at rest: its gains there, whether it is stable with them, and whether it takes a
-//! constant load off.
+//! A controller's loop at equilibrium: its gains there, its stability, and whether constant loads are rejected.
 
 use fspid_core::{Gains, Law};
 use fspid_diagnostics::digits::to_six_decimals;

@@ -1,4 +1,4 @@
-//! The way of a flight through the inputs of its supervisor.
+//! Trajectory of a flight in the plane of the supervisor's inputs.
 
 use fspid_core::{Change, ErrorSign, SecondInput};
 use fspid_sim::{Controller, simulate};

@@ -1,4 +1,4 @@
-//! What acts in flight and is not in the linear loop.
+//! Effects that act in flight and are neglected in the linear analysis: limits, deadband, quantisation and the like.
 
 use fspid_core::Law;
 use fspid_sim::loop_model::Sensing;

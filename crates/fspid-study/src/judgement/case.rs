@@ -1,4 +1,4 @@
-//! A value and where it was found: the step, the plant, the frozen gains, the frequency.
+//! The worst case behind a judged value: which step, plant, frozen gains or frequency it was found at.
 
 use std::fmt;
 

@@ -1,4 +1,5 @@
-//! What a little more of each sample of a flight changes of a measure, and measures of the linear loop without a flight.
+//! Derivatives of measures with respect to each sample of a flight, and of
+//! measures of the linear loop alone by differences.
 //!
 //! Every measure that is an integral, a sum of sizes or an extreme has a slope; at a corner (an error of zero, two samples
 //! that are the largest) it is that of one side. Times have none worth following: they jump.

@@ -1,4 +1,4 @@
-//! One number for a candidate that goes downhill: its cost and what it breaks.
+//! Exact-penalty merit function of descent methods: cost of a candidate plus its weighted constraint violation.
 
 use fspid_scenario::requirement::Requirement;
 use fspid_scenario::tuning::Tuning;

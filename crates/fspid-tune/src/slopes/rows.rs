@@ -1,4 +1,4 @@
-//! What a little more of each coordinate does to the cost and to each limit by itself.
+//! Gradients of the cost and of every constraint with respect to the search coordinates.
 
 use fspid_scenario::requirement::Requirement;
 use fspid_sim::Prepared;

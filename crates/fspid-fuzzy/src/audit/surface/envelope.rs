@@ -1,4 +1,4 @@
-//! The upper edge of all layers at given levels, and bounds of its centre of gravity.
+//! The upper envelope of all clipped or scaled output sets at given levels, and bounds of its centroid.
 
 use alloc::vec::Vec;
 

@@ -1,4 +1,4 @@
-//! What is searched for extremes: values, slopes, departures from symmetry, quotients.
+//! Objective functions of the audit's global search: output values, slopes, deviations from symmetry, quotients.
 
 use alloc::collections::BTreeSet;
 use alloc::vec::Vec;

@@ -1,4 +1,4 @@
-//! Who concludes what: the conclusions about an output, as few as can be told apart.
+//! Grouping of an output's rule conclusions: those with the same term and implication are merged before aggregation.
 
 use alloc::vec;
 use alloc::vec::Vec;

@@ -1,4 +1,4 @@
-//! What the conclusions about an output make together: a polygon, and the numbers read off it.
+//! The aggregated output set as a polygon, and the defuzzified values computed from it.
 
 use alloc::vec::Vec;
 

@@ -1,4 +1,4 @@
-//! How an output is computed, for those who write it in another language.
+//! The method by which an output is computed (closed form, quadrature, samples), for code generators.
 
 use alloc::vec::Vec;
 

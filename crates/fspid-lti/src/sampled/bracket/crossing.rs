@@ -1,4 +1,5 @@
-//! Zeros that are proved, beside those found by other means.
+//! Rigorous enclosures of the zeros of polynomials (crossover frequencies), around approximations that are found in ordinary
+//! arithmetic.
 
 use core::f64::consts::PI;
 

@@ -1,4 +1,4 @@
-//! How high a response is at a place, and the top of its peak there.
+//! Magnitude of a frequency response at a given frequency, bracketed, and the local maximum near it.
 
 use super::number::Number;
 use super::real::value_at;

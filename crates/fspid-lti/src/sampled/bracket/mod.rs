@@ -41,7 +41,7 @@ const ORDER_LONG: usize = 110;
 /// And up to this one it does not take seconds to do without pivots.
 const ORDER_WITHOUT_PIVOTS: usize = 64;
 
-/// What is proved of a number: it lies between these two.
+/// Rigorous enclosure of a number: proved lower and upper bound.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bracket {
     /// Reached, by evaluation at a frequency.

@@ -1,4 +1,5 @@
-//! The numbers of an aircraft's motion, read and moved one by one: what small motions are asked with.
+//! The state vector of a flying aircraft, with read and write access to each component: used to perturb it for linearisation
+//! by differences.
 
 use fspid_aircraft::{EulerAngles, HALF_POWER, Quaternion, Spool};
 

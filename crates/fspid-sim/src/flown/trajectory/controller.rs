@@ -1,4 +1,5 @@
-//! A controller's sample, and what a small change of what it sees and remembers makes of it.
+//! Linearisation of a controller at one sample: derivatives of its command and next state with respect to its inputs and its
+//! state.
 //!
 //! The equations are those that fly, [`fspid_core::equations`], asked with dual numbers; only the
 //! increments of the supervisor bring their derivatives along.

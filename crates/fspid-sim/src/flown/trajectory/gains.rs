@@ -1,4 +1,4 @@
-//! How the supervisor's increments change with what it sees.
+//! Derivatives of the supervisor's gain increments with respect to its inputs, along a flight.
 
 use fspid_core::SelfTuner;
 use fspid_fuzzy::Supervisor;

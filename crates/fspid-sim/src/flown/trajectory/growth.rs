@@ -1,4 +1,4 @@
-//! How a small disturbance grows over a flight.
+//! Growth of small perturbations over a flight: in a norm in which the loop at rest contracts.
 
 use core::convert::Infallible;
 

@@ -1,4 +1,5 @@
-//! Small motions of an aircraft with everything around its pitch loop: what one sample makes of them.
+//! Linearisation of an aircraft with its autopilot about a trim: the one-sample transition matrix, by differences of the
+//! flying code.
 //!
 //! The flying code itself is asked: a flight stands at the trim with one mode engaged for good, each of its numbers is moved
 //! a little either way, and one sample is flown. Limits are left out, gains are those at rest (what they make of what outer

@@ -1,4 +1,5 @@
-//! What gains of outer loops that move with their error add to the small motions of a mode.
+//! Contribution of self-tuning outer loops to the linearised motion: their gains vary with their error, and multiply the
+//! constant that holds the target.
 //!
 //! Of a self-tuner that holds a target r, a part of the command is the product of a gain that moves and a constant, as of the
 //! pitch loop ([`rest`](crate::rest)): $k_p (b - 1) r$, with 305 m of altitude in the place of a few degrees of pitch. Fixed

@@ -1,4 +1,4 @@
-//! The numbers of a flight about its trim: which of them count, read and moved one by one.
+//! The state vector that is linearised: which components of a flight belong to it, and read and write access to each.
 
 use fspid_core::{Gains, State};
 

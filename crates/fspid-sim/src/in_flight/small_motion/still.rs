@@ -1,4 +1,4 @@
-//! The flights about a trim whose small motions are asked: at rest in air that does not change, nothing limited.
+//! Reference flights for linearisation: at rest at a trim, in constant air, with no limit active.
 
 use fspid_core::{Gains, Pid, PidConfig};
 

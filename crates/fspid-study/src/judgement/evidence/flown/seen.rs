@@ -1,4 +1,4 @@
-//! Whether a flight goes on for long enough to show what is asked of it.
+//! Observation windows: is a flight long enough to show what a requirement asks?
 
 use std::ops::RangeInclusive;
 

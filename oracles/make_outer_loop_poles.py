@@ -3,18 +3,18 @@
 
 Writes crates/fspid-sim/tests/data/outer_loop_poles.csv, which a test of the simulation compares with:
 
-    python3 checks/autopilot/poles.py
+    python3 oracles/make_outer_loop_poles.py
 
 Needs numpy and scipy. The aircraft pitches only: u, w, q, theta, h. Lift and drag are linear in the angle of attack, the air
 and gravity are the same everywhere, and the thrust is in proportion to the throttle. The servo is a lag of 0.1 s, the engine
 one of 1 s. Derivatives: Nelson (1998), appendix B, as they stand in the data of the aircraft.
 """
 
-import pathlib
-
 import numpy as np
 import scipy
 from scipy.linalg import expm
+
+from fixture import CRATES
 
 FOOT, SLUG, POUND = 0.3048, 14.593902937206364, 4.4482216152605
 T = 0.02
@@ -197,13 +197,13 @@ def poles(mode):
 
 
 def main():
-    lines = [f"# by checks/autopilot/poles.py, numpy {np.__version__}, scipy {scipy.__version__}", "mode,re_1_s,im_1_s"]
+    lines = [f"# by oracles/make_outer_loop_poles.py, numpy {np.__version__}, scipy {scipy.__version__}", "mode,re_1_s,im_1_s"]
     for mode in CONTROLLERS:
         for s in poles(mode):
             lines.append(f"{mode},{s.real:.10e},{s.imag:.10e}")
             if abs(s.imag) < 3:
                 print(mode, f"{s.real:9.4f} {s.imag:9.4f}")
-    target = pathlib.Path(__file__).parents[2] / "crates/fspid-sim/tests/data/outer_loop_poles.csv"
+    target = CRATES / "fspid-sim/tests/data/outer_loop_poles.csv"
     target.write_text("\n".join(lines) + "\n")
 
 
