@@ -30,6 +30,8 @@ const STAYS: f64 = 0.99;
 const GROWN_IN_NOISE: f64 = 2.0;
 /// Swings whose extremes differ by no more than this share of their size repeat.
 const ALIKE: f64 = 1e-3;
+/// So many steps of a sensor's resolution are a swing that it makes by itself: about a place between two of them.
+const UNSEEN: f64 = 2.0;
 /// A flight that has shown so many periods of what swings has shown which limits are met.
 const PERIODS: f64 = 2.0;
 /// A limit of rate is met a thousandth before it, for rounding.
@@ -62,21 +64,11 @@ impl Span {
         (self.most_rad - self.least_rad).max(0.0)
     }
 
-    /// True for the end of a flight that stands still, of which `all` is the whole.
-    fn stands(self, all: Self) -> bool {
-        self.size_rad() <= RESTS * all.size_rad()
-    }
-
-    /// True for the end of a flight that has come to rest within the limits.
-    fn rests(self, all: Self) -> bool {
-        !self.meets && self.stands(all)
-    }
-
-    /// True for swings of the same extremes.
-    fn is_like(self, other: Self) -> bool {
+    /// True for swings of the same extremes, but for so much.
+    fn is_like(self, other: Self, but_rad: f64) -> bool {
         let apart_rad =
             (self.least_rad - other.least_rad).abs().max((self.most_rad - other.most_rad).abs());
-        apart_rad <= ALIKE * self.size_rad()
+        apart_rad <= ALIKE * self.size_rad() + but_rad
     }
 }
 
@@ -84,14 +76,19 @@ impl Span {
 struct Pieces<'a> {
     ends: &'a Ends,
     length: usize,
+    /// An error that moves by no more has not moved for a sensor of such a resolution.
+    unseen_rad: f64,
     samples: usize,
     all: Vec<Span>,
     before: Option<[f64; 2]>,
 }
 
 impl<'a> Pieces<'a> {
-    fn new(ends: &'a Ends, length: usize) -> Self {
-        Self { ends, length, samples: 0, all: Vec::new(), before: None }
+    fn new(scenario: &Scenario, ends: &'a Ends, length: usize) -> Self {
+        let resolution_rad =
+            scenario.surroundings.pitch_sensor.map_or(0.0, |it| it.model().resolution);
+        let unseen_rad = UNSEEN * resolution_rad;
+        Self { ends, length, unseen_rad, samples: 0, all: Vec::new(), before: None }
     }
 
     /// Takes a sample: its error, its command, what acts beside it at the servo, and the elevator.
@@ -116,10 +113,30 @@ impl<'a> Pieces<'a> {
         Span::of(&self.all)
     }
 
+    /// True for a part that stands still.
+    fn stands(&self, part: Span) -> bool {
+        part.size_rad() <= RESTS * self.whole().size_rad()
+    }
+
+    /// True for a part that has come to rest, within the limits or as well as its sensor sees.
+    fn is_at_rest(&self, part: Span) -> bool {
+        part.size_rad() <= self.unseen_rad || (!part.meets && self.stands(part))
+    }
+
     /// True where the last piece, whole, has come to rest.
     fn rests(&self) -> bool {
         self.samples.is_multiple_of(self.length)
-            && self.all.last().is_some_and(|it| it.rests(self.whole()))
+            && self.all.last().is_some_and(|it| self.is_at_rest(*it))
+    }
+
+    /// True where the last two pieces are whole and alike.
+    fn repeats(&self) -> bool {
+        match self.all.last_chunk() {
+            Some([one, other]) if self.samples.is_multiple_of(self.length) => {
+                one.is_like(*other, 0.0)
+            }
+            _ => false,
+        }
     }
 
     /// The last two pieces, one of them whole.
@@ -148,9 +165,9 @@ impl<'a> Pieces<'a> {
         end.meets
             && match (moved, moves) {
                 // What a limit keeps short of its set-point stands still there.
-                (Moved::Nothing, Moves::Back) if end.stands(self.whole()) => false,
+                (Moved::Nothing, Moves::Back) if self.stands(end) => false,
                 (Moved::Nothing, _) => grows(STAYS),
-                (Moved::BySwings, Moves::Away) => !fifth.is_like(fourth),
+                (Moved::BySwings, Moves::Away) => !fifth.is_like(fourth, self.unseen_rad),
                 (Moved::BySwings, Moves::On | Moves::Back) => grows(GROWN),
                 (Moved::ByNoise, _) => grows(GROWN_IN_NOISE),
             }
@@ -228,7 +245,7 @@ fn without_noise(scenario: &Scenario) -> Scenario {
 /// The flight itself in five pieces, and what is left.
 fn pieces_of<'a>(scenario: &Scenario, ends: &'a Ends, trace: &Trace) -> Pieces<'a> {
     let at_servo = scenario.loads_rad(Entry::Servo);
-    let mut pieces = Pieces::new(ends, (trace.rows() / 5).max(1));
+    let mut pieces = Pieces::new(scenario, ends, (trace.rows() / 5).max(1));
     for k in 0..trace.rows() {
         let load_rad = at_servo.as_ref().and_then(|it| it.get(k)).copied().unwrap_or(0.0);
         let error_rad = trace.setpoint_rad[k] - trace.theta_rad[k];
@@ -242,8 +259,12 @@ fn has_come_to_rest(scenario: &Scenario, pieces: &Pieces<'_>) -> bool {
     let whole = pieces.whole();
     match Moved::of(scenario) {
         // Of a few samples nothing is said.
-        Moved::Nothing => pieces.length >= LEAST_FIFTH && pieces.tail().rests(whole),
-        Moved::BySwings | Moved::ByNoise => !whole.meets && has_shown_its_swings(scenario),
+        Moved::Nothing => pieces.length >= LEAST_FIFTH && pieces.is_at_rest(pieces.tail()),
+        Moved::BySwings => {
+            has_shown_its_swings(scenario)
+                && (!whole.meets || (!pieces.tail().meets && pieces.repeats()))
+        }
+        Moved::ByNoise => !whole.meets && has_shown_its_swings(scenario),
     }
 }
 
@@ -268,7 +289,7 @@ fn flies_on_and_is_lost(
 ) -> Option<bool> {
     let rows = scenario.timing.rows();
     let prepared = held_on(scenario, (TIMES * rows).clamp(SAMPLES[0], SAMPLES[1]))?;
-    let mut pieces = Pieces::new(ends, (rows / 5).max(LEAST_FIFTH));
+    let mut pieces = Pieces::new(scenario, ends, (rows / 5).max(LEAST_FIFTH));
     let moved = Moved::of(scenario);
     let mut rested = false;
     let outcome = fly(&prepared, controller, |instant| {

@@ -171,7 +171,8 @@ fn a_flight_goes_on_with_what_its_end_holds_and_without_what_would_begin_later()
 }
 
 #[test]
-fn a_swing_that_is_followed_at_limits_is_in_doubt_of_a_plant_that_runs_away_where_it_does_not_repeat() {
+fn a_swing_that_is_followed_at_limits_is_in_doubt_of_a_plant_that_runs_away_where_it_does_not_repeat()
+ {
     let follows = |denominator: &[f64], most_rad: f64| {
         let shape = Shape::Sine { at_s: 0.0, frequency_hz: 0.2 };
         is_lost(&limited(denominator, most_rad, |it| {

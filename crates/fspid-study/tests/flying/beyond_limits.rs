@@ -16,11 +16,11 @@ fn an_unstable_plant_that_is_lost_at_a_limit_is_not_called_stable() {
         let load = format!("disturbance[0].amplitude_deg={load:?}");
         doubt(&[&[load.as_str()], more].concat())
     };
-    assert_eq!(of(9.0, &[]), Some(Doubt::BeyondLimits));
+    assert_eq!(of(9.0, &[]), Some(Doubt::RunsAway));
     assert_eq!(of(3.0, &[]), None);
     // However short the flight: beyond what there is, or lost when it goes on.
     assert_eq!(of(11.0, &["loop.duration_s=1.5"]), Some(Doubt::BeyondLimits));
-    assert_eq!(of(9.0, &["loop.duration_s=1.5"]), Some(Doubt::BeyondLimits));
+    assert_eq!(of(9.0, &["loop.duration_s=1.5"]), Some(Doubt::SwingAtLimits));
     assert_eq!(of(3.0, &["loop.duration_s=1.5"]), None);
     // A servo's own limits as well, which a load at it does not reach.
     let servo = ["actuator={time_constant_s=0.05, position_limit_deg=2.0}", "loop.duration_s=1.5"];
@@ -134,7 +134,7 @@ width_s = 20.0
         let found = result(&text, &[&law[..], &[&limit, winds, "loop.duration_s=45.0"]].concat());
         found.at_rest.undecided.map(|it| it.doubt)
     };
-    assert_eq!(of(-0.6), Some(Doubt::BeyondLimits));
+    assert_eq!(of(-0.6), Some(Doubt::RunsAway));
     assert_eq!(of(-2.0), None);
 }
 
@@ -231,7 +231,11 @@ fn a_short_flight_whose_swing_at_limits_grows_or_stays_when_it_goes_on_is_undeci
     for text in [SWINGS_LATER, FOLLOWS, SWINGS_FOR_EVER] {
         let found = result(text, &[]);
         assert!(!found.verdict().is_failure(), "{text}");
-        assert_eq!(found.at_rest.undecided.map(|it| it.doubt), Some(Doubt::BeyondLimits), "{text}");
+        assert_eq!(
+            found.at_rest.undecided.map(|it| it.doubt),
+            Some(Doubt::SwingAtLimits),
+            "{text}"
+        );
         // A third of what is commanded, or limits of three times as much, and it comes to rest.
         let (small, wide) = match text {
             SWINGS_LATER => ("setpoint.amplitude_deg=-1.0", "actuator.position_limit_deg=60.0"),
@@ -250,7 +254,7 @@ fn a_short_flight_whose_swing_at_limits_grows_or_stays_when_it_goes_on_is_undeci
             let found = result(&format!("{SWINGS_FOR_EVER}{noise}"), set);
             found.at_rest.undecided.map(|it| it.doubt)
         };
-        assert_eq!(found(&[]), Some(Doubt::BeyondLimits), "{noise}");
+        assert_eq!(found(&[]), Some(Doubt::SwingAtLimits), "{noise}");
         assert_eq!(found(&["setpoint.amplitude_deg=-1.0"]), None, "{noise}");
     }
 }

@@ -8,6 +8,7 @@ mod beyond_limits;
 mod configurations;
 mod control_law;
 mod design_gusts;
+mod flown_on;
 mod gallery;
 mod ground;
 mod limits;

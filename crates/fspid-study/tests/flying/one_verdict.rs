@@ -102,7 +102,7 @@ fn said(set: &[String]) -> [(&'static str, Stability); 5] {
         other => panic!("{other:?} {:?}", at_rest.not_asked),
     };
     let flight = Simulation::of(&study).expect("it flies");
-    let flown = match (flight.results[0].verdict(), at_rest.undecided) {
+    let flown = match (flight.results[0].verdict(), flight.results[0].at_rest.undecided) {
         (
             Verdict::Unstable { .. }
             | Verdict::EndedEarly(EarlyEnd { cause: EndCause::Diverged, .. }),
@@ -137,9 +137,10 @@ fn said(set: &[String]) -> [(&'static str, Stability); 5] {
 
 /// A PID with limits and a loop that grows was called settled, and the same PID without limits unstable.
 #[test]
-fn limits_change_nothing_about_stability_at_rest_and_everybody_says_the_same() {
+fn limits_change_nothing_about_stability_at_rest_but_what_they_make_swing_and_everybody_says_the_same()
+ {
     let mut draw = Draw(ChaCha8Rng::seed_from_u64(22));
-    let mut seen = [0; 2];
+    let (mut seen, mut swings) = ([0; 2], 0);
     for _ in 0..120 {
         let free = draw.free();
         let limited: Vec<String> = free.iter().cloned().chain(draw.limits()).collect();
@@ -151,7 +152,15 @@ fn limits_change_nothing_about_stability_at_rest_and_everybody_says_the_same() {
         let radius = loop_spectral_radius(&without.scenario, pid.gains(), pid.config());
         let radius = radius.expect("eigenvalues");
         let (with, alone) = (said(&limited), said(&free));
-        assert_eq!(with, alone, "{limited:?}");
+        let [at_rest, of_flight @ ..] = with;
+        if of_flight != alone[1..] {
+            // A swing that limits keep up is one of the flight, and of everybody who speaks of it.
+            assert_eq!([at_rest, alone[1]].map(|it| it.1), [Stability::Stable; 2], "{limited:?}");
+            assert!(of_flight.iter().all(|it| it.1 == Stability::Undecided), "{limited:?}");
+            swings += 1;
+            continue;
+        }
+        assert_eq!(at_rest, alone[0], "{limited:?}");
         for (who, verdict) in with {
             assert_eq!(verdict, with[0].1, "{who}, {radius}: {limited:?}");
             let is_right = match verdict {
@@ -163,7 +172,8 @@ fn limits_change_nothing_about_stability_at_rest_and_everybody_says_the_same() {
         }
         seen[usize::from(radius > 1.0 + KNOWN)] += usize::from((radius - 1.0).abs() > KNOWN);
     }
-    assert!(seen.iter().all(|count| *count >= 30), "stable and unstable: {seen:?}");
+    assert!(seen.iter().all(|count| *count >= 25), "stable and unstable: {seen:?}");
+    assert!(swings <= 20, "{swings}");
 }
 
 /// A pole on the unit circle was UNSTABLE in `analyse`, without a pole and without a reason, and in requirements, and
