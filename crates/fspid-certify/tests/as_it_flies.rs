@@ -9,30 +9,7 @@ use fspid_sim::Plant;
 const HOLD: &str = include_str!("../../fspid-study/tests/data/altitude-hold.toml");
 
 /// A quiet flight of the Navion at its reference speed.
-const NAVION: &str = r#"
-schema = 1
-name = "navion"
-[aircraft]
-name = "navion"
-airspeed_ft_s = 176.0
-altitude_ft = 1000.0
-[actuator]
-time_constant_s = 0.1
-[loop]
-sample_period_s = 0.01
-duration_s = 10.0
-[setpoint]
-kind = "step"
-amplitude_deg = 0.1
-at_s = 0.0
-[[controller]]
-name = "PID"
-kind = "pid"
-kp = 0.82
-ki = 0.43
-kd = 0.165
-derivative_filter_s = 0.05
-"#;
+const NAVION: &str = include_str!("../../fspid-study/tests/data/navion.toml");
 
 fn study(text: &str, set: &[&str]) -> Study {
     let set: Vec<String> = set.iter().map(|&change| change.to_owned()).collect();

@@ -32,30 +32,7 @@ use fspid_sim::{AircraftPlant, Doubt, Plant, Trace};
 use fspid_study::simulation::{ControllerResult, Simulation};
 
 /// A quiet flight of the Navion at its reference speed.
-const NAVION: &str = r#"
-schema = 1
-name = "navion"
-[aircraft]
-name = "navion"
-airspeed_ft_s = 176.0
-altitude_ft = 1000.0
-[actuator]
-time_constant_s = 0.1
-[loop]
-sample_period_s = 0.01
-duration_s = 10.0
-[setpoint]
-kind = "step"
-amplitude_deg = 0.1
-at_s = 0.0
-[[controller]]
-name = "PID"
-kind = "pid"
-kp = 0.82
-ki = 0.43
-kd = 0.165
-derivative_filter_s = 0.05
-"#;
+const NAVION: &str = include_str!("../data/navion.toml");
 
 /// A scenario with changes, as `--set` has them.
 fn study(text: &str, set: &[&str]) -> Study {
