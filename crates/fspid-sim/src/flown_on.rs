@@ -165,7 +165,7 @@ impl<'a> Pieces<'a> {
         end.meets
             && match (moved, moves) {
                 // What a limit keeps short of its set-point stands still there.
-                (Moved::Nothing, Moves::Back) if self.stands(end) => false,
+                (_, Moves::Back) if self.stands(end) => false,
                 (Moved::Nothing, _) => grows(STAYS),
                 (Moved::BySwings, Moves::Away) => !fifth.is_like(fourth, self.unseen_rad),
                 (Moved::BySwings, Moves::On | Moves::Back) => grows(GROWN),

@@ -109,6 +109,10 @@ fn a_swing_at_limits_of_a_plant_that_holds_by_itself_is_undecided_and_what_stand
     let short_of_it =
         ["controller.PID.slew_limit_deg_s=60.0", "controller.PID.output_limits_deg=[-3.0, 3.0]"];
     assert_eq!(doubt(&short_of_it), None);
+    // However long it is, and with noise that never reaches it: of rounding alone one part moves twice as much as another.
+    let noise = "sensor={preset=\"ideal\", seed=1, pitch={noise_deg_rt_hz=0.0005}}";
+    let long = ["loop.duration_s=2001.0", noise];
+    assert_eq!(doubt(&[&short_of_it[..], &long].concat()), None);
 }
 
 /// A pitch sensor of a coarse resolution keeps a small swing up by itself: that is no swing at limits.
