@@ -1,5 +1,7 @@
 //! A body, the forces on it and the world it flies in: the equations of motion.
 
+mod varied;
+
 use crate::aerodynamics::{ForceModel, Loads};
 use crate::atmosphere::Environment;
 use crate::controls::Controls;
@@ -61,7 +63,7 @@ impl<M: ForceModel> Aircraft<M> {
     }
 
     /// Another body with other forces in the same environment; the body is one that [`Self::new`] takes.
-    pub(crate) fn with_parts<N>(&self, mass: MassProperties, model: N) -> Aircraft<N> {
+    fn with_parts<N>(&self, mass: MassProperties, model: N) -> Aircraft<N> {
         Aircraft { mass, model, environment: self.environment }
     }
 

@@ -27,6 +27,7 @@ pub mod document;
 mod expression;
 mod finding;
 pub mod flight;
+mod formula;
 pub mod jsbsim;
 mod model;
 mod number;

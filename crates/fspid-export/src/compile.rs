@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
-use crate::targets::File;
+use crate::file::File;
 
 /// Products and sums are rounded one by one; no path, date or name of a build is kept in the library.
 const FLAGS: [&str; 10] = [

@@ -18,8 +18,8 @@ use fspid_core::Controller;
 use fspid_numeric::Real;
 use sha2::{Digest, Sha256};
 
+use crate::file::File;
 use crate::program::Program;
-use crate::targets::File;
 use crate::vectors::Vector;
 use crate::write::{self, Heading};
 use equivalent::Judge;

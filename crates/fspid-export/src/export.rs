@@ -9,11 +9,12 @@ use fspid_numeric::Real;
 
 use crate::compose::{Angles, Refusal, outline, precision_of, program};
 use crate::evidence::{self, Subject};
+use crate::file::File;
 pub(crate) use crate::names::identifier;
 use crate::names::prefix;
 use crate::program::Precision;
-use crate::targets::{File, Flown, Source, Target, Written};
-use crate::vectors::{eventful, vectors};
+use crate::targets::{Flown, Source, Target, Written};
+use crate::vectors::{SEED, eventful, vectors};
 use crate::write::{self, Heading};
 
 /// What is asked for.
@@ -216,9 +217,6 @@ const NOT_JUDGED: &str =
     "the same bits say nothing of the loop: `fspid verify` and `fspid certify` judge it";
 const SINGLE: &str =
     "settings were rounded to 32 bits; verdicts, margins and certificates are of 64 bits";
-
-/// Of the vectors' samples.
-pub(crate) const SEED: u64 = 1;
 
 /// How the supervisor infers.
 fn way<R: Real>(controller: &Controller<R>) -> Option<String> {

@@ -6,6 +6,7 @@ mod compile;
 mod compose;
 mod evidence;
 mod export;
+mod file;
 mod flat;
 pub mod interpret;
 mod names;
@@ -20,11 +21,12 @@ mod zip;
 
 pub use compose::{Angles, Refusal, precision_of, program};
 pub use export::{Export, ExportError, Request, export, export_called};
+pub use file::File;
 pub use fspid_core::Controller;
 pub use names::{identifier, prefix, prefixes};
 pub use systems::{
     NOT_FINITE, Names, OUT_OF_RANGE, SystemProgram, SystemRefusal, SystemRequest, export_system,
     source_code, system_program, system_vectors,
 };
-pub use targets::{File, Target};
+pub use targets::Target;
 pub use zip::archive;

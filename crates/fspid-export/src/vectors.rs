@@ -20,6 +20,9 @@ pub(crate) use drawn::Draw;
 pub use drawn::samples;
 pub use telling::{Stretch, telling};
 
+/// Of the samples of an export, whether of a controller or of a fuzzy system.
+pub(crate) const SEED: u64 = 1;
+
 /// What is done with a controller at a vector.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event<R> {

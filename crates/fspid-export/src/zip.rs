@@ -3,7 +3,7 @@
 //! As PKWARE's APPNOTE 6.3 has it: a header before each file, the directory at the end, no part that newer versions
 //! brought. Every file is dated 1980-01-01, the first day that the format knows.
 
-use crate::targets::File;
+use crate::file::File;
 
 /// Days and months count from 1.
 const FIRST_DAY: u16 = (1 << 5) | 1;

@@ -10,6 +10,7 @@ mod archive;
 #[cfg(unix)]
 mod description;
 pub mod drive;
+mod earth;
 mod flight_stack;
 #[cfg(unix)]
 mod fmi;

@@ -3,6 +3,7 @@
 use core::fmt;
 
 use crate::defuzzifier::Defuzzifier;
+use crate::inference::InferenceError;
 use crate::rule_table::{GridError, Output};
 
 /// Why a supervisor could not be built.
@@ -77,7 +78,7 @@ pub enum FuzzyError {
         allowed: f64,
     },
     /// A supervisor's input that cannot be answered.
-    Inference(crate::supervisor::InferenceError),
+    Inference(InferenceError),
 }
 
 impl fmt::Display for FuzzyError {
@@ -119,8 +120,8 @@ impl fmt::Display for FuzzyError {
 
 impl core::error::Error for FuzzyError {}
 
-impl From<crate::supervisor::InferenceError> for FuzzyError {
-    fn from(error: crate::supervisor::InferenceError) -> Self {
+impl From<InferenceError> for FuzzyError {
+    fn from(error: InferenceError) -> Self {
         Self::Inference(error)
     }
 }

@@ -33,6 +33,7 @@ mod error;
 #[cfg(feature = "alloc")]
 pub mod formula;
 pub mod hedge;
+mod inference;
 #[cfg(feature = "alloc")]
 pub mod karnik_mendel;
 mod label;
@@ -55,6 +56,7 @@ pub use error::FuzzyError;
 #[cfg(feature = "alloc")]
 pub use formula::{Formula, FormulaError, FormulaErrorKind};
 pub use hedge::Hedge;
+pub use inference::{Increments, Inference, InferenceError};
 pub use label::{LABEL_COUNT, Label};
 pub use network::{LARGEST_WEIGHT, Network, NetworkRow, UNITS};
 pub use norm::{SNormKind, TNormKind};
@@ -62,7 +64,4 @@ pub use number_table::{NumberGrid, NumberTable};
 
 pub use rule_table::{Grid, GridError, Output, RuleTable};
 
-pub use supervisor::{
-    Increments, Inference, InferenceError, OutOfRange, RANGE_LIMITS_F32, Supervisor,
-    SupervisorNumbers,
-};
+pub use supervisor::{OutOfRange, RANGE_LIMITS_F32, Supervisor, SupervisorNumbers};

@@ -1,9 +1,9 @@
 //! Rules that conclude numbers: a zero-order system of Takagi and Sugeno over the same seven by seven cells.
 
 use crate::error::FuzzyError;
+use crate::inference::Increments;
 use crate::label::LABEL_COUNT;
 use crate::rule_table::Output;
-use crate::supervisor::Increments;
 use fspid_numeric::Real;
 
 /// One output's numbers: rows are the error from `NB` to `PB`, columns its change.

@@ -5,12 +5,11 @@
 //! the same half range. Or rules that conclude numbers in place of labels, over triangular sets:
 //! [`NumberTable`]. Or no rules at all, but a small neural network: [`Network`].
 
-use core::fmt;
-
 use crate::centroid::{centroid, exact};
 use crate::consequents::{Consequents, Firing};
 use crate::defuzzifier::Defuzzifier;
 use crate::error::FuzzyError;
+use crate::inference::{Increments, Inference, InferenceError};
 use crate::label::LABEL_COUNT;
 use crate::membership::{Gaussian, SIGMA_PER_SPACING, Shape};
 use crate::network::Network;
@@ -54,52 +53,6 @@ impl OutOfRange {
         }
     }
 }
-
-/// Increments of the three gains, in the supervisor's own units (before the output factors).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Increments<R> {
-    /// For the proportional gain.
-    pub kp: R,
-    /// For the integral gain.
-    pub ki: R,
-    /// For the derivative gain.
-    pub kd: R,
-}
-
-/// An answer of the supervisor.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Inference<R> {
-    /// Increments of the gains.
-    pub delta: Increments<R>,
-    /// An input lay outside the range and was moved to its end.
-    pub clamped: bool,
-    /// Every rule underflowed, and the answer is that of the clamped inputs.
-    pub underflowed: bool,
-}
-
-/// Why an input has no answer.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct InferenceError {
-    /// `error` or `change`.
-    pub input: &'static str,
-    /// What was given.
-    pub found: f64,
-    /// Half range of the input.
-    pub range: f64,
-}
-
-impl fmt::Display for InferenceError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { input, found, range } = self;
-        if found.is_finite() {
-            write!(f, "{input} is {found:?}; allowed is -{range:?} to {range:?}")
-        } else {
-            write!(f, "{input} is {found:?}; allowed is a finite number")
-        }
-    }
-}
-
-impl core::error::Error for InferenceError {}
 
 /// The fuzzy supervisor. Immutable; building it may fail, and so may an inference that is asked to
 /// refuse inputs out of range, but nothing else.

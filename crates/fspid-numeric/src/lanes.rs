@@ -5,33 +5,7 @@ use core::ops::{Add, Div, Mul, Sub};
 use crate::real::Real;
 use crate::real::sealed::Sealed as _;
 
-/// Some numbers, each operation done to every one of them by itself.
-///
-/// A lane never sees another, so its bits do not depend on how many there are or on what is in
-/// them. Comparisons are those of [`Real`], but for a NaN, which no inference meets.
-pub trait Lanes:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
-{
-    /// What is in a lane.
-    type Number: Real;
-
-    /// `value` in as many lanes as `self` has.
-    fn same(self, value: Self::Number) -> Self;
-    /// The smaller numbers.
-    fn smaller(self, other: Self) -> Self;
-    /// The larger numbers.
-    fn larger(self, other: Self) -> Self;
-    /// $2^k$ for whole `k`; see `Sealed::power_of_two`.
-    fn power_of_two(self) -> Self;
-    /// $2^k$ times the numbers; see `Sealed::raised`.
-    fn raised(self, shifted: Self) -> Self;
-    /// A function of plain numbers in each lane by itself, for what cannot be done side by side.
-    fn lane_by_lane(
-        numbers: &[Self],
-        zero: Self,
-        function: impl Fn(&[Self::Number]) -> Self::Number,
-    ) -> Self;
-}
+pub use crate::real::Lanes;
 
 /// $e^x$ in each lane, as every inference has it.
 #[must_use]

@@ -27,6 +27,7 @@
 extern crate std;
 
 mod exp;
+mod floats;
 #[cfg(feature = "simd")]
 mod instruction_set;
 pub mod lanes;

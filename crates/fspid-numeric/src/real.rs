@@ -1,10 +1,9 @@
-//! The two number types a controller can be built for.
+//! The two number types a controller can be built for, and numbers of one side by side: each of the two traits is written
+//! with the other.
 
 use core::fmt::Display;
-use core::ops::AddAssign;
+use core::ops::{Add, AddAssign, Div, Mul, Sub};
 
-use crate::exp;
-use crate::lanes::Lanes;
 use crate::scalar::Scalar;
 
 pub(crate) mod sealed {
@@ -87,65 +86,30 @@ pub trait Real:
     }
 }
 
-macro_rules! real {
-    ($float:ident, $vector:ident, $round:expr, $exp:path, $exp_inside:path) => {
-        impl sealed::Sealed for $float {
-            const ROUND: Self = $round;
-            const MANTISSA_BITS: u32 = $float::MANTISSA_DIGITS - 1;
+/// Some numbers, each operation done to every one of them by itself.
+///
+/// A lane never sees another, so its bits do not depend on how many there are or on what is in
+/// them. Comparisons are those of [`Real`], but for a NaN, which no inference meets.
+pub trait Lanes:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
+{
+    /// What is in a lane.
+    type Number: Real;
 
-            #[inline(always)]
-            fn exp_of<L: Lanes<Number = Self>>(x: L) -> L {
-                $exp(x)
-            }
-
-            #[inline(always)]
-            fn exp_inside_of<L: Lanes<Number = Self>>(x: L) -> L {
-                $exp_inside(x)
-            }
-
-            #[inline(always)]
-            fn power_of_two(self) -> Self {
-                let one: Self = 1.0;
-                one.raised(self + $round)
-            }
-
-            #[inline(always)]
-            fn raised(self, shifted: Self) -> Self {
-                let exponent = shifted.to_bits() << Self::MANTISSA_BITS;
-                $float::from_bits(self.to_bits().wrapping_add(exponent))
-            }
-
-            #[cfg(feature = "simd")]
-            type Vector<S: fearless_simd::Simd> = S::$vector;
-        }
-
-        impl Real for $float {
-            const ZERO: Self = 0.0;
-            const ONE: Self = 1.0;
-            const HALF: Self = 0.5;
-            const MIN_POSITIVE: Self = $float::MIN_POSITIVE;
-
-            #[allow(
-                clippy::cast_possible_truncation,
-                reason = "rounding to the nearest f32 is what is meant"
-            )]
-            #[inline(always)]
-            fn from_f64(value: f64) -> Self {
-                value as $float
-            }
-
-            #[inline(always)]
-            fn to_f64(self) -> f64 {
-                f64::from(self)
-            }
-
-            #[inline(always)]
-            fn is_finite(self) -> bool {
-                $float::is_finite(self)
-            }
-        }
-    };
+    /// `value` in as many lanes as `self` has.
+    fn same(self, value: Self::Number) -> Self;
+    /// The smaller numbers.
+    fn smaller(self, other: Self) -> Self;
+    /// The larger numbers.
+    fn larger(self, other: Self) -> Self;
+    /// $2^k$ for whole `k`; see `Sealed::power_of_two`.
+    fn power_of_two(self) -> Self;
+    /// $2^k$ times the numbers; see `Sealed::raised`.
+    fn raised(self, shifted: Self) -> Self;
+    /// A function of plain numbers in each lane by itself, for what cannot be done side by side.
+    fn lane_by_lane(
+        numbers: &[Self],
+        zero: Self,
+        function: impl Fn(&[Self::Number]) -> Self::Number,
+    ) -> Self;
 }
-
-real!(f32, f32s, exp::ROUND_F32, exp::exp_f32, exp::exp_f32);
-real!(f64, f64s, exp::ROUND_F64, exp::exp_f64, exp::exp_normal_f64);

@@ -1,10 +1,9 @@
 //! Hatching where a map has no values.
 
 use super::contour::Grid;
-use super::page::LABEL_PX;
 use super::style::Role;
 use super::svg::{Anchor, Canvas, Font, Paint, Rect};
-use super::text::text_width;
+use super::text::{LABEL_PX, text_width};
 
 /// Height of the legend (px).
 pub(super) const LEGEND: f64 = 20.0;

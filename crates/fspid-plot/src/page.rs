@@ -7,10 +7,8 @@ use super::style::{Role, SeriesStyle};
 use super::svg::{Anchor, Canvas, Font, Paint, Rect};
 use super::text::text_width;
 
-/// Font size of figure titles (px).
-pub(super) const TITLE_PX: f64 = 14.0;
-/// Font size of axis labels and legends (px).
-pub(super) const LABEL_PX: f64 = 12.0;
+pub(super) use super::text::{LABEL_PX, TITLE_PX};
+
 /// Free edge around a figure (px).
 pub(super) const EDGE: f64 = 14.0;
 

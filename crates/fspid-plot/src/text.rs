@@ -1,4 +1,9 @@
-//! Words and numbers for SVG: rounding, escaping, lowered and raised parts, widths and ids.
+//! Words and numbers for SVG: sizes, rounding, escaping, lowered and raised parts, widths and ids.
+
+/// Font size of figure titles (px).
+pub(super) const TITLE_PX: f64 = 14.0;
+/// Font size of axis labels and legends (px).
+pub(super) const LABEL_PX: f64 = 12.0;
 
 /// A coordinate with at most two decimals, never "-0" and never a word.
 pub(super) fn num(value: f64) -> String {

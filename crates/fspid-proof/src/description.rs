@@ -7,9 +7,9 @@ use fspid_sim::loop_model::{Followers, LoopModel, LoopSettings, Memory, Sensing}
 use fspid_sim::sensor::Sensor;
 use fspid_sim::{Controller, ElevatorSign, LinearPlant, Scenario, SimError};
 
+use crate::caps::WrongSize;
 use crate::check::{ActuatorLag, NotProved, PrintedPlant};
 use crate::gain_set::NoBound;
-use crate::sizes::WrongSize;
 
 /// A flight whose pitch angle goes beyond this is lost: $10^6$ degrees, as in simulations.
 const LOST_RAD: f64 = 1e6 * core::f64::consts::PI / 180.0;

@@ -26,9 +26,6 @@ use fspid_sim::LinearPlant;
 use crate::check::{IntervalMatrix, NotProved};
 use crate::description::LoopDescription;
 
-/// Most bounds of a certificate.
-pub const MOST_BOUNDS: usize = 24;
-
 /// Where a disturbance has a way into the plant.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Way {

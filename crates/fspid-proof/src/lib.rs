@@ -11,6 +11,7 @@
 
 mod asked;
 mod bearing;
+mod caps;
 mod certificate;
 pub mod check;
 mod description;
@@ -31,14 +32,13 @@ mod steps;
 
 pub use asked::left_out_of;
 pub use bearing::Bearing;
+pub use caps::{MOST_BOUNDS, MOST_PARAMETERS, MOST_PARTS, MOST_PATCHES};
 pub use certificate::{BoundedRate, Certificate, Claim};
 pub use description::{LoopDescription, NotProvable};
-pub use disturbances::{
-    AirPart, DisturbanceBound, Disturbed, Extent, MOST_BOUNDS, Quantity, Way, ways_of,
-};
+pub use disturbances::{AirPart, DisturbanceBound, Disturbed, Extent, Quantity, Way, ways_of};
 pub use family::{
-    CheckedFamily, Family, FamilyError, FamilyVerdict, MOST_PARAMETERS, MOST_PARTS, MOST_PATCHES,
-    Pace, Parameter, Part as FamilyPart, Patch, ScaledSensor, Uncertain, numbers, prove_family,
+    CheckedFamily, Family, FamilyError, FamilyVerdict, Pace, Parameter, Part as FamilyPart, Patch,
+    ScaledSensor, Uncertain, numbers, prove_family,
 };
 pub use limits::{AtLimit, pitch_within};
 pub use nonlinear::{

@@ -4,82 +4,26 @@
 //! 1.6 GB, and a thousand cells along each input are a million boxes of gains. Both used to be computed
 //! before the form was looked at.
 
-use core::fmt;
-
 use fspid_core::Law;
 use fspid_lti::Matrix;
 use fspid_sim::Controller;
 use fspid_sim::loop_model::{LoopModel, SampledPlant};
 
+use crate::caps::MOST_BOUNDS;
 use crate::certificate::{BoundedRate, Certificate, Claim};
 use crate::description::LoopDescription;
-use crate::disturbances::MOST_BOUNDS;
 use crate::gain_set::MOST_CORNERS;
 use crate::scope::Range;
 use crate::steps::{Commanded, Commands};
 
-/// Most states of a loop.
-pub const MOST_STATES: usize = 128;
-/// Most states of a loop with fixed gains, where a proof is looked for: 26 take 2.4 s and 46 take 57 s.
-pub const MOST_STATES_FIXED: usize = 40;
-/// Most states of a loop whose gains move, where a proof is looked for.
-pub const MOST_STATES_SEARCHED: usize = 24;
-/// Most cells along each of the supervisor's inputs.
-pub const MOST_DIVISIONS: usize = 96;
-/// Most double cones of a claim.
-pub const MOST_CONES: usize = 96;
-/// Longest sequence of gains that is multiplied out.
-pub const MOST_SAMPLES: usize = 20_000;
-pub use crate::steps::{
-    MOST_CHANGES, MOST_LEG_PARTS, MOST_LEG_SETS, MOST_LEGS, MOST_LOADS, MOST_PIECES,
+pub use crate::caps::{
+    MOST_CHANGES, MOST_CONES, MOST_DIVISIONS, MOST_LEG_PARTS, MOST_LEG_SETS, MOST_LEGS, MOST_LOADS,
+    MOST_PIECES, MOST_SAMPLES, MOST_STATES, MOST_STATES_FIXED, MOST_STATES_SEARCHED, MOST_WORK,
+    WrongSize, WrongSizes,
 };
-
-/// Most work of a re-check: cubes of the number of states, one for each inequality. That is some minutes.
-pub const MOST_WORK: u64 = 4_000_000_000;
 
 /// Coefficients of a cell's decrease in which the form moves with all gains.
 const BERNSTEIN: u64 = 64;
-
-/// A part of a certificate that is larger than allowed, or of another size than the loop asks for.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct WrongSize {
-    /// Where in the certificate, as in its file.
-    pub path: &'static str,
-    /// What is counted.
-    pub what: &'static str,
-    /// How many there are.
-    pub found: u64,
-    /// How many there may be.
-    pub least: u64,
-    /// The most; equal to the least where the loop leaves no choice.
-    pub most: u64,
-}
-
-impl fmt::Display for WrongSize {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { path, what, found, least, most } = self;
-        match (least, most) {
-            (least, most) if least == most => {
-                write!(f, "{path}: {found} {what}; the loop asks for {most}")
-            }
-            (0, most) => write!(f, "{path}: {found} {what}; allowed are up to {most}"),
-            (least, most) => write!(f, "{path}: {found} {what}; allowed are {least} to {most}"),
-        }
-    }
-}
-
-/// Everything whose size is wrong.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct WrongSizes(pub Vec<WrongSize>);
-
-impl fmt::Display for WrongSizes {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (place, wrong) in self.0.iter().enumerate() {
-            write!(f, "{}{wrong}", if place == 0 { "" } else { "; " })?;
-        }
-        Ok(())
-    }
-}
 
 impl LoopDescription {
     /// How many states the loop has, without computing any.

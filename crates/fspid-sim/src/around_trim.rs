@@ -8,11 +8,12 @@ use crate::air::{Steady, Wind, sum_at};
 use crate::aircraft::{AircraftPlant, Change, Standing, step_s};
 use crate::controller::Controller;
 use crate::error::SimError;
-use crate::in_flight::{Alone, Seeing, poles_of_mode, radii_alone};
+use crate::in_flight::{Alone, poles_of_mode, radii_alone};
 use crate::leads_to::{Place, places};
 use crate::plant::Plant;
 use crate::rest::{Doubt, Rest, RestPoint};
 use crate::scenario::Scenario;
+use crate::sensor::Seeing;
 use crate::stability::{
     GrowthAtRest, MODE_RADIUS, Undecided, Unstable, doubling_s, growth_of_plant,
 };

@@ -11,9 +11,10 @@ use crate::controller::Controller;
 use crate::error::SimError;
 use crate::external::{Asked, ControllerLoss};
 use crate::flown::Perturbation;
-use crate::in_flight::{Course, Seen};
+use crate::in_flight::Course;
 use crate::propagation::{Motion, Propagation};
 use crate::scenario::{Flyer, Prepared, Respondent, Scenario};
+use crate::seen::Seen;
 use crate::trace::{EndCause, Outcome, Trace};
 
 /// A scenario's flights: the trace of each controller, in the scenario's order.

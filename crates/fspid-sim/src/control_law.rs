@@ -8,7 +8,7 @@ use fspid_core::{Faults, Gains, Sample, Step};
 
 use crate::aircraft::AircraftSample;
 use crate::external::{Answers, Asked, ControllerLoss};
-use crate::in_flight::Seen;
+use crate::seen::Seen;
 
 /// Outputs of a control law at one sample.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -8,8 +8,8 @@ use fspid_core::fuzzy::FuzzyError;
 use fspid_lti::{InWords, LtiError};
 
 use crate::autopilot::AutopilotError;
-use crate::external_plant::JSBSIM;
 use crate::flight_stack::Unfit;
+use crate::names::JSBSIM;
 
 /// Why a part of a scenario could not be built.
 #[derive(Clone, Debug, PartialEq)]

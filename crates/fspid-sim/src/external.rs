@@ -9,10 +9,11 @@ use std::sync::{Arc, OnceLock};
 
 use fspid_core::{Sample, Step};
 
+use crate::aircraft::AircraftSample;
 use crate::control_law::SharedLaw;
 use crate::error::SimError;
 use crate::flight_stack::{FlightStack, Unfit};
-use crate::{AircraftSample, Seen};
+use crate::seen::Seen;
 
 /// A controller that runs as an external program.
 #[derive(Clone, Debug, PartialEq)]

@@ -9,14 +9,12 @@ use std::sync::OnceLock;
 
 use crate::error::SimError;
 use crate::external::{Contents, ControllerLoss, Renamed, SIGNALS};
+use crate::names::JSBSIM;
 
 mod air;
 mod flight;
 
 pub(crate) use flight::{Around, ExternalFlight, ExternalMotion};
-
-/// What JSBSim is called.
-pub(crate) const JSBSIM: &str = "JSBSim";
 
 /// An aircraft that another simulator flies.
 #[derive(Clone, Debug, PartialEq)]

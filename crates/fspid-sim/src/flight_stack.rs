@@ -17,9 +17,9 @@ use fspid_aircraft::atmosphere::STANDARD_GRAVITY_M_S2;
 use fspid_core::Sample;
 
 use crate::aircraft::AircraftSample;
-use crate::in_flight::Seen;
 use crate::math::sin_cos;
 use crate::plant::Plant;
+use crate::seen::Seen;
 
 /// Flight code in the loop.
 #[derive(Clone, Debug, PartialEq)]

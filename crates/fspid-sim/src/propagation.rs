@@ -5,9 +5,9 @@
 use crate::actuated::{Actuated, ActuatedState, Held};
 use crate::aircraft::{AircraftFlight, AircraftMotion, AircraftSample};
 use crate::autopilot::{Cut, Throttle};
+use crate::beyond::BEYOND;
 use crate::error::SimError;
 use crate::external_plant::{ExternalFlight, ExternalMotion, PlantLoss};
-use crate::in_flight::BEYOND;
 use crate::law::LinearStep;
 use crate::loop_model::SampledPlant;
 use crate::plant::LinearPlant;

@@ -14,9 +14,9 @@ use crate::closed_loop::watch_answers;
 use crate::error::SimError;
 use crate::external::Asked;
 use crate::flown::Perturbation;
-use crate::in_flight::Seen;
 use crate::instant::Instant;
 use crate::scenario::Prepared;
+use crate::seen::Seen;
 use crate::trace::Outcome;
 
 /// What stands in the place of a supervisor's answer. A flight that lasts longer than what is replayed keeps its last

@@ -11,7 +11,7 @@ use fspid_study::output::OutputError;
 use serde_json::Value;
 use thiserror::Error;
 
-use crate::written::problems_of_cases;
+use crate::wrong_cases::problems_of_cases;
 
 /// A case of a tuning or a contest that makes the scenario wrong.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]

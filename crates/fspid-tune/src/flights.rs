@@ -8,7 +8,7 @@ use fspid_campaign::sample::Sampling;
 use fspid_scenario::dispersion::Drawn;
 use fspid_scenario::file::{LoadError, Study, Template, TunedIn};
 use fspid_scenario::requirement::{AskedIn, Requirement};
-use fspid_scenario::tuning::{Case, TunableParameter};
+use fspid_scenario::tuning::Case;
 use fspid_study::memory::Needed;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -17,6 +17,7 @@ use sha2::{Digest as _, Sha256};
 
 use crate::crew::{Crew, Order, Part};
 use crate::error::{TuneError, WrongCase};
+use crate::flyer::Flyer;
 use crate::own_draws::OwnDraws;
 use crate::source::Source;
 use crate::space::Space;
@@ -48,15 +49,6 @@ pub(crate) struct FlownCase {
     draws: Option<OwnDraws>,
     /// Draws of each run; a single empty one for the scenario as written.
     runs: Vec<Vec<Drawn>>,
-}
-
-/// Who flies.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Flyer<'a> {
-    /// Name of the controller.
-    pub(crate) controller: &'a str,
-    /// Places that get other values in flight; none where the scenario flies as its marks start.
-    pub(crate) free: &'a [TunableParameter],
 }
 
 impl FlownCase {

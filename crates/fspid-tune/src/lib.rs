@@ -22,6 +22,7 @@ pub mod design;
 mod draw;
 mod error;
 mod flights;
+mod flyer;
 pub mod front;
 pub mod history;
 mod kept;
@@ -38,6 +39,7 @@ mod source;
 mod space;
 mod tuned;
 mod written;
+mod wrong_cases;
 
 pub use crew::{Crew, Engine, Order, Worker};
 pub use error::{TuneError, WrongCase};

@@ -4,7 +4,7 @@ use fspid_campaign::Draws;
 use fspid_scenario::dispersion::Drawn;
 use fspid_scenario::file::{NewValue, SettingPath, Template};
 
-use crate::flights::Flyer;
+use crate::flyer::Flyer;
 
 /// Draws of a whole scenario, and where they go where one controller flies alone.
 #[derive(Clone, Debug)]

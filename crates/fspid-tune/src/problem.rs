@@ -14,9 +14,8 @@ use fspid_study::output::{Names, Place};
 use crate::crew::{Crew, Part};
 use crate::design::{self, Original};
 use crate::error::TuneError;
-use crate::flights::{
-    Asked, Dispersed, Flights, FlownCase, Flyer, each_once, flown_cases, hex_digest,
-};
+use crate::flights::{Asked, Dispersed, Flights, FlownCase, each_once, flown_cases, hex_digest};
+use crate::flyer::Flyer;
 use crate::score::{FlightScore, Score};
 use crate::source::Source;
 use crate::space::Space;

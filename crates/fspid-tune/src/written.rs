@@ -8,13 +8,11 @@ use std::path::Path;
 use fspid_certify::CasesError;
 use fspid_diagnostics::digits::counted;
 use fspid_scenario::file::{Extra, LoadError, Problems, Template, TunedIn};
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use crate::error::WrongCase;
 use crate::source::cases;
-
-/// Of cases that are wrong, each in its own way, so many are told.
-const MOST_CASES: usize = 10;
+use crate::wrong_cases::{MOST_CASES, problems_of_cases};
 
 /// The text of a scenario, with what belongs to it.
 #[derive(Clone, Copy, Debug)]
@@ -126,26 +124,7 @@ impl NotRight {
     }
 }
 
-/// What is wrong with cases, each with its name, as JSON: as [`Problems::to_json`] has it, every problem with the name of its
-/// case as `case`. Nothing where none of them could be read at all.
-pub(crate) fn problems_of_cases<'a>(
-    wrong: impl IntoIterator<Item = (&'a str, &'a LoadError)>,
-) -> Option<Value> {
-    let all: Vec<(&str, &Problems)> = wrong
-        .into_iter()
-        .filter_map(|(case, reason)| match reason {
-            LoadError::Problems(problems) => Some((case, problems)),
-            LoadError::Unreadable { .. } => None,
-        })
-        .collect();
-    let file = &all.first()?.1.file;
-    let told: Vec<Value> = all.iter().take(MOST_CASES).copied().flat_map(of_case).collect();
-    let count = all.iter().map(|(_, problems)| problems.list.len() + problems.omitted);
-    let omitted = count.sum::<usize>() - told.len();
-    Some(json!({ "file": file, "problems": told, "omitted": omitted }))
-}
-
-/// The same of cases that are to be certified.
+/// What is wrong with cases that are to be certified, as [`NotRight::to_json`] has it.
 #[must_use]
 pub fn problems_of_certified(error: &CasesError) -> Option<Value> {
     match error {
@@ -156,19 +135,10 @@ pub fn problems_of_certified(error: &CasesError) -> Option<Value> {
     }
 }
 
-/// Each problem of a case, with its name.
-fn of_case((case, problems): (&str, &Problems)) -> Vec<Value> {
-    let mut list = problems.to_json()["problems"].take();
-    let list = list.as_array_mut().map(std::mem::take).unwrap_or_default();
-    let named = |mut problem: Value| {
-        problem["case"] = case.into();
-        problem
-    };
-    list.into_iter().map(named).collect()
-}
-
 #[cfg(test)]
 mod tests {
+    use serde_json::json;
+
     use super::*;
 
     const SCENARIO: &str = include_str!("../../fspid-scenario/src/file/starter.toml");

@@ -1,21 +1,18 @@
 //! Derivatives that do not stay: with what is extended, with Mach number, near the ground, about a moving centre of
 //! gravity.
 //!
-//! A [`VariedModel`] is the model of forces at the start of a flight; [`VariedModel::at`] is that of a later instant.
-//! Mach number and height come with the flow; what is extended and what fuel is left the caller knows.
+//! A [`VariedModel`] is the model of forces at the start of a flight; [`VariedModel::at`] is the aircraft of a later
+//! instant. Mach number and height come with the flow; what is extended and what fuel is left the caller knows.
 
 use crate::aerodynamics::derivatives::{DerivativeModel, DragLaw, ThrustLaw};
 use crate::aerodynamics::ground_effect::GroundEffect;
 use crate::aerodynamics::increment::{Configuration, Increment};
 use crate::aerodynamics::mach_table::MachTable;
 use crate::aerodynamics::{ForceModel, Loads};
-use crate::aircraft::Aircraft;
 use crate::controls::Controls;
 use crate::engine::Gearing;
 use crate::error::AircraftError;
 use crate::flow::Flow;
-use crate::fuel::FuelledBody;
-use crate::mass::MassProperties;
 use crate::validity::{Departure, Range, Travel, Validity};
 use crate::vector::Vector3;
 
@@ -106,47 +103,32 @@ impl VariedModel {
         self.base.geometry.chord_m
     }
 
-    /// An aircraft of this model at another instant: with other shares of the [configurations](Self::deployed), in their
-    /// order, and, where it burns fuel, with what is left of it, kg.
-    pub fn at<M: ForceModel>(
+    /// The forces of another instant: with other shares of the [configurations](Self::deployed), in their order, and the
+    /// centre of gravity that far behind its place at the start, m.
+    pub(crate) fn now_with(
         &self,
-        aircraft: &Aircraft<M>,
         shares: impl Iterator<Item = f64>,
-        fuel: Option<(&FuelledBody, f64)>,
-    ) -> Aircraft<VariedNow<'_>> {
-        let (mass, aft_chords) = self.body(aircraft, fuel);
-        let standing =
-            Standing::of(&self.base, &self.deployed, &self.effects, (shares, aft_chords));
-        aircraft.with_parts(mass, VariedNow { standing, effects: &self.effects })
+        moved_aft_m: f64,
+    ) -> VariedNow<'_> {
+        let moved = (shares, self.aft_chords_with(moved_aft_m));
+        let standing = Standing::of(&self.base, &self.deployed, &self.effects, moved);
+        VariedNow { standing, effects: &self.effects }
     }
 
-    /// The same as the start of another flight: the [aircraft of an instant](Self::at) as a model and a body of their own.
-    pub fn starting_at<M: ForceModel>(
-        &self,
-        aircraft: &Aircraft<M>,
-        shares: impl Iterator<Item = f64>,
-        fuel: Option<(&FuelledBody, f64)>,
-    ) -> Aircraft<Self> {
-        let (mass, aft_chords) = self.body(aircraft, fuel);
+    /// The same as the start of another flight.
+    pub(crate) fn started_with(&self, shares: impl Iterator<Item = f64>, moved_aft_m: f64) -> Self {
+        let aft_chords = self.aft_chords_with(moved_aft_m);
         let all = self.deployed.iter().cloned().zip(shares);
         let deployed: Vec<_> = all.map(|(one, share)| Deployed { share, ..one }).collect();
         let shares = deployed.iter().map(|one| one.share);
         let start = Standing::of(&self.base, &deployed, &self.effects, (shares, aft_chords));
         let (base, effects) = (self.base, self.effects.clone());
-        aircraft.with_parts(mass, Self { base, aft_chords, deployed, effects, start })
+        Self { base, aft_chords, deployed, effects, start }
     }
 
-    /// Mass properties, and chords that the centre of gravity is behind that of the data.
-    fn body<M: ForceModel>(
-        &self,
-        aircraft: &Aircraft<M>,
-        fuel: Option<(&FuelledBody, f64)>,
-    ) -> (MassProperties, f64) {
-        let (mass, moved_m) = match fuel {
-            Some((body, fuel_kg)) => (body.with(fuel_kg), body.cg_aft_m(fuel_kg)),
-            None => (*aircraft.mass(), 0.0),
-        };
-        (mass, self.aft_chords + moved_m / self.chord_m())
+    /// Chords that the centre of gravity is behind that of the data.
+    fn aft_chords_with(&self, moved_aft_m: f64) -> f64 {
+        self.aft_chords + moved_aft_m / self.chord_m()
     }
 
     fn now(&self) -> VariedNow<'_> {

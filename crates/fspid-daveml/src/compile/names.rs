@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use crate::data::is_name;
 use crate::document::{Document, Mention};
 use crate::finding::{Findings, Origin};
+use crate::formula::is_name;
 
 /// Indices by identifier.
 pub(super) struct Names<'a> {

@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::data::text_of_formula;
 use crate::expression::Expression;
 use crate::finding::Origin;
+use crate::formula::text_of_formula;
 
 /// A variable.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]

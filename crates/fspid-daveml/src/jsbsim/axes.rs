@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 
 use crate::MAX_VARIABLES;
-use crate::data::{is_name, parse};
 use crate::document::{Document, Role, Variable};
 use crate::expression::Expression;
 use crate::finding::{Findings, Origin};
+use crate::formula::{is_name, parse};
 use crate::jsbsim::class::Share;
 use crate::jsbsim::expression::is_part;
 use crate::jsbsim::metrics::{AREA, CHORD, Metrics, SPAN};

@@ -1,8 +1,8 @@
 //! An engine of a constant largest thrust, which stands for those of the file.
 
-use crate::data::parse;
 use crate::document::{Document, Role, Variable};
 use crate::finding::{Findings, Origin};
+use crate::formula::parse;
 use crate::jsbsim::answer;
 use crate::jsbsim::body::Mass;
 use crate::xml::element::Element;

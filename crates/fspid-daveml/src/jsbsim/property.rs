@@ -2,10 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::data::{is_name, parse};
 use crate::document::{Document, Role, Variable};
 use crate::expression::Expression;
 use crate::finding::{Findings, Origin};
+use crate::formula::{is_name, parse};
 use crate::jsbsim::class::{Class, Share};
 use crate::jsbsim::metrics::Metrics;
 use crate::jsbsim::surface::Scaled;

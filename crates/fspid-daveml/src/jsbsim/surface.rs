@@ -4,9 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use fspid_numeric::units::RADIAN_DEG;
 
-use crate::data::parse;
 use crate::expression::Expression;
 use crate::finding::{Findings, Origin};
+use crate::formula::parse;
 use crate::jsbsim::reach::{Untold, reach};
 use crate::xml::element::Element;
 

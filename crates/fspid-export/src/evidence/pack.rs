@@ -8,9 +8,9 @@ use fspid_numeric::Real;
 use super::equivalent::Judge;
 use super::run::Ran;
 use super::{Finding, Subject, proof};
+use crate::file::File;
 use crate::interpret::Branch;
 use crate::program::Precision;
-use crate::targets::File;
 use crate::write;
 
 /// A cell of a table.

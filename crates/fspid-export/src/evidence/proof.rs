@@ -8,8 +8,8 @@ use fspid_numeric::Real;
 
 use super::Subject;
 use crate::compose::GAINS;
+use crate::file::File;
 use crate::program::{Member, Part, Precision, Program, Value};
-use crate::targets::File;
 use crate::write::c_number;
 
 /// Why no proof is tried with hope, if so.

@@ -3,7 +3,7 @@
 use fspid_numeric::Real;
 
 use super::{Subject, proof};
-use crate::targets::File;
+use crate::file::File;
 
 pub(super) fn files<R: Real>(subject: &Subject<'_, R>) -> Vec<File> {
     let has_exponential = subject.program.function("exponential").is_some();

@@ -8,7 +8,7 @@ use super::{SystemProgram, SystemRefusal, system_program, system_vectors};
 use crate::export::{Export, identifier, renamed, written};
 use crate::program::{Precision, Program};
 use crate::targets::{Source, Target};
-use crate::vectors::Vector;
+use crate::vectors::{SEED, Vector};
 use crate::write::{Heading, decimal};
 
 /// What is asked for.
@@ -25,9 +25,6 @@ pub struct SystemRequest<'a> {
     /// SHA-256 of the file, in hexadecimal digits.
     pub digest: &'a str,
 }
-
-/// Of the vectors' samples.
-const SEED: u64 = 1;
 
 /// Writes a fuzzy system in another language, with vectors that show that it answers alike.
 ///

@@ -2,7 +2,8 @@
 
 use fspid_numeric::Real;
 
-use super::{File, Source};
+use super::Source;
+use crate::file::File;
 use crate::write;
 
 pub(super) fn files<R: Real>(source: &Source<'_, R>) -> Vec<File> {

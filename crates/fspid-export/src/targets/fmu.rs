@@ -2,9 +2,10 @@
 
 use fspid_numeric::Real;
 
-use super::{File, Source, Written};
+use super::{Source, Written};
 use crate::compile::shared_library;
 use crate::compose::{Refusal, observed};
+use crate::file::File;
 use crate::write::fmu::{Fmu, Parts, Version, parts};
 use crate::zip::archive;
 

@@ -2,7 +2,8 @@
 
 use fspid_numeric::Real;
 
-use super::{File, Source, Written};
+use super::{Source, Written};
+use crate::file::File;
 use crate::write;
 
 const NO_SCRIPT: &str =

@@ -6,8 +6,9 @@ use fspid_formats::{WriteOptions, fis};
 use fspid_fuzzy::system::Parts;
 use fspid_numeric::Real;
 
-use super::{File, Flown, Source, Written};
+use super::{Flown, Source, Written};
 use crate::compose::Refusal;
+use crate::file::File;
 use crate::program::Program;
 use crate::table::infer;
 use crate::vectors::Draw;

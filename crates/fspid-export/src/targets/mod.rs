@@ -15,6 +15,7 @@ use fspid_core::Controller;
 use fspid_numeric::Real;
 
 use crate::compose::Refusal;
+use crate::file::File;
 use crate::program::{Precision, Program};
 use crate::vectors::Vector;
 use crate::write::Heading;
@@ -140,19 +141,4 @@ pub(crate) struct Flown<'a, R> {
 pub(crate) struct Written {
     pub(crate) files: Vec<File>,
     pub(crate) notes: Vec<String>,
-}
-
-/// A file of an export.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct File {
-    /// Its name in the folder, with `/` before the name where it lies in a folder of that.
-    pub name: String,
-    /// What is in it.
-    pub bytes: Vec<u8>,
-}
-
-impl File {
-    pub(crate) fn text(name: impl Into<String>, text: String) -> Self {
-        Self { name: name.into(), bytes: text.into_bytes() }
-    }
 }

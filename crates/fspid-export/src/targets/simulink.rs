@@ -2,8 +2,9 @@
 
 use fspid_numeric::Real;
 
-use super::{File, Source};
+use super::Source;
 use crate::compose::Refusal;
+use crate::file::File;
 use crate::write;
 
 pub(super) fn files<R: Real>(source: &Source<'_, R>) -> Result<Vec<File>, Refusal> {

@@ -2,9 +2,9 @@
 
 use fspid_numeric::Real;
 
-use super::{File, Source, Written};
-use crate::export::SEED;
-use crate::vectors::telling;
+use super::{Source, Written};
+use crate::file::File;
+use crate::vectors::{SEED, telling};
 use crate::write;
 
 pub(super) fn files<R: Real>(source: &Source<'_, R>) -> Written {

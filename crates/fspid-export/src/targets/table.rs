@@ -3,8 +3,9 @@
 use fspid_core::{Controller, SelfTuner};
 use fspid_numeric::Real;
 
-use super::{File, Flown, Source, Written};
+use super::{Flown, Source, Written};
 use crate::compose::Refusal;
+use crate::file::File;
 use crate::table::{Deviation, SurfaceTable};
 use crate::write;
 

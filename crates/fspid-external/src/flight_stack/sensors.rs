@@ -1,17 +1,17 @@
 //! What PX4's sensors show of an aircraft on board.
 
-use fspid_aircraft::atmosphere::{Air, SEA_LEVEL_PRESSURE_PA, STANDARD_GRAVITY_M_S2};
+use fspid_aircraft::atmosphere::{
+    Air, SEA_LEVEL_DENSITY_KG_M3, SEA_LEVEL_PRESSURE_PA, STANDARD_GRAVITY_M_S2,
+};
 use fspid_aircraft::{EulerAngles, Quaternion, Vector3};
 use fspid_mavlink::{HilAttitude, HilPlace, HilSensor};
 use fspid_sim::flight_stack::{Aboard, Place};
 
+use crate::earth::EARTH_RADIUS_M;
+
 /// Magnetic field of the Earth's dipole at its equator, gauss, an assumption: 31.2 µT, as if its axis were that of the
 /// Earth. A real field is up to half as strong again.
 const EQUATOR_GAUSS: f64 = 0.312;
-/// Mean radius of the Earth, m: that of a sphere on which ways over ground are laid (IUGG, 6371.0088 km).
-const EARTH_RADIUS_M: f64 = 6_371_008.8;
-/// Density of the standard atmosphere at mean sea level, kg/m³ (ISO 2533).
-const SEA_LEVEL_DENSITY_KG_M3: f64 = 1.225;
 
 /// What is shown.
 pub(super) struct Sensed {

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::earth::EARTH_RADIUS_M;
+
 /// Where it is and how it lies.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pose {
@@ -113,8 +115,8 @@ impl fmt::Display for TraceError {
 
 impl std::error::Error for TraceError {}
 
-/// Length of a degree of latitude on a sphere of the Earth's mean radius, 6371.0088 km, m.
-const DEGREE_M: f64 = 6_371_008.8 * std::f64::consts::PI / 180.0;
+/// Length of a degree of latitude on a sphere of the Earth's mean radius, m.
+const DEGREE_M: f64 = EARTH_RADIUS_M * std::f64::consts::PI / 180.0;
 
 /// What a flight shows at an instant; what a plant shows that is pitch alone is the rest of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

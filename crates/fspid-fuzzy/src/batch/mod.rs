@@ -35,7 +35,8 @@ use core::ops::Range;
 
 use fearless_simd::{Simd, SimdFloat, SimdMask, dispatch};
 
-use crate::supervisor::{Inference, InferenceError, OutOfRange, Supervisor};
+use crate::inference::{Inference, InferenceError};
+use crate::supervisor::{OutOfRange, Supervisor};
 use fspid_numeric::{InstructionSet, Real, Vector};
 
 /// Where a batch of answers is to be put: arrays as long as those of the inputs.

@@ -21,7 +21,7 @@ use super::moving::{
     Ends, Moving, MovingProof, NotProvedAt, Parts, Turned, basis_at_centre, most_cells,
     symmetric_forms, turned_by,
 };
-use crate::disturbances::MOST_BOUNDS;
+use crate::caps::MOST_BOUNDS;
 
 /// A disturbance of a loop whose gains move, and what is seen.
 #[derive(Clone, Copy, Debug)]

@@ -26,6 +26,7 @@ mod plant;
 mod plant_set;
 mod product;
 
+pub use crate::caps::MOST_PARAMETERS;
 pub use balance::balance;
 pub use definite::prove_positive_definite;
 pub use disturbed::{Driven, Ellipsoid, grows_no_faster};
@@ -42,4 +43,4 @@ pub use moving::{Ends, Moving, MovingProof, NotProvedAt, falls_while_moving};
 pub(crate) use plant::Passed;
 pub use plant::{ActuatorLag, ContinuousPlant, LagOf, PrintedPlant, ROUNDED, printed};
 pub(crate) use plant_set::from_middle;
-pub use plant_set::{MOST_PARAMETERS, MakesPlant, PlantSet, Sloped};
+pub use plant_set::{MakesPlant, PlantSet, Sloped};

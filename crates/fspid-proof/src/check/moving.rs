@@ -21,7 +21,7 @@ use super::error::NotProved;
 use super::exponential::require_bounded;
 use super::matrix::IntervalMatrix;
 use super::packed::Packed;
-use crate::sizes::MOST_WORK;
+use crate::caps::MOST_WORK;
 
 /// Most gains that may move.
 const GAINS: usize = 3;

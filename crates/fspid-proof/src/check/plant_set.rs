@@ -21,9 +21,7 @@ use super::error::{NotProved, positive};
 use super::exponential::{exponential, held};
 use super::matrix::IntervalMatrix;
 use super::plant::{ContinuousPlant, LagOf, printed, side_by_side};
-
-/// Most parameters of a box.
-pub const MOST_PARAMETERS: usize = 8;
+use crate::caps::MOST_PARAMETERS;
 
 /// A number with its slopes by the parameters, all between bounds.
 pub type Sloped = Dual<Interval, MOST_PARAMETERS>;

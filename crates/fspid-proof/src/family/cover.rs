@@ -1,11 +1,13 @@
 //! Coverage test: do the given boxes cover a box of parameters completely?
 
+use crate::caps::MOST_PARTS;
+
 /// Ends of each side.
 type Ends = [[f64; 2]];
 
 /// Most cuts that are made to find out: parts that were made by cutting ask for as many as they were made by, and others,
 /// which somebody wrote, could ask for more than anybody waits for.
-pub(super) const MOST_CUTS: usize = 32 * super::MOST_PARTS;
+pub(super) const MOST_CUTS: usize = 32 * MOST_PARTS;
 
 /// True if every point of `whole` lies in one of `parts`; ends belong to both sides of them. Not true either where more cuts
 /// than allowed would have to tell.

@@ -23,8 +23,8 @@ mod search;
 use fspid_numeric::scalar::Interval;
 use fspid_sim::loop_model::{LoopModel, SampledPlant};
 
+use crate::caps::{MOST_PARAMETERS, MOST_PARTS};
 use crate::certificate::{Certificate, Claim};
-pub use crate::check::MOST_PARAMETERS;
 use crate::check::{NotProved, PlantSet, from_middle};
 use crate::description::LoopDescription;
 use crate::gain_set::{GainSet, KnownSlopes};
@@ -32,12 +32,9 @@ use crate::recheck::{Recheck, RecheckError, Rechecked};
 use crate::scope::Range;
 
 use moves::Off;
-pub use pace::{MOST_PATCHES, Pace, Patch};
+pub use pace::{Pace, Patch};
 pub use scales::ScaledSensor;
 pub use search::{FamilyVerdict, Uncertain, prove_family};
-
-/// Most parts of a family.
-pub const MOST_PARTS: usize = 4096;
 
 /// A number that differs.
 #[derive(Clone, Debug, PartialEq)]

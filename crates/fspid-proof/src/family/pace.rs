@@ -20,6 +20,7 @@ use fspid_lti::Matrix;
 use fspid_numeric::scalar::{Interval, Scalar};
 
 use super::{Family, Parameter, Part, cover};
+use crate::caps::MOST_PATCHES;
 use crate::certificate::Claim;
 use crate::check::{IntervalMatrix, printed, prove_positive_definite};
 use crate::description::LoopDescription;
@@ -45,8 +46,6 @@ pub struct Patch {
     pub claim: Claim,
 }
 
-/// Most patches of a family.
-pub const MOST_PATCHES: usize = 64;
 /// More samples than are counted on a form, which has fallen to nothing before.
 const MOST_SAMPLES: f64 = 1e9;
 

@@ -4,9 +4,10 @@
 use fspid_lti::{Matrix, spectral_radius};
 
 use super::moves::Off;
-use super::pace::{MOST_PATCHES, common};
+use super::pace::common;
 use super::search::{Piece, Search, halves, middle};
-use super::{Family, MOST_PARTS, Pace, Parameter, Part, Patch, cover};
+use super::{Family, Pace, Parameter, Part, Patch, cover};
+use crate::caps::{MOST_PARTS, MOST_PATCHES};
 use crate::certificate::Claim;
 use crate::gain_set::GainSet;
 

@@ -7,7 +7,8 @@ use fspid_sim::loop_model::LoopModel;
 
 use super::moves::Off;
 use super::patches::moving;
-use super::{Family, MOST_PARTS, Parameter, Part, bears, covers_scales, models, numbers};
+use super::{Family, Parameter, Part, bears, covers_scales, models, numbers};
+use crate::caps::MOST_PARTS;
 use crate::certificate::Claim;
 use crate::check::{MakesPlant, NotProved, PlantSet};
 use crate::description::{LoopDescription, NotProvable};

@@ -7,22 +7,25 @@ mod remains;
 #[cfg(test)]
 mod tests;
 
-use fspid_core::{Change, Fspid, Gains, Law, SecondInput};
+use fspid_core::{Fspid, Gains, Law, SecondInput};
 use fspid_lti::Matrix;
-use fspid_numeric::scalar::{Base, Interval};
+use fspid_numeric::scalar::Interval;
 use fspid_sim::Controller;
 use fspid_sim::loop_model::LoopModel;
 
+use crate::caps::WrongSizes;
 use crate::certificate::{Certificate, Claim};
 use crate::check::{IntervalMatrix, NotProved, Relaxation, decreases, is_positive, prove_growth};
 use crate::description::NotProvable;
 use crate::disturbances::Disturbed;
 use crate::family::{CheckedFamily, FamilyError};
-use crate::gain_set::{Cone, GainSet, HeldGains, IncrementMap, KnownSlopes, NoSlopes, producible};
+use crate::gain_set::{
+    Cone, GainSet, HeldGains, IncrementMap, KnownSlopes, NoSlopes, input_rows, producible,
+};
 use crate::limits;
 use crate::nonlinear::{CheckedNonlinear, NonlinearError};
 use crate::rest::{NoRest, Rest};
-use crate::sizes::{self, WrongSizes};
+use crate::sizes;
 use crate::solve::never;
 use crate::steps::{Checked, Ended, Stepped, Terminal, corners_within};
 
@@ -534,20 +537,6 @@ fn can_see(controller: &Controller, [error, change]: [f64; 2]) -> bool {
 fn points(gains: Gains<f64>) -> Gains<Interval> {
     let Gains { kp, ki, kd } = gains;
     Gains { kp: Interval::point(kp), ki: Interval::point(ki), kd: Interval::point(kd) }
-}
-
-/// Rows from the state to what the supervisor sees of error and change, but for the sign that both share.
-pub(crate) fn input_rows<T: Base>(model: &LoopModel<T>, fspid: &Fspid<f64>) -> [Vec<T>; 2] {
-    let settings = fspid.tuner().settings();
-    let time_s = match settings.change {
-        Change::Rate => T::constant(model.settings().config.dt_s),
-        Change::Delta => T::one(),
-    };
-    let by_error = T::constant(settings.input_scale.error_per_rad);
-    let by_change = T::constant(settings.input_scale.change_per_rad) / time_s;
-    let [error, change] = model.error_rows();
-    let scaled = |row: Vec<T>, factor: T| row.into_iter().map(|entry| factor * entry).collect();
-    [scaled(error, by_error), scaled(change, by_change)]
 }
 
 /// The quadratic form that is not negative where the supervisor's inputs lie in a double cone:

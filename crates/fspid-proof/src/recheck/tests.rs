@@ -1,4 +1,4 @@
-use fspid_core::{Fspid, Gains, InputScale, Law, Pid, PidConfig, SelfTuner, TunerSettings};
+use fspid_core::{Change, Fspid, Gains, InputScale, Law, Pid, PidConfig, SelfTuner, TunerSettings};
 use fspid_sim::Controller;
 use fspid_sim::loop_model::BreakPoint;
 

@@ -16,15 +16,10 @@ use super::sweep::Sweep;
 use super::terminal::Terminal;
 use super::work::{Flights, most_checked};
 use super::{Checked, Search, given_up, is_odd, sees_loads_at_once};
+use crate::caps::{MOST_LEG_PARTS, MOST_LEG_SETS};
 use crate::certificate::Certificate;
 use crate::scope::Range;
 
-/// Most legs.
-pub const MOST_LEGS: usize = 64;
-/// Most sets of a leg, which are kept until they are joined.
-pub const MOST_LEG_SETS: usize = 1024;
-/// Most parts along set-points or loads in each group, and most groups of a leg.
-pub const MOST_LEG_PARTS: usize = 1024;
 /// The narrowest part, as a share of the whole.
 const NARROWEST: f64 = 1.0 / 512.0;
 /// Where a search begins: with a part of such a share of the whole.

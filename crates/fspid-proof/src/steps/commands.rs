@@ -4,8 +4,8 @@ use fspid_numeric::scalar::Interval;
 use fspid_sim::Scenario;
 use fspid_sim::signal::Entry;
 
-/// Most changes of a signal.
-pub const MOST_CHANGES: usize = 4096;
+use crate::caps::MOST_CHANGES;
+
 /// What changes again within so long, s, has not paused.
 const PAUSE_S: f64 = 0.5;
 /// Shares that are not further apart, as a part of themselves, are the same: what a quotient of another size is rounded to.

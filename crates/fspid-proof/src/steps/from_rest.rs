@@ -8,13 +8,10 @@ use super::sweep::Sweep;
 use super::terminal::Terminal;
 use super::work::{Flights, most_checked};
 use super::{Checked, Search, given_up, is_odd, remembers, sees_loads_at_once};
+use crate::caps::MOST_PIECES;
 use crate::certificate::Certificate;
 use crate::scope::Range;
 
-/// Most boxes along the set-points.
-pub const MOST_PIECES: usize = 4096;
-/// Most parts of the loads.
-pub const MOST_LOADS: usize = 64;
 /// Where a search begins: with a box of such a share of the set-points.
 const BEGINS: f64 = 0.25;
 /// The narrowest box that is flown, as a share of the set-points that are asked for.

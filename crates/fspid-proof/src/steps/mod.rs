@@ -49,9 +49,9 @@ use tuned::Tuner;
 
 pub(crate) use near::{corners_within, system_of};
 
-pub use commanded::{Commanded, Ended, Group, Leg, MOST_LEG_PARTS, MOST_LEG_SETS, MOST_LEGS};
-pub use commands::{Commands, MOST_CHANGES, Shares};
-pub use from_rest::{MOST_LOADS, MOST_PIECES, Stepped, Steps};
+pub use commanded::{Commanded, Ended, Group, Leg};
+pub use commands::{Commands, Shares};
+pub use from_rest::{Stepped, Steps};
 pub use terminal::{NearGains, Terminal};
 
 /// A proved loop with its form near rest, whose flights are looked for.

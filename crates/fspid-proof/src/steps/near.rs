@@ -8,8 +8,7 @@ use fspid_sim::loop_model::LoopModel;
 
 use crate::check::{NotProved, reach};
 use crate::description::LoopDescription;
-use crate::gain_set::{GainSet, GainsOver, HeldGains};
-use crate::recheck::input_rows;
+use crate::gain_set::{GainSet, GainsOver, HeldGains, input_rows};
 
 use super::terminal::Terminal;
 use super::tuned::Tuner;

@@ -11,10 +11,11 @@ use super::lane::{Lanes, NO, YES};
 use super::plant::Plants;
 use super::queue::Queue;
 use crate::error::SimError;
-use crate::in_flight::{InFlight, Seen};
+use crate::in_flight::InFlight;
 use crate::propagation::{DIVERGED_RAD, Propagation};
 use crate::propagator::Propagator;
 use crate::scenario::Prepared;
+use crate::seen::Seen;
 use crate::trace::{EndCause, Outcome};
 
 /// Places for `W` flights whose commands come from outside, each with the bits of [`InFlight`]. Plants with first-order

@@ -5,7 +5,7 @@ mod small_motion;
 
 use std::borrow::Borrow;
 
-use fspid_core::{Sample, Step};
+use fspid_core::Step;
 
 use crate::actuated::Held;
 use crate::aircraft::{AircraftFlight, AircraftMotion, AircraftSample, Wing};
@@ -16,34 +16,10 @@ use crate::flown::{CommandPath, Perturbation};
 use crate::instant::Instant;
 use crate::propagation::{Motion, Propagation};
 use crate::scenario::Prepared;
+use crate::seen::Seen;
 use crate::sensor::{Sensor, SensorState, Truth};
 use crate::surroundings::held;
 use crate::trace::{EndCause, Outcome};
-
-/// Signals available at a sample before the command is computed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Seen {
-    /// Index of the sample.
-    pub k: usize,
-    /// Commanded pitch, rad.
-    pub setpoint_rad: f64,
-    /// Pitch angle, rad; of an aircraft its change from the trim.
-    pub theta_rad: f64,
-    /// Pitch rate, rad/s.
-    pub q_rad_s: f64,
-    /// Pitch angle, rad, and pitch rate, rad/s, as a controller sees them.
-    pub measured: [f64; 2],
-}
-
-impl Seen {
-    /// What a controller is asked with.
-    #[inline]
-    #[must_use]
-    pub fn sample(&self) -> Sample<f64> {
-        let [measurement_rad, rate_rad_s] = self.measured;
-        Sample { setpoint_rad: self.setpoint_rad, measurement_rad, rate_rad_s }
-    }
-}
 
 /// A flight of a prepared scenario whose commands come from outside, one a sample; `P` is how it holds what is
 /// prepared, `&Prepared` or `Arc<Prepared>`. Whoever answers with the steps of a controller flies it as
@@ -366,9 +342,7 @@ impl<P: Borrow<Prepared>> Course<P> {
     }
 }
 
-pub(crate) use small_motion::{
-    AILERON, ALTITUDE, Alone, BEYOND, HEADING, POWER, Seeing, THROTTLE, poles_of_mode, radii_alone,
-};
+pub(crate) use small_motion::{Alone, poles_of_mode, radii_alone};
 pub use small_motion::{ModePoles, mode_poles};
 
 /// Commands on their way, the oldest at `next`.

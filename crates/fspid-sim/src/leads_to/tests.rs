@@ -7,7 +7,7 @@ use fspid_core::{ControllerSetting, Limits, PidConfig};
 use super::targets::{Targets, true_ones};
 use super::walk::{Engaged, Walk};
 use super::wanted::{Air, Nowhere, Seeker, Wanted, Way};
-use super::{Leg, Place, is_same, pitch_rad, places};
+use super::{Place, is_same, pitch_rad, places};
 use crate::aircraft::{AircraftPlant, Change, Standing};
 use crate::autopilot::{
     Autopilot, Condition, Engagement, Entry, GlideSlope, Mode, Moves, OuterLoop, Quantity, Side,
@@ -16,6 +16,7 @@ use crate::autopilot::{
 use crate::in_tests::{
     ALTITUDE_M, DT_S, SPEED_M_S, braked, mode, navion, outer, pid, pitch, scenario,
 };
+use crate::led::Leg;
 use crate::scenario::Scenario;
 use crate::signal::{Profile, Shape};
 

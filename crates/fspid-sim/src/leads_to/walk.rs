@@ -5,10 +5,11 @@ use fspid_aircraft::{Trim, TrimTarget};
 
 use super::targets::{Targets, true_ones, written};
 use super::wanted::{Air, Nowhere, Seeker, Wanted, Way};
-use super::{Led, Leg, Place, is_same, pitch_rad};
+use super::{Place, is_same, pitch_rad};
 use crate::aircraft::{AircraftPlant, Standing};
 use crate::autopilot::{Autopilot, Mode, Moves, OuterLoop, Quantity};
 use crate::controller::Controller;
+use crate::led::{Led, Leg};
 use crate::rest::has_integral;
 use crate::scenario::Scenario;
 

@@ -1,6 +1,6 @@
 //! Why it is undecided whether an equilibrium is stable: each reason with the number that it has and its sentence.
 
-use crate::leads_to::Led;
+use crate::led::Led;
 use crate::loop_model::MOST_AS_STATES;
 
 /// Why the stability of an equilibrium is undecided. A spectral radius is that of the sampled closed loop that is in doubt, as computed.
@@ -179,7 +179,7 @@ impl Doubt {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::leads_to::Leg;
+    use crate::led::Leg;
 
     #[test]
     fn what_leaves_within_a_few_samples_is_said_so_and_no_number_is_shown_that_is_none() {

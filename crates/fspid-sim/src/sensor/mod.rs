@@ -28,13 +28,14 @@
 
 mod memory;
 mod preset;
+mod seeing;
 
 pub(crate) use memory::View;
 pub use memory::{SensorState, Truth};
 pub use preset::SensorPreset;
+pub(crate) use seeing::Seeing;
 
 use crate::error::{SimError, finite, not_negative, positive};
-use crate::in_flight::Seeing;
 use crate::loop_model::Sensing;
 use crate::signal::noise::standard_normal;
 

@@ -48,7 +48,8 @@ pub use treatment::Treatment;
 
 use crate::crew::Part;
 use crate::error::TuneError;
-use crate::flights::{Asked, Dispersed, Flights, FlownCase, Flyer, each_once, flown_cases};
+use crate::flights::{Asked, Dispersed, Flights, FlownCase, each_once, flown_cases};
+use crate::flyer::Flyer;
 use crate::source::Source;
 use crate::space::Space;
 use best::Best;

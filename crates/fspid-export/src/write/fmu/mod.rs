@@ -12,8 +12,8 @@ mod variable;
 use sha2::{Digest, Sha256};
 
 use super::{Heading, c};
+use crate::file::File;
 use crate::program::Program;
-use crate::targets::File;
 use crate::write::decimal;
 
 /// The version of the standard.

@@ -1,7 +1,6 @@
 //! Elementary functions of intervals, piece by monotone piece.
 
 use super::Interval;
-use crate::exp::exp_one_f64;
 use crate::rounding::{positive_down, positive_up, root_down, root_up, steps_down, steps_up};
 use crate::scalar::{Base, Scalar};
 
@@ -138,8 +137,8 @@ impl Scalar for Interval {
 
     #[inline]
     fn exp(self) -> Self {
-        let lower = positive_down(exp_one_f64(self.lower), EXP_STEPS);
-        let upper = positive_up(exp_one_f64(self.upper), EXP_STEPS);
+        let lower = positive_down(Scalar::exp(self.lower), EXP_STEPS);
+        let upper = positive_up(Scalar::exp(self.upper), EXP_STEPS);
         // On its side of 1, and exactly 1 at 0.
         let lower = if self.lower >= 0.0 { lower.larger(1.0) } else { lower };
         let upper = if self.upper <= 0.0 { upper.smaller(1.0) } else { upper };

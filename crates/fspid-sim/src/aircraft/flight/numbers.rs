@@ -4,7 +4,7 @@
 use fspid_aircraft::{EulerAngles, HALF_POWER, Quaternion, Spool};
 
 use super::{AircraftFlight, AircraftMotion, Moving};
-use crate::in_flight::{AILERON, ALTITUDE, BEYOND, HEADING, POWER, THROTTLE};
+use crate::beyond::{AILERON, ALTITUDE, BEYOND, HEADING, POWER, THROTTLE};
 
 impl AircraftFlight {
     /// Change of pitch, u, w, q, deflection and, for a lag of second order, its rate; SI.

@@ -16,21 +16,20 @@ use fspid_core::{Gains, State};
 use fspid_lti::{Complex, Matrix, eigenvalues, modulus};
 
 use self::moving::{Sides, sides};
-use self::numbers::{Ended, Flying, Place, ROLLING, TURNING, is_of_the_wings, places};
+use self::numbers::{Ended, Flying, Place, is_of_the_wings, places};
 use self::still::{on_its_way, settling_samples, still, still_alone, unlimited};
 use super::Course;
 use crate::aircraft::{AircraftPlant, Change};
 use crate::autopilot::{Autopilot, Mode};
+use crate::beyond::{AILERON, POWER, ROLLING, TURNING};
 use crate::controller::Controller;
 use crate::error::SimError;
 use crate::flown::Perturbation;
 use crate::loop_model::MOST_AS_STATES;
 use crate::rest::{Doubt, Stand};
 use crate::scenario::{Prepared, Scenario};
+use crate::sensor::Seeing;
 use crate::stability::MODE_RADIUS;
-
-pub(crate) use self::numbers::{AILERON, ALTITUDE, BEYOND, HEADING, POWER, THROTTLE};
-pub(crate) use self::still::Seeing;
 
 /// Smaller poles are gone within a sample: those of delays, and of what is remembered of the sample before.
 const GONE: f64 = 1e-6;

@@ -3,6 +3,7 @@
 use fspid_core::{Gains, State};
 
 use crate::autopilot::{Autopilot, Mode, Quantity};
+use crate::beyond::{ALTITUDE, BEYOND, HEADING, POWER, THROTTLE};
 use crate::controller::Controller;
 use crate::error::SimError;
 use crate::in_flight::Course;
@@ -204,24 +205,6 @@ impl Flying<'_> {
         }
     }
 }
-
-/// Numbers of an aircraft beyond pitching, and the places of some of them.
-pub(crate) const BEYOND: usize = 10;
-/// Altitude.
-pub(crate) const ALTITUDE: usize = 0;
-/// Heading.
-pub(crate) const HEADING: usize = 1;
-/// Power of the engine.
-pub(crate) const POWER: usize = 6;
-/// Roll rate.
-pub(super) const ROLLING: usize = 3;
-/// Aileron.
-pub(crate) const AILERON: usize = 7;
-/// Throttle that is asked for.
-pub(crate) const THROTTLE: usize = 9;
-
-/// Rates of roll and yaw.
-pub(super) const TURNING: [usize; 2] = [ROLLING, 4];
 
 /// True for what moves the wings and the nose aside: no number of an aircraft in the plane of its flight.
 pub(super) fn is_of_the_wings(place: &Place) -> bool {

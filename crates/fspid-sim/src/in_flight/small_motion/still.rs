@@ -10,7 +10,7 @@ use crate::error::SimError;
 use crate::loop_model::{Sensing, comes_again_after};
 use crate::rest::settled;
 use crate::scenario::{Prepared, Scenario};
-use crate::sensor::Sensor;
+use crate::sensor::{Seeing, Sensor};
 use crate::surroundings::{Surroundings, Weather};
 use crate::timing::Timing;
 
@@ -18,22 +18,6 @@ use crate::timing::Timing;
 const SETTLING_SAMPLES: usize = 3;
 /// How far the antenna of a level beam is, m: from there a height is seen as it is, to 10⁻¹⁰ m.
 const FAR_M: f64 = 1e7;
-
-/// How sensors show small motions.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Seeing {
-    /// As late as they ever are, gyros upright.
-    Latest,
-    /// Those with a clock of their own by it, over a time after which all ages come again; gyros upright.
-    AsTheyCome,
-    /// Those with a clock of their own as early as they ever are.
-    Earliest,
-    /// Those with a clock of their own halfway between: as late as they are in the mean.
-    Midway,
-    /// As late as they ever are, with gyros that follow the apparent vertical, which is all that small motions see of
-    /// erection at a bounded rate.
-    Erecting,
-}
 
 /// Most samples that are flown to ask for all ages of the sensors in their order: some hundredths of a second.
 const MOST_FLOWN: usize = 30_000;

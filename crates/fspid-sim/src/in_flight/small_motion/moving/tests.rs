@@ -8,16 +8,18 @@ use fspid_core::{
 use fspid_fuzzy::{Defuzzifier, OutOfRange, Supervisor};
 use fspid_lti::{Complex, Matrix, eigenvalues};
 
-use super::super::numbers::{ALTITUDE, Place};
-use super::super::still::{Seeing, at_rest, still, unlimited};
+use super::super::numbers::Place;
+use super::super::still::{at_rest, still, unlimited};
 use super::super::{Asked, Small};
 use super::{Acting, Reach, Sides, acting_loop, closed, of_loops, of_one_loop, reach, seen};
 use crate::autopilot::{Autopilot, Engagement, Mode, Moves, OuterLoop, Quantity, Units};
+use crate::beyond::ALTITUDE;
 use crate::controller::Controller;
 use crate::in_tests::{ALTITUDE_M, DT_S, mode, navion, outer, pid, pitch, scenario, without_wings};
 use crate::loop_model::Gathered;
 use crate::rest::{Doubt, Rest, Side, Stand};
 use crate::scenario::{Prepared, Scenario};
+use crate::sensor::Seeing;
 
 /// Numbers of the loops of [`loops`]: the engaged ones stand in no order.
 const THROTTLE: usize = 0;

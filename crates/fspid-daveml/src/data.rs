@@ -28,8 +28,6 @@
 //! # Ok::<(), fspid_daveml::Problems>(())
 //! ```
 
-mod formula;
-
 use serde::{Deserialize, Serialize};
 
 use crate::MAX_INPUT_BYTES;
@@ -38,8 +36,6 @@ use crate::document::{Breakpoints, Document, GridTable, Header, Shot, TableFunct
 use crate::finding::{Findings, Origin};
 use crate::xml::Reading;
 use fspid_diagnostics::Problems;
-
-pub(crate) use formula::{is_name, parse, text_of_formula};
 
 /// Version of the keys.
 const SCHEMA: u32 = 1;
