@@ -40,6 +40,11 @@ pub enum SimError {
         /// Order after.
         after: usize,
     },
+    /// A ramp between two plants that the elevator moves in opposite senses.
+    RampWithoutEffect {
+        /// When nothing is left of the elevator's effect, s.
+        at_s: f64,
+    },
     /// A table of set-points that is empty, ragged or not in order of time.
     Table {
         /// What is wrong.
@@ -177,6 +182,10 @@ impl fmt::Display for SimError {
             Self::OrderChanges { before, after } => write!(
                 f,
                 "the plant changes from order {before} to order {after}; allowed is a denominator of the same length"
+            ),
+            Self::RampWithoutEffect { at_s } => write!(
+                f,
+                "the elevator moves the two plants in opposite senses, and nothing in between, at {at_s:.3} s; allowed is a ramp between plants of one sense, or a change at once"
             ),
             Self::Table { problem, row } => write!(f, "set-point table, row {row}: {problem}"),
             Self::ParameterCount { kind, found, allowed } => {

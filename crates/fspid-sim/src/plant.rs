@@ -203,6 +203,9 @@ impl LinearPlant {
     }
 }
 
+/// Up to so far apart two coefficients pass zero at one place of a ramp: what rounding leaves of numbers in a file.
+const SAME_FRACTION: f64 = 1e-9;
+
 /// A change of the plant's coefficients in flight.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlantChange {
@@ -239,6 +242,20 @@ impl PlantChange {
     #[must_use]
     pub fn target(&self) -> &LinearPlant {
         &self.target
+    }
+
+    /// The fraction of the way from `before` at which nothing is left of the elevator's effect; none where some always is.
+    pub(crate) fn without_effect(&self, before: &LinearPlant) -> Option<f64> {
+        let sign = before.elevator_sign.per_nose_up() * self.target.elevator_sign.per_nose_up();
+        let (from, _) = before.normalised();
+        let (to, _) = self.target.normalised();
+        let pairs = from.iter().zip(&to).map(|(from, to)| (sign * from, *to));
+        let mut moved = pairs.filter(|(from, to)| *from != 0.0 || *to != 0.0);
+        let fraction = |(from, to): (f64, f64)| (from * to < 0.0).then(|| from / (from - to));
+        let first = fraction(moved.next()?)?;
+        let all_there = moved
+            .all(|pair| fraction(pair).is_some_and(|other| (other - first).abs() < SAME_FRACTION));
+        all_there.then_some(first)
     }
 
     /// The plant a `fraction` of the way from `before`, in the sign of the target's elevator.

@@ -306,6 +306,9 @@ impl Scenario {
     }
 
     fn linear_stages(&self, plant: &LinearPlant) -> Result<Vec<Stage>, SimError> {
+        if let Some((_, at_s)) = self.ramp_without_effect() {
+            return Err(SimError::RampWithoutEffect { at_s });
+        }
         let dt_s = self.timing.dt_s();
         let new_stage = |from, plant: &LinearPlant| {
             Ok::<_, SimError>(Stage { from, propagation: self.propagation(plant, dt_s)? })
@@ -328,6 +331,24 @@ impl Scenario {
             before = change.between(&before, fraction(change, reached_s))?;
         }
         Ok(stages)
+    }
+
+    /// The first change of the plant, from 0, whose ramp goes through a plant that the elevator does not move, and when, s:
+    /// however long the flight is, and wherever samples lie.
+    #[must_use]
+    pub fn ramp_without_effect(&self) -> Option<(usize, f64)> {
+        let mut before = self.plant.linear()?.clone();
+        for (number, change) in self.plant_changes.iter().enumerate() {
+            let until_s =
+                self.plant_changes.get(number + 1).map_or(f64::INFINITY, PlantChange::at_s);
+            let ramp = (change.ramp_s() > 0.0).then(|| change.without_effect(&before)).flatten();
+            let at_s = ramp.map(|fraction| change.at_s() + fraction * change.ramp_s());
+            if let Some(at_s) = at_s.filter(|at_s| *at_s < until_s) {
+                return Some((number, at_s));
+            }
+            before = change.between(&before, fraction(change, until_s)).ok()?;
+        }
+        None
     }
 
     /// Every linear plant that lasts: the first, and the one after each change.

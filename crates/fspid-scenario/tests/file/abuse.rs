@@ -262,4 +262,41 @@ fn a_ramp_through_a_plant_without_effect_is_refused() {
     let found =
         problems(&format!("{text}\n[[plant_change]]\nat_s = 1.0\nramp_s = 1.0\n{}", plant("-")));
     assert_eq!(found.list[0].path, "plant_change[0].ramp_s", "{found}");
+    // Wherever the flight ends and its samples lie; it used to be refused where a sample lay right there, with "the numerator
+    // has no coefficients".
+    let there = |at_s: f64, ramp_s: f64| {
+        let change = format!("\n[[plant_change]]\nat_s = {at_s:?}\nramp_s = {ramp_s:?}\n");
+        problems(&format!("{text}{change}{}", plant("-"))).to_string()
+    };
+    for (at_s, ramp_s, zero_s) in
+        [(1.0, 1.013, "1.50"), (9.0, 30.0, "24.000 s"), (12.0, 2.0, "13.000 s")]
+    {
+        let told = there(at_s, ramp_s);
+        assert!(told.contains("plant_change[0].ramp_s"), "{told}");
+        assert!(told.contains("opposite senses") && told.contains(zero_s), "{told}");
+    }
+    // The next change ends the ramp before it comes there; a change at once needs no way.
+    let short = "\n[[plant_change]]\nat_s = 1.0\nramp_s = 2.0\n";
+    let back = "\n[[plant_change]]\nat_s = 1.5\n";
+    let text = format!("{text}{short}{}{back}{}", plant("-"), plant(""));
+    assert!(file::parse(&text, "x", None, &[]).is_ok());
+    let at_once = text.replace("ramp_s = 2.0", "ramp_s = 0.0");
+    assert!(file::parse(&at_once, "x", None, &[]).is_ok());
+}
+
+#[test]
+fn a_plant_that_a_flight_does_not_come_to_is_told_at_its_place() {
+    let told = |at_s: f64, ramp_s: f64| {
+        let change = format!("[[plant_change]]\nat_s = {at_s:?}\nramp_s = {ramp_s:?}\n");
+        let text = format!("{}\n{change}preset = \"navion-paper\"\n", file::starter());
+        let study = file::parse(&text, "x", None, &[]).expect("allowed");
+        study.warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
+    };
+    let judged_all_the_same = "after the flight's end at 10.0 s; the loop at rest is judged with";
+    for (at_s, ramp_s, key) in [(9.0, 2.0, "ramp_s"), (11.0, 0.0, "at_s"), (11.0, 3.0, "at_s")] {
+        let told = told(at_s, ramp_s);
+        assert!(told.contains(&format!("plant_change[0].{key}")), "{told}");
+        assert!(told.contains(judged_all_the_same), "{told}");
+    }
+    assert!(!told(8.0, 2.0).contains("plant_change"), "it is reached at the last sample");
 }

@@ -8,9 +8,9 @@ use fspid_sim::{EarlyEnd, Exit, Outcome, Timing, Trace};
 
 use super::{
     Absent, CommandEffort, ErrorIntegrals, Measured, Metric, StepMetrics, StepWindow,
-    is_seen_to_stay, largest_error_rad, left_validity,
+    largest_error_rad, left_validity,
 };
-use fspid_diagnostics::digits::{to_digits, to_six_decimals};
+use fspid_diagnostics::digits::to_digits;
 use fspid_scenario::measure::Measure;
 
 /// What a flight comes to, in one word.
@@ -100,9 +100,7 @@ impl fmt::Display for Verdict {
         match self {
             Self::Settled => f.write_str("settled"),
             Self::NotSettled { window_s, since_s } => {
-                write!(f, "not settled within {} s", to_six_decimals(*window_s))?;
-                let Some(since_s) = since_s else { return Ok(()) };
-                write!(f, ": in its band after {since_s:.3} s, too late to see it stay")
+                Absent::NotSettled { window_s: *window_s, since_s: *since_s }.fmt(f)
             }
             Self::Flown => f.write_str("flown"),
             Self::EndedEarly(end) => Absent::EndedEarly(*end).fmt(f),
@@ -303,12 +301,8 @@ fn verdict(edges: &[EdgeMetrics]) -> Verdict {
     edges
         .iter()
         .find_map(|edge| match edge.step.settling_time_s {
-            Err(Absent::NotSettled { window_s }) => {
-                Some(Verdict::NotSettled { window_s, since_s: None })
-            }
-            // A swing that goes on is in the band at its last sample by chance.
-            Ok(since_s) if !is_seen_to_stay(since_s, edge.window_s) => {
-                Some(Verdict::NotSettled { window_s: edge.window_s, since_s: Some(since_s) })
+            Err(Absent::NotSettled { window_s, since_s }) => {
+                Some(Verdict::NotSettled { window_s, since_s })
             }
             _ => None,
         })

@@ -11,7 +11,7 @@ pub use effort::{CommandEffort, ErrorIntegrals, largest_error_rad};
 pub use exit::{LEFT_RANGE, left_validity};
 pub use flight::{EdgeMetrics, FlightMetrics, Verdict};
 pub use metric::{Bad, METRICS, Metric};
-pub(crate) use step::is_seen_to_stay;
+pub(crate) use step::{SETTLING_BAND, is_seen_to_stay};
 pub use step::{StepMetrics, StepWindow};
 
 use fspid_diagnostics::digits::to_six_decimals;
@@ -39,11 +39,13 @@ pub enum Absent {
         /// Length of the window, s.
         window_s: f64,
     },
-    /// The response was outside the band at the end of the window.
-    #[error("not settled within {} s", to_six_decimals(*window_s))]
+    /// The response was outside the band at the end of the window, or came into it too late to be seen to stay there.
+    #[error("not settled within {} s{}", to_six_decimals(*window_s), too_late(*since_s))]
     NotSettled {
         /// Length of the window, s.
         window_s: f64,
+        /// From when on it was in the band after all, s after the step.
+        since_s: Option<f64>,
     },
     /// Only an external controller itself knows, and might say it wrongly.
     #[error("the limits of an external controller are not known here")]
@@ -76,6 +78,12 @@ pub enum Absent {
         "the accumulating law moves the gains at rest without end, so that there is no equilibrium; gain_limits, dead_zone or leakage_per_s bound it"
     )]
     GainsDrift,
+}
+
+/// What is added of a response that is in its band at the end of its window.
+fn too_late(since_s: Option<f64>) -> String {
+    let words = |since_s| format!(": in its band after {since_s:.3} s, too late to see it stay");
+    since_s.map_or(String::new(), words)
 }
 
 /// A measure, or why there is none.

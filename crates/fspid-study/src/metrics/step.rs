@@ -2,7 +2,8 @@
 //!
 //! With $y_i$ the set-point before the step, $y_f$ the one after it and
 //! $y_n = (y - y_i) / (y_f - y_i)$; both are given, never guessed from the data. Crossings are
-//! interpolated between samples. Definitions as in MATLAB's `stepinfo`, but for those two points.
+//! interpolated between samples. Definitions as in MATLAB's `stepinfo`, but for those two points, and that
+//! a time to settle is one only where the window goes on for a tenth of it.
 
 use fspid_scenario::measure::Measure;
 
@@ -12,7 +13,7 @@ use super::{Absent, Measured, Metric};
 /// Risen is 90 % of the way.
 const RISEN: f64 = 0.9;
 /// Settled is within 2 % of the step.
-const SETTLING_BAND: f64 = 0.02;
+pub(crate) const SETTLING_BAND: f64 = 0.02;
 
 /// Of the time that it took to settle so much has to be flown after it, to call it settled. A choice: what leaves its band more
 /// slowly is a matter of the loop at rest, which is asked for itself.
@@ -54,7 +55,8 @@ impl StepWindow<'_> {
 pub struct StepMetrics {
     /// From the first crossing of 10 % to the first crossing of 90 % of the way, s.
     pub rise_time_s: Measured,
-    /// First time after which the response stays within 2 % of the step about the new set-point, s.
+    /// First time after which the response stays within 2 % of the step about the new set-point, and is seen to stay
+    /// there for a tenth of that time, s.
     pub settling_time_s: Measured,
     /// As settling, but within 2 % of the largest error, s.
     pub transient_time_s: Measured,
@@ -181,7 +183,8 @@ impl Normalised<'_> {
         }
     }
 
-    /// First time after the step from which on the way stays within `band` of 1.
+    /// First time after the step from which on the way stays within `band` of 1, if it is seen to: of a swing that goes on
+    /// the last samples are in the band by chance.
     fn settling_time_s(&self, band: f64) -> Measured {
         // Written so that NaN counts as outside.
         let inside = |way: f64| (way - 1.0).abs() <= band;
@@ -189,10 +192,14 @@ impl Normalised<'_> {
             return Ok(0.0);
         };
         if outside + 1 == self.way.len() {
-            return Err(Absent::NotSettled { window_s: self.window_s() });
+            return Err(Absent::NotSettled { window_s: self.window_s(), since_s: None });
         }
         let edge = if self.way[outside] > 1.0 { 1.0 + band } else { 1.0 - band };
-        Ok(self.crossing_s(outside + 1, edge))
+        let (settled_s, window_s) = (self.crossing_s(outside + 1, edge), self.window_s());
+        match is_seen_to_stay(settled_s, window_s) {
+            true => Ok(settled_s),
+            false => Err(Absent::NotSettled { window_s, since_s: Some(settled_s) }),
+        }
     }
 
     fn after_rise(&self) -> Result<&[f64], Absent> {
@@ -261,7 +268,8 @@ mod tests {
         // A peer raises an index error.
         let metrics = measure(0.0, 2.0, 10.0, |t| 1.0 - (-t).exp());
         assert_eq!(metrics.rise_time_s, Err(Absent::NotRisen { window_s: 10.0 }));
-        assert_eq!(metrics.settling_time_s, Err(Absent::NotSettled { window_s: 10.0 }));
+        let outside = Absent::NotSettled { window_s: 10.0, since_s: None };
+        assert_eq!(metrics.settling_time_s, Err(outside));
         assert!(close(metrics.final_error_pct, 50.0, 0.01));
     }
 
@@ -310,6 +318,31 @@ mod tests {
         // Another peer reports it as not settled.
         let metrics = measure(0.0, 1.0, 1.0, |_| 1.001);
         assert_eq!(metrics.settling_time_s, Ok(0.0));
+    }
+
+    /// A swing of 4 deg that never ends had settled after 1996.690 of 2000 s.
+    #[test]
+    fn a_swing_that_goes_on_has_no_time_to_settle_wherever_its_window_ends() {
+        let swing = |t: f64| 1.0 + 0.5 * (core::f64::consts::TAU * t).cos();
+        let mut late = 0;
+        for thousandths in (20_000..21_000).step_by(7) {
+            let metrics = measure(0.0, 1.0, f64::from(thousandths) / 1000.0, swing);
+            for measured in [metrics.settling_time_s, metrics.transient_time_s] {
+                match measured {
+                    Err(Absent::NotSettled { since_s, .. }) => late += i32::from(since_s.is_some()),
+                    other => panic!("{thousandths}: {other:?}"),
+                }
+            }
+        }
+        assert!(late > 0, "some of them end within the band");
+        let metrics = measure(0.0, 1.0, 4.1, |t| 1.0 - (-t).exp());
+        let why = metrics.settling_time_s.expect_err("too late").to_string();
+        assert_eq!(
+            why,
+            "not settled within 4.1 s: in its band after 3.912 s, too late to see it stay"
+        );
+        let seen = measure(0.0, 1.0, 4.4, |t| 1.0 - (-t).exp());
+        assert!(close(seen.settling_time_s, -0.02_f64.ln(), 1e-6), "{seen:?}");
     }
 
     #[test]

@@ -266,15 +266,37 @@ pub(super) fn check_flight(report: &mut Report, section: &Section, scenario: &Sc
         }
     }
     warn_of_swinging(report, scenario);
-    let others = [keys::GUST, keys::PLANT_CHANGE, CONFIGURATION_CHANGE].into_iter();
+    let others = [keys::GUST, CONFIGURATION_CHANGE].into_iter();
     others.flat_map(|key| section.sections(key)).for_each(|part| late(report, part));
-    let mut ramps = section
-        .sections(keys::PLANT_CHANGE)
-        .iter()
-        .filter(|part| part.get(keys::RAMP_S) > Some(0.0));
-    if let Some(ramp) = ramps.next_back()
-        && report.count() == 0
-    {
+    check_plant_changes(report, section.sections(keys::PLANT_CHANGE), scenario);
+}
+
+/// Ramps that cannot be flown, and plants that a flight does not come to, which its loop at rest is judged with.
+fn check_plant_changes(report: &mut Report, changes: &[Section], scenario: &Scenario) {
+    let end_s = scenario.timing.end_s();
+    for part in changes {
+        let at_s = part.get(keys::AT_S).unwrap_or(0.0);
+        let reached_s = at_s + part.get(keys::RAMP_S).unwrap_or(0.0);
+        // The same allowance for rounding as for samples.
+        if reached_s > end_s + 1e-6 * scenario.timing.dt_s() {
+            let path = part.path(if at_s > end_s { keys::AT_S } else { keys::RAMP_S });
+            report.warn(format!(
+                "{path}: the plant that it leads to is reached at {reached_s:?} s, after the flight's end at {end_s:?} s; the loop at rest is judged with that plant too"
+            ));
+        }
+    }
+    if report.count() > 0 {
+        return;
+    }
+    if let Some((number, at_s)) = scenario.ramp_without_effect() {
+        if let Some(ramp) = changes.get(number) {
+            let refused: Result<(), _> = Err(SimError::RampWithoutEffect { at_s });
+            judged(report, (ramp, keys::RAMP_S), refused);
+        }
+        return;
+    }
+    let mut ramps = changes.iter().filter(|part| part.get(keys::RAMP_S) > Some(0.0));
+    if let Some(ramp) = ramps.next_back() {
         judged(report, (ramp, keys::RAMP_S), scenario.prepare());
     }
 }

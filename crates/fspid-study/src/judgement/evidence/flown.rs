@@ -135,7 +135,11 @@ impl Flown<'_> {
     fn steps(&self, requirement: &Requirement) -> Result<Vec<Case>, NotEvaluated> {
         let steps = self.counted(&requirement.conditions)?;
         let case = |(step, edge): &(StepAt, &EdgeMetrics)| {
-            let value = edge.step.measured(requirement.measure)?;
+            let value = match edge.step.measured(requirement.measure) {
+                // Whether it is seen to stay depends on the time that it may take.
+                Err(Absent::NotSettled { since_s: Some(since_s), .. }) => since_s,
+                measured => measured?,
+            };
             let case = Case { value, place: at_step(*step) };
             match requirement.measure {
                 // What has not come there has not gone beyond it either.

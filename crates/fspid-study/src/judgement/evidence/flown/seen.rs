@@ -4,20 +4,21 @@ use std::ops::RangeInclusive;
 
 use super::{Flown, at_step};
 use crate::judgement::{Case, NotEvaluated, StepAt};
-use crate::metrics::{EdgeMetrics, is_seen_to_stay};
+use crate::metrics::{EdgeMetrics, SETTLING_BAND};
 use fspid_scenario::requirement::Requirement;
 
-/// Part of the time that a step has, or of what it took to rise, which is flown after what is seen. A choice, as of what has
-/// settled.
+/// Part of the time that a step has, over which an error has to be left, or of what it took to rise, over which the motion at the
+/// end is taken. A choice, as of what has settled.
 const SEEN: f64 = 0.1;
 /// Risen is 90 % of the way, as for the rise time.
 const RISEN: f64 = 0.9;
 
 impl Flown<'_> {
-    /// An overshoot whose peak is seen: of a response that goes on at its last sample only the next one would tell how far.
+    /// An overshoot that stays within what is allowed where the response goes on as it does at its end: only flying on would
+    /// tell how far a response goes that still rises, in its first swing or in a later one.
     ///
-    /// What has settled, and is seen to stay so, goes no further; and what is more than is allowed does not get less. Of a step
-    /// that another one ends nothing more is flown, however long the flight is.
+    /// What is more than is allowed does not get less. Of a step that another one ends nothing more is flown, however long the
+    /// flight is.
     pub(super) fn peaked(
         &self,
         case: Case,
@@ -25,32 +26,17 @@ impl Flown<'_> {
         most_pct: Option<f64>,
     ) -> Result<Case, NotEvaluated> {
         let is_too_much = most_pct.is_some_and(|most_pct| case.value > most_pct);
-        let settled_s = edge.step.settling_time_s;
-        let is_settled = settled_s.is_ok_and(|time_s| is_seen_to_stay(time_s, edge.window_s));
         let is_ended = self.window(edge).end() + 1 < self.trace.rows();
-        if is_too_much || is_settled || is_ended || self.is_peak_seen(edge, most_pct) {
-            return Ok(case);
-        }
-        Err(NotEvaluated::StillRising { window_s: edge.window_s, place: Box::new(case.place) })
-    }
-
-    /// Whether a tenth of the time to 90 % of the way is flown after the sample that went furthest, or the response goes on so
-    /// slowly that for as long as it took to rise it stays within what is allowed.
-    fn is_peak_seen(&self, edge: &EdgeMetrics, most_pct: Option<f64>) -> bool {
         let theta_rad = self.trace.theta_rad.get(self.window(edge)).unwrap_or_default();
         let way = |theta: &f64| (theta - edge.from_rad) / (edge.to_rad - edge.from_rad);
         let ways: Vec<f64> = theta_rad.iter().map(way).collect();
-        let furthest = (0..ways.len()).max_by(|one, other| ways[*one].total_cmp(&ways[*other]));
-        let risen = ways.iter().position(|way| *way >= RISEN).map(|samples| samples.max(1));
-        let (Some(furthest), Some(risen), Some(last)) = (furthest, risen, ways.last()) else {
-            return false;
-        };
-        let tenth = libm::ceil(SEEN * risen as f64);
-        let before = ways.len().checked_sub(1 + tenth as usize).and_then(|place| ways.get(place));
-        let pace = before.map_or(f64::INFINITY, |before| (last - before).max(0.0) / tenth);
-        let goes_to = ways[furthest] + pace * risen as f64;
-        let is_slow = most_pct.is_some_and(|most_pct| 100.0 * (goes_to - 1.0) <= most_pct);
-        is_slow || (ways.len() - 1 - furthest) as f64 >= tenth
+        // Where nothing is asked, what goes on within the band in which a step has settled is told as it is.
+        let most_pct = most_pct.unwrap_or(case.value + 100.0 * SETTLING_BAND);
+        let stays = goes_to(&ways).is_some_and(|way| 100.0 * (way - 1.0) <= most_pct);
+        if is_too_much || is_ended || stays {
+            return Ok(case);
+        }
+        Err(NotEvaluated::StillRising { window_s: edge.window_s, place: Box::new(case.place) })
     }
 
     /// The error that a step leaves, if it has been no larger than it may be for a tenth of its time: the last sample of a swing
@@ -107,4 +93,29 @@ impl Flown<'_> {
         let case = Case { value: error(*time.end()).abs(), place: at_step(step) };
         self.left(case, time, requirement, error)
     }
+}
+
+/// How far a response comes that goes on as it does at its end, as a share of its way; none of one that has not risen.
+///
+/// A rise goes on for as long as it lasts already, since the step or since it last turned, or, where it slows down, as it does
+/// so: each tenth of the time to 90 % of the way adds the same share of what the one before it added. A quick rise may just have
+/// become a slow one there, so that the share is no less than that of a lag which rises in that time.
+fn goes_to(ways: &[f64]) -> Option<f64> {
+    let last = ways.len().checked_sub(1)?;
+    let risen = ways.iter().position(|way| *way >= RISEN)?.max(1);
+    let span = libm::ceil(SEEN * risen as f64) as usize;
+    let ago = |spans: usize| last.checked_sub(spans * span).and_then(|at| ways.get(at)).copied();
+    let (here, before) = (ago(0)?, ago(1)?);
+    let rise = here - before;
+    if rise <= 0.0 {
+        return Some(here);
+    }
+    let turned = (1..=last / span).find(|spans| ago(*spans) >= ago(spans - 1));
+    let rising = turned.map_or(last as f64 / span as f64, |spans| (spans - 1) as f64);
+    let share = ago(2).map_or(f64::INFINITY, |earlier| rise / (before - earlier));
+    let slowing = match (0.0..1.0).contains(&share) {
+        true => share.max(libm::pow(1.0 - RISEN, span as f64 / risen as f64)),
+        false => return Some(here + rise * rising),
+    };
+    Some(here + rise * rising.min(slowing / (1.0 - slowing)))
 }
