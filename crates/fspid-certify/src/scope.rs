@@ -233,7 +233,8 @@ fn steps(stepped: &Stepped) -> String {
             format!(" and of a load by up to {} deg of elevator at once", to_six_decimals(most))
         }
     };
-    let acting = acting(stepped.limited);
+    let settled_s = to_six_decimals(stepped.settled_s);
+    let acting = acting(stepped.limited, &format!("{settled_s} s later"));
     let rest = match stepped.rested_s {
         None => "from rest at the trim".to_owned(),
         Some(rested_s) => format!(
@@ -242,14 +243,17 @@ fn steps(stepped: &Stepped) -> String {
         ),
     };
     format!(
-        "{rest}, sensors without bias, any step of the set-point by up to {} deg{loaded} ends where the loop without limits does, {acting}; {} s later none acts any more",
-        to_six_decimals(setpoint),
-        to_six_decimals(stepped.settled_s)
+        "{rest}, sensors without bias, any step of the set-point by up to {} deg{loaded} ends where the loop without limits does, {acting}",
+        to_six_decimals(setpoint)
     )
 }
 
-fn acting(limited: bool) -> &'static str {
-    if limited { "with its limits acting on the way" } else { "without meeting one on the way" }
+/// What limits do on the way; a time after which the flight is near rest.
+fn acting(limited: bool, settled: &str) -> String {
+    match limited {
+        true => format!("with its limits acting on the way; {settled} none acts any more"),
+        false => format!("and no limit acts at any time; {settled} it is near rest"),
+    }
 }
 
 /// The flights that a scenario commands, limits acting on the way.
@@ -273,9 +277,8 @@ fn flights(ended: &Ended, range: Range, commanded_over_time: &str) -> String {
     let smaller = ended.setpoint_rad < range.setpoint_rad || ended.load_rad < range.load_rad;
     let part = if smaller { "; OF LARGER ONES THIS IS NOT SHOWN" } else { "" };
     format!(
-        "from rest at the trim at the controller's first sample, sensors without bias, {commanded} ({commanded_over_time}): each flight ends where the loop without limits does, {}; from {} s on none acts any more{part}",
-        acting(ended.limited),
-        to_six_decimals(ended.settled_s)
+        "from rest at the trim at the controller's first sample, sensors without bias, {commanded} ({commanded_over_time}): each flight ends where the loop without limits does, {}{part}",
+        acting(ended.limited, &format!("from {} s on", to_six_decimals(ended.settled_s)))
     )
 }
 

@@ -69,7 +69,7 @@ impl Deref for Source {
 impl ValueParserFactory for InFile {
     type Parser = ValueParser;
     fn value_parser() -> ValueParser {
-        let read = |text: OsString| named(text).map(Self);
+        let read = |text: OsString| named(text).and_then(readable).map(Self);
         OsStringValueParser::new().try_map(read).into()
     }
 }
@@ -150,6 +150,18 @@ fn named<T: AsRef<OsStr>, P: From<T>>(text: T) -> Result<P, String> {
     match text.as_ref().is_empty() {
         true => Err("a name is needed; is a variable of the shell not set?".to_owned()),
         false => Ok(text.into()),
+    }
+}
+
+/// Names of standard input on systems that have one.
+const DEVICES: [&str; 3] = ["/dev/stdin", "/dev/fd/0", "/proc/self/fd/0"];
+
+/// A file that is read; standard input by its name has no end that is known, unless a file was put there.
+fn readable(path: PathBuf) -> Result<PathBuf, String> {
+    let is_device = DEVICES.iter().any(|device| path.as_os_str() == *device);
+    match is_device && !path.is_file() {
+        true => Err(format!("standard input is `{STANDARD}`")),
+        false => Ok(path),
     }
 }
 

@@ -33,7 +33,8 @@ fn arguments<P: Parser>(mut words: Vec<OsString>) -> Result<P, Option<Failure>> 
     let mut output = Output { as_json, is_file: false };
     output.set();
     let command = prepared(P::command());
-    let matches = command.clone().try_get_matches_from(words).map_err(failure)?;
+    let parsed = command.clone().try_get_matches_from(words.clone());
+    let matches = parsed.map_err(|error| failure(error, &words))?;
     let is_read = |it: &Arg| is::<InFile>(it) || is::<Source>(it);
     let read = standard_files(&command, &matches, &is_read);
     if read.len() > 1 {
@@ -188,7 +189,7 @@ fn name(argument: &Arg) -> String {
 }
 
 /// What is wrong with the line, or that only help was asked for.
-fn failure(error: Error) -> Option<Failure> {
+fn failure(error: Error, words: &[OsString]) -> Option<Failure> {
     // Help and version are no mistakes; clap knows which stream is right.
     if !error.use_stderr() {
         return match error.print() {
@@ -199,12 +200,32 @@ fn failure(error: Error) -> Option<Failure> {
     if let Some(told) = wrong_value(&error) {
         return Some(Failure::input(told));
     }
+    if let Some(told) = parted_set(&error, words) {
+        return Some(Failure::usage(told));
+    }
     if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
         return Some(Failure::plain(error.render()));
     }
     let told = without_trailing_tip(&error.render().to_string());
     let told = told.strip_prefix("error: ").unwrap_or(&told).to_owned();
     Some(Failure::usage(told))
+}
+
+/// What is told of `--set PATH VALUE`, of which the value was taken for another argument.
+fn parted_set(error: &Error, words: &[OsString]) -> Option<String> {
+    let Some(ContextValue::String(unexpected)) = error.get(ContextKind::InvalidArg) else {
+        return None;
+    };
+    if error.kind() != ErrorKind::UnknownArgument {
+        return None;
+    }
+    let words: Vec<_> = words.iter().map(|word| word.to_string_lossy()).collect();
+    words.windows(3).find_map(|three| {
+        let [option, path, value] = [&three[0], &three[1], &three[2]];
+        let is_value = value == unexpected || value.parse::<f64>().is_ok();
+        (option == "--set" && !path.contains('=') && is_value)
+            .then(|| format!("--set takes one word: {path}={value}"))
+    })
 }
 
 /// Without the advice to write a mistyped option behind `--`: no file of this program is called `--controller`.

@@ -29,7 +29,7 @@ use exit::Failure;
 struct Arguments {
     /// Memory that the program may take, such as 2GiB; flights that need more are not begun, and what grows beyond is stopped.
     /// By default flights may need what the machine has left.
-    #[arg(long, global = true, value_name = "SIZE")]
+    #[arg(long, global = true, value_name = "SIZE", help_heading = "Options of every command")]
     max_memory: Option<Size>,
     #[command(subcommand)]
     command: Command,
@@ -42,6 +42,7 @@ enum Command {
     Check(commands::check::Arguments),
     Simulate(commands::simulate::Arguments),
     Show(commands::show::Arguments),
+    #[command(alias = "analyze")]
     Analyse(commands::analyse::Arguments),
     Certify(commands::certify::Arguments),
     Verify(commands::verify::Arguments),

@@ -161,6 +161,8 @@ fn progress_is_plain_lines_where_nobody_watches_and_nothing_when_quiet() {
     let loud = fspid(&with(&SMALL, &["--out", "loud"]), folder.path());
     let told = text(&loud.stderr);
     assert!(told.contains("40 of 40 runs") && told.contains("failed") && !told.contains('\r'));
+    let next = "\nnext: fspid campaign report loud --out loud.html\n";
+    assert!(told.ends_with(next), "{told}");
     let quiet = fspid(&with(&SMALL, &["--out", "quiet", "--quiet"]), folder.path());
     assert_eq!(text(&quiet.stderr), "");
 }

@@ -102,6 +102,31 @@ fn a_certificate_is_checked_alone_and_against_a_scenario() {
     let lost = fspid(&["certify", "--check", text(&certificate), "--set", "name=\"x\""]);
     assert_eq!(code(&lost), 2);
     assert!(told(&lost).contains("--against"), "{}", told(&lost));
+    // What was advised, a scenario beside both, is refused.
+    let alone = fspid(&["certify", "--against", text(&scenario)]);
+    assert_eq!(code(&alone), 2);
+    assert_eq!(told(&alone), "fspid: `--against` needs `--check CERTIFICATE`\n");
+}
+
+/// `certify --out .` names its files by controllers, and `check` was silent about them.
+#[test]
+fn certificates_in_the_folder_that_name_the_scenario_are_told_by_check() {
+    let (folder, scenario, certificate) = design();
+    let own = fspid(&["check", text(&scenario)]);
+    assert!(!told(&own).contains("not checked"), "{}", told(&own));
+    let other = folder.path().join("fspid.certificate.json");
+    std::fs::rename(certificate, &other).expect("renamed");
+    let checked = fspid(&["check", text(&scenario)]);
+    assert_eq!(code(&checked), 0, "{}", told(&checked));
+    let expected = format!(
+        "1 certificate here names this scenario and is not checked: fspid certify --check {} --against {}\n",
+        text(&other),
+        text(&scenario)
+    );
+    assert!(told(&checked).contains(&expected), "{}", told(&checked));
+    replace(&scenario, "747 pitch hold, proved", "another");
+    let another = fspid(&["check", text(&scenario)]);
+    assert!(!told(&another).contains("not checked"), "{}", told(&another));
 }
 
 #[test]

@@ -401,6 +401,51 @@ fn an_option_that_a_command_lacks_is_not_told_to_be_a_file() {
     assert!(text(&output.stderr).contains("'--report'"), "{}", text(&output.stderr));
 }
 
+/// "unexpected argument '2' found", and of other tools that each target was unknown.
+#[test]
+fn what_a_newcomer_writes_is_told_as_it_is_written_here() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    assert_eq!(code(&fspid(&["init", "a.toml"], folder)), 0);
+    let told = |words: &str| {
+        let output = fspid(&words.split(' ').collect::<Vec<_>>(), folder);
+        assert_eq!(code(&output), 2, "{words}: {}", text(&output.stdout));
+        text(&output.stderr)
+    };
+    for (words, expected) in [
+        (
+            "check a.toml --set controller.PID.kp 2",
+            "fspid: --set takes one word: controller.PID.kp=2\n",
+        ),
+        (
+            "check --set controller.PID.kp 2 a.toml",
+            "fspid: --set takes one word: controller.PID.kp=2\n",
+        ),
+        ("check a.toml --set controller.FSPID.kp=2", "did you mean `nominal.kp`?"),
+        ("export a.toml --to px4 --out o", "PX4 takes the C of `--to c`"),
+        ("export a.toml --to ArduPilot --out o", "ArduPilot takes a script, `--to lua`"),
+        ("export a.toml --to c++ --out o", "C++ takes the C of `--to c`"),
+        ("contest a.toml --out o", "fspid init --template contest"),
+    ] {
+        let told = told(words);
+        assert!(told.contains(expected), "{words}: {told}");
+    }
+    let analysed = fspid(&["analyze", "a.toml"], folder);
+    assert_eq!(code(&analysed), 0, "{}", text(&analysed.stderr));
+    let help = text(&fspid(&["check", "--help"], folder).stdout);
+    let (own, of_every) = help.split_once("Options of every command:").expect("a heading");
+    assert!(!own.contains("--max-memory") && of_every.contains("--max-memory"), "{help}");
+}
+
+/// "it is no regular file".
+#[cfg(unix)]
+#[test]
+fn standard_input_by_the_name_of_its_device_is_told_as_it_is_written_here() {
+    let output = fspid(&["check", "/dev/stdin"], std::path::Path::new("."));
+    assert_eq!(code(&output), 2, "{}", text(&output.stdout));
+    assert_eq!(text(&output.stderr), "fspid: /dev/stdin: standard input is `-`\n");
+}
+
 #[test]
 fn a_contest_says_how_long_it_takes_and_its_page_has_reasons_in_a_table() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -89,7 +89,10 @@ fn read(folder: &Path, name: &str) -> Vec<u8> {
 fn a_design_is_the_scenario_with_numbers_in_place_of_marks_and_flies() {
     let folder = folder();
     let folder = folder.path();
-    let told = done(&["tune", "pitch.toml", "--out", "design.toml"], folder);
+    let output = fspid(&["tune", "pitch.toml", "--out", "design.toml"], folder);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let (told, beside) = (text(&output.stdout), text(&output.stderr));
+    assert!(beside.ends_with("\nnext: fspid verify design.toml\n"), "{beside}");
     assert!(told.contains("cma-es with seed 1, 60 candidates of 2 flights"), "{told}");
     let design = String::from_utf8(read(folder, "design.toml")).expect("UTF-8");
     assert!(
@@ -266,6 +269,25 @@ fn what_is_wrong_is_told_before_anything_runs() {
         assert!(told.contains(message), "{arguments:?}: {told}");
     }
     assert!(!folder.join("design.toml").exists());
+}
+
+/// They were told one at a time, each after the one before was there.
+#[test]
+fn all_that_a_tuning_needs_is_told_at_once() {
+    let folder = folder();
+    let folder = folder.path();
+    let init = fspid(&["init", "plain.toml"], folder);
+    assert_eq!(init.status.code(), Some(0), "{}", text(&init.stderr));
+    let told = refused(&["tune", "plain.toml"], folder);
+    for words in
+        ["[[tuning.objective]]", "kp = { tune = [0.1, 10.0]", "`start`", "init --template tuning"]
+    {
+        assert!(told.contains(words), "{words}: {told}");
+    }
+    let (without, _) = SCENARIO.split_once("[tuning]").expect("there is one");
+    std::fs::write(folder.join("marked.toml"), without).expect("written");
+    let told = refused(&["tune", "marked.toml"], folder);
+    assert!(told.contains("[[tuning.objective]]") && !told.contains("kp = {"), "{told}");
 }
 
 #[test]

@@ -93,9 +93,7 @@ impl fmt::Display for Bearing {
             Self::PitchLoopStable => f.write_str(
                 "the pitch loop is stable; of the outer loops that fly around it nothing is claimed",
             ),
-            Self::Grows => f.write_str(
-                "these are the gains that it has at rest, so that the flown loop itself leaves rest",
-            ),
+            Self::Grows => f.write_str("the flown loop itself leaves rest"),
             Self::GrowsStandingStill => f.write_str(
                 "this refutes gains that stand still; in flight the gains move on, and the flown loop may still settle",
             ),

@@ -206,7 +206,7 @@ impl fmt::Display for LeftOut {
                 "The plant changes in flight: the claim is about one plant that stays, not about the others, which have certificates of their own, nor about the passage from one to the next."
             }
             Self::MovingAir => "Wind, gusts and turbulence are left out: the air is calm.",
-            Self::Noise => "Noise is left out: sensors are without noise.",
+            Self::Noise => "Noise is left out: none at sensors, servo, elevator or measurement is in the claim.",
             Self::Drift => "Wandering bias of sensors is left out: a bias stands still.",
             Self::BetweenSamples => "A sensor is late by no whole number of samples: the claim is about one that shows a straight line between two samples.",
             Self::SeenPitch => "Rest is told of the pitch that the controller sees: by what its sensor shows wrongly the aircraft's own is off.",

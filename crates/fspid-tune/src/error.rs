@@ -37,6 +37,19 @@ fn indented(problems: &[String], wrong_cases: &[WrongCase]) -> String {
     told.collect::<Vec<_>>().join("\n")
 }
 
+/// How a scenario says what a good flight is.
+const OBJECTIVE: &str = "add it, for instance:\n\n        [[tuning.objective]]\n        measure = \"iae_deg_s\"\n\n        [[tuning.objective]]\n        measure = \"elevator_travel_deg\"\n        weight = 0.1\n";
+/// How a number is marked free.
+const MARK: &str = "mark some, for instance:\n\n        kp = { tune = [0.1, 10.0], scale = \"log\", start = 1.0 }\n\n    the search begins at `start`, which has to fly in every case; a whole scenario: fspid init --template tuning";
+
+/// What is told beside a missing objective where nothing is marked free either.
+fn marks_as_well(is_marked: bool) -> String {
+    if is_marked {
+        return String::new();
+    }
+    format!("\n    and no number is marked free\n    {MARK}")
+}
+
 /// Why a tuning or a contest could not begin or go on.
 #[derive(Debug, Error)]
 #[non_exhaustive]
@@ -52,16 +65,18 @@ pub enum TuneError {
     Case(Box<WrongCase>),
     /// The scenario says nothing of tuning.
     #[error(
-        "{path}: it does not say what a good flight is\n    add it, for instance:\n\n        [[tuning.objective]]\n        measure = \"iae_deg_s\"\n\n        [[tuning.objective]]\n        measure = \"elevator_travel_deg\"\n        weight = 0.1\n"
+        "{path}: it does not say what a good flight is\n    {}{}",
+        OBJECTIVE,
+        marks_as_well(*is_marked)
     )]
     NoObjective {
         /// The scenario.
         path: String,
+        /// Whether a number is marked free.
+        is_marked: bool,
     },
     /// Nothing is marked free.
-    #[error(
-        "{path}: no number of controller \"{controller}\" is marked free\n    mark some, for instance:\n\n        kp = {{ tune = [0.1, 10.0], scale = \"log\", start = 1.0 }}\n"
-    )]
+    #[error("{path}: no number of controller \"{controller}\" is marked free\n    {}", MARK)]
     NothingFree {
         /// The scenario.
         path: String,

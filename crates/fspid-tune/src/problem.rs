@@ -42,7 +42,8 @@ impl TuningProblem {
         let path = || source.path.display().to_string();
         let study = template.study();
         let Some(tuning) = study.tuning.clone() else {
-            return Err(TuneError::NoObjective { path: path() });
+            let is_marked = !study.tunable_parameters.is_empty();
+            return Err(TuneError::NoObjective { path: path(), is_marked });
         };
         let named = controller.or(tuning.controller.as_deref());
         let controller = chosen(study, named)?;

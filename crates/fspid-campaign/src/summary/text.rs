@@ -1,5 +1,6 @@
 //! A summary for a terminal.
 
+use fspid_diagnostics::lines;
 use fspid_page::columns::{self, Align, Columns};
 
 use super::above_chance::AboveChance;
@@ -265,23 +266,5 @@ fn shortened(text: &str, most: usize) -> String {
 
 /// A text in lines, the first of which begins with `mark`, the others as far right.
 fn wrapped(text: &str, mark: &str) -> Vec<String> {
-    let room = WIDTH - mark.chars().count();
-    let mut lines = vec![String::new()];
-    for word in text.split_whitespace() {
-        if let Some(line) = lines.last_mut() {
-            if line.is_empty() || line.chars().count() + 1 + word.chars().count() <= room {
-                let between = if line.is_empty() { "" } else { " " };
-                line.push_str(between);
-                line.push_str(word);
-            } else {
-                lines.push(word.to_owned());
-            }
-        }
-    }
-    let other = " ".repeat(mark.chars().count());
-    let marked = |(index, line): (usize, String)| {
-        let mark = if index == 0 { mark } else { &other };
-        format!("{mark}{line}")
-    };
-    lines.into_iter().enumerate().map(marked).collect()
+    lines::wrapped(text, mark, WIDTH)
 }

@@ -5,6 +5,7 @@ use clap::Args;
 use fspid_campaign::bench::{Bench, Effort};
 use fspid_scenario::count as counts;
 
+use super::progress::at_work;
 use super::{Format, json_text};
 use crate::exit::{Failure, print};
 
@@ -32,7 +33,9 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let effort = if arguments.quick { Effort::QUICK } else { Effort::USUAL };
-    let bench = Bench::of_this_machine(arguments.threads, effort).map_err(Failure::not_met)?;
+    let what = if arguments.quick { "measuring" } else { "measuring, which takes about a minute" };
+    let bench = at_work(what, || Bench::of_this_machine(arguments.threads, effort));
+    let bench = bench.map_err(Failure::not_met)?;
     match arguments.format {
         Format::Text => print(&bench.text()),
         Format::Json => print(&json_text(&bench.json())),

@@ -1,5 +1,6 @@
 //! `fspid certify`: stability while the gains move.
 
+use std::io::{self, IsTerminal as _};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
@@ -15,9 +16,13 @@ use fspid_certify::{
     Answer, Cases, CertificateFile, Certification, CertifiedCases, CheckedFile, Effort,
     NotWritable, Question, Wrong, check_text,
 };
+use fspid_diagnostics::lines;
 use fspid_scenario::file::{self, Study, Template};
 use fspid_study::{output, shell};
 use fspid_tune::problems_of_certified;
+
+/// Longest line on a terminal, characters.
+const WIDTH: usize = 100;
 
 /// Prove or refute that a self-tuning loop is stable while its gains move.
 ///
@@ -31,13 +36,13 @@ use fspid_tune::problems_of_certified;
 )]
 pub(crate) struct Arguments {
     /// The scenario file.
-    #[arg(required_unless_present = "check")]
+    #[arg(required_unless_present_any = ["check", "against"])]
     file: Option<InFile>,
     /// Verify a certificate instead; nothing but this file is read.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["controller", "out"])]
     check: Option<InFile>,
     /// Compare the certificate with what this scenario flies, field by field.
-    #[arg(long, value_name = "SCENARIO", requires = "check")]
+    #[arg(long, value_name = "SCENARIO")]
     against: Option<InFile>,
     /// Set a value first, e.g. `--set controller.FSPID.nominal.kp=2`.
     #[arg(long = "set", value_name = "PATH=VALUE")]
@@ -80,6 +85,9 @@ fn cases() -> impl TypedValueParser<Value = Cases> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if arguments.check.is_none() && arguments.against.is_some() {
+        return Err(Failure::usage("`--against` needs `--check CERTIFICATE`"));
+    }
     match (&arguments.check, &arguments.file) {
         (Some(_), Some(scenario)) => Err(Failure::input(format_args!(
             "--check reads the certificate alone; `--against {}` compares it with what that scenario flies",
@@ -135,7 +143,7 @@ fn told(
 ) -> Result<(), Failure> {
     let (text, mut answer) = answer();
     match arguments.format {
-        Format::Text => print(&text),
+        Format::Text => print_folded(&text),
         Format::Json => {
             let left_out = study.scenario.externals.iter().map(|named| named.name.as_str());
             let left_out: Vec<&str> = left_out.filter(|_| arguments.controller.is_none()).collect();
@@ -145,6 +153,11 @@ fn told(
             print(&json_text(&answer))
         }
     }
+}
+
+/// Prints sentences: on a terminal in lines that are read at once, into a file or a program as they are.
+fn print_folded(text: &str) -> Result<(), Failure> {
+    if io::stdout().is_terminal() { print(&lines::folded(text, WIDTH)) } else { print(text) }
 }
 
 fn met(all_proved: bool) -> Result<(), Failure> {
@@ -233,7 +246,7 @@ fn check(path: &Path, arguments: &Arguments) -> Result<(), Failure> {
         checked.compare_family(&template).map_err(Failure::input)?;
     }
     match arguments.format {
-        Format::Text => print(&checked.text())?,
+        Format::Text => print_folded(&checked.text())?,
         Format::Json => print(&json_text(&checked.json()))?,
     }
     if checked.holds() {

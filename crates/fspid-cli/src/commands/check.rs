@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::Format;
 use crate::argument::InFile;
@@ -13,6 +13,7 @@ use fspid_diagnostics::digits::counted;
 use fspid_scenario::file::{self, LoadError, Template};
 use fspid_scenario::fuzzy_system;
 use fspid_study::json::with_null_reasons;
+use fspid_study::shell;
 use fspid_tune::Written;
 
 /// Check a scenario or a fuzzy system and tell every problem in it.
@@ -20,7 +21,7 @@ use fspid_tune::Written;
 /// Of a scenario the cases that it is tuned on and judged by are checked as well, each with its own changes.
 ///
 /// Where a certificate lies beside a scenario (`pitch.certificate.json` beside `pitch.toml`), it is verified, and compared
-/// with what the scenario flies.
+/// with what the scenario flies; others in the folder that name the scenario are told.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     /// The file: a scenario, a fuzzy system (.toml, .fis, .t2fis, .fcl, .fll, .xml), or a rule table.
@@ -67,6 +68,19 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let scenario = &study.scenario;
     let (file, timing) = (arguments.file.display(), scenario.timing);
     let certificate = beside(&arguments.file, &template)?;
+    let others = naming(&arguments.file, &scenario.name);
+    if let Some(first) = others.first() {
+        let word = |path: &Path| shell::word(&path.display().to_string());
+        let (count, verb) = match others.len() {
+            1 => ("1 certificate here names this scenario".to_owned(), "is"),
+            many => (format!("{many} certificates here name this scenario"), "are"),
+        };
+        note(format_args!(
+            "{count} and {verb} not checked: fspid certify --check {} --against {}",
+            word(first),
+            word(&arguments.file)
+        ));
+    }
     let text = || {
         let mut text = format!(
             "{file}: good; {} with {}, {} samples of {} s, digest {}\n",
@@ -104,6 +118,26 @@ fn beside(scenario: &Path, template: &Template) -> Result<Option<(PathBuf, Check
     let mut checked = super::certify::read(&path)?;
     checked.compare_family(template).map_err(Failure::input)?;
     Ok(Some((path, checked)))
+}
+
+/// Certificates of the scenario's folder that were made of one of this name, but for the one beside it.
+fn naming(scenario: &Path, name: &str) -> Vec<PathBuf> {
+    let folder = scenario.parent().filter(|it| !it.as_os_str().is_empty());
+    let entries = folder.unwrap_or(Path::new(".")).read_dir().into_iter().flatten().flatten();
+    let own = scenario.with_extension("certificate.json");
+    let is_other = |path: &PathBuf| {
+        let is_certificate = path.to_string_lossy().ends_with(".certificate.json");
+        is_certificate && path.file_name() != own.file_name()
+    };
+    let names_it = |path: &PathBuf| {
+        let text = file::read_text(path).ok();
+        let made: Option<Value> = text.and_then(|text| serde_json::from_str(&text).ok());
+        made.is_some_and(|made| made["origin"]["scenario"] == name)
+    };
+    let paths = entries.map(|entry| scenario.with_file_name(entry.file_name()));
+    let mut found: Vec<PathBuf> = paths.filter(is_other).filter(names_it).collect();
+    found.sort();
+    found
 }
 
 fn judge(path: &Path, checked: &CheckedFile, arguments: &Arguments) -> Result<(), Failure> {

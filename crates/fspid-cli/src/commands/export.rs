@@ -91,9 +91,25 @@ enum Unit {
     Degrees,
 }
 
+/// What takes a target under another name.
+const TAKEN: [(&str, &str); 5] = [
+    ("px4", "PX4 takes the C of `--to c` (docs/guide/export-px4.md)"),
+    (
+        "ardupilot",
+        "ArduPilot takes a script, `--to lua`, or the C of `--to c` (docs/guide/export-ardupilot.md)",
+    ),
+    ("c++", "C++ takes the C of `--to c`"),
+    ("cpp", "C++ takes the C of `--to c`"),
+    ("fmu", "functional mock-up units are `--to fmu2` and `--to fmu3`"),
+];
+
 /// The target of that name.
 fn target(name: &str) -> Result<Target, String> {
     Target::ALL.into_iter().find(|target| target.name() == name).ok_or_else(|| {
+        let lower = name.to_lowercase();
+        if let Some((_, told)) = TAKEN.iter().find(|(other, _)| *other == lower) {
+            return format!("unknown target; {told}");
+        }
         let known = Target::ALL.map(Target::name);
         format!("unknown target{}", file::known_words(name, &known))
     })

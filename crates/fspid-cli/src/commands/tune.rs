@@ -15,7 +15,7 @@ use crate::exit::{Failure, note, print, wrote};
 use fspid_diagnostics::digits::grouped;
 use fspid_scenario::count as counts;
 use fspid_scenario::file::known_words;
-use fspid_study::output;
+use fspid_study::{output, shell};
 use fspid_tune::baseline::Baseline;
 use fspid_tune::limit::NearLimit;
 use fspid_tune::rule::{Form, Options, Rule, Verdict};
@@ -130,10 +130,25 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Format::Json => tuned.iter().try_for_each(|it| print(&json_text(&it.json())))?,
     }
     match tuned.iter().all(|it| it.tuned.is_allowed()) {
-        true => Ok(()),
+        true => {
+            told_next(arguments, &tuned);
+            Ok(())
+        }
         false => Err(Failure::not_met(
             "no candidate came back from every flight and met every requirement",
         )),
+    }
+}
+
+/// Tells the command that judges each design that was written.
+fn told_next(arguments: &Arguments, tuned: &[Found]) {
+    if arguments.quiet || !matches!(arguments.format, Format::Text) {
+        return;
+    }
+    for design in tuned.iter().filter_map(|it| it.design.as_deref()) {
+        if !is_standard(design) {
+            note(format_args!("next: fspid verify {}", shell::word(&design.display().to_string())));
+        }
     }
 }
 
@@ -141,6 +156,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 struct Found {
     tuned: Tuned,
     near: Option<NearLimit>,
+    /// Where its design is written.
+    design: Option<PathBuf>,
 }
 
 impl Found {
@@ -211,12 +228,12 @@ impl Tuning<'_> {
         });
         let near = near.transpose().map_err(failure)?;
         if arguments.so_far {
-            return Ok(Found { tuned, near });
+            return Ok(Found { tuned, near, design: out });
         }
         if let Err(path) = place.remove() {
             note(format_args!("warning: {} could not be removed", path.display()));
         }
-        Ok(Found { tuned, near })
+        Ok(Found { tuned, near, design: out })
     }
 }
 

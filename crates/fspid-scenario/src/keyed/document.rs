@@ -106,7 +106,13 @@ pub(crate) fn read(report: &mut Report, origin: Option<String>, text: &str) -> O
     check_shape(report, source, text)?;
     let table = match DeTable::parse(text) {
         Ok(table) => table,
-        Err(error) => return report_syntax(report, source, text, &error),
+        Err(error) => {
+            report_syntax(report, source, text, &error);
+            for error in syntax::further(text, &error) {
+                report_syntax(report, source, text, &error);
+            }
+            return None;
+        }
     };
     let end = text.len().min(1);
     let place = Span { source, start: 0, end };
@@ -128,21 +134,16 @@ pub(crate) fn read_value(report: &mut Report, origin: String, text: &str) -> Opt
         let value = Value::Text(text.trim().to_owned());
         return Some(Item { place, value });
     }
-    report_syntax(report, source, text, &error)
+    report_syntax(report, source, text, &error);
+    None
 }
 
-/// Reports why a text is no TOML; later errors would be echoes of the first.
-fn report_syntax<T>(
-    report: &mut Report,
-    source: usize,
-    text: &str,
-    error: &toml::de::Error,
-) -> Option<T> {
+/// Reports why a text is no TOML.
+fn report_syntax(report: &mut Report, source: usize, text: &str, error: &toml::de::Error) {
     let span = error.span().unwrap_or(0..0);
     let (at, reason) = syntax::reason(text, error);
     let span = if at == span.start { span } else { at..at };
     report.line(place(source, span), reason);
-    None
 }
 
 /// Refuses what could overwhelm the parser: NUL, and nesting without end.

@@ -9,7 +9,7 @@ use crate::file::{repository, text};
 const GOLDEN: &str = "crates/fspid-scenario/tests/scenarios/messages.txt";
 
 /// A mistake: what it is, what is replaced in the starter, and by what.
-const MISTAKES: [(&str, &str, &str); 40] = [
+const MISTAKES: [(&str, &str, &str); 48] = [
     ("a mistyped key", "sample_period_s", "sample_perod_s"),
     ("a key without its unit", "duration_s", "duration"),
     ("a key in another unit", "sample_period_s = 0.01", "sample_period_ms = 10"),
@@ -90,6 +90,30 @@ const MISTAKES: [(&str, &str, &str); 40] = [
     ("a rule file that is not there", "table = \"mirrored\"", "table = \"my-rules.toml\""),
     ("a table for a list of tables", "[[disturbance]]", "[disturbance]"),
     ("no TOML", "duration_s = 10.0", "duration_s = 10,0"),
+    (
+        "a plant with the names of MATLAB",
+        "preset = \"navion-paper\"",
+        "num = [1.0]\nden = [1.0, 1.0]",
+    ),
+    ("a plant by its states", "preset = \"navion-paper\"", "A = [[1.0]]\nB = [1.0]"),
+    ("a plant by its poles", "preset = \"navion-paper\"", "zeros = [1.0]\npoles = [1.0, 2.0]"),
+    (
+        "a PID in standard form",
+        "kp = 1.0\nki = 0.5\nkd = 0.05",
+        "kp = 1.0\nTi = 2.0\nTd = 0.1\nN = 10",
+    ),
+    (
+        "a self-tuner in standard form",
+        "nominal = { kp = 1.0, ki = 0.5",
+        "nominal = { kp = 1.0, Ti = 2.0",
+    ),
+    ("a coefficient of a filter", "kd = 0.05", "kd = 0.05\nN = 100"),
+    ("a rate for a period", "sample_period_s = 0.01", "sample_rate_hz = 100"),
+    (
+        "lines of MATLAB",
+        "preset = \"navion-paper\"",
+        "numerator = [11.73 22.578]\ndenominator = [1 0.739 0.921];\nelevator_sign = 1 % up",
+    ),
 ];
 
 /// Requirements, each wrong in another way.
@@ -213,7 +237,13 @@ fn all() -> String {
         let problems = problems.expect_err(title);
         messages.push_str(&format!("# {title}\n{problems}\n\n"));
     }
-    let sets = ["loop.sample_period_s=0", "controller.FPID.nominal.kp=2", "loop.period=1", "loop"];
+    let sets = [
+        "loop.sample_period_s=0",
+        "controller.FPID.nominal.kp=2",
+        "controller.FSPID.kp=2",
+        "loop.period=1",
+        "loop",
+    ];
     let sets: Vec<String> = sets.iter().map(|&text| text.to_owned()).collect();
     let problems =
         file::parse(file::starter(), "starter.toml", None, &sets).expect_err("bad settings");

@@ -126,9 +126,10 @@ fn first_step(result: &ControllerResult) -> String {
         format!(", with what disturbs from {} s on in it", to_six_decimals(from_s))
     });
     format!(
-        "First step{load}: rise time {}, overshoot {}.",
+        "First step{load}: rise time {}, overshoot {}, settling time {}.",
         with_unit(first.rise_time_s, 3, "s"),
-        with_unit(first.overshoot_pct, 2, "%")
+        with_unit(first.overshoot_pct, 2, "%"),
+        with_unit(first.settling_time_s, 3, "s")
     )
 }
 

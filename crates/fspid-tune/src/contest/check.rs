@@ -15,6 +15,9 @@ use crate::search::Effort;
 use crate::source::Source;
 use crate::space::Space;
 
+/// What is told of a scenario without a contest.
+const NO_CASES: &str = "it has no [[contest.case]]: what the controllers are judged on, for instance\n\n        [[contest.case]]\n        name = \"2 deg\"\n        set = [\"setpoint.amplitude_deg=2.0\"]\n\n    a whole scenario: fspid init --template contest";
+
 pub(super) fn checked(source: &Source, options: &Options) -> Result<Contest, TuneError> {
     let template = source.template()?;
     let study = template.study();
@@ -26,7 +29,7 @@ pub(super) fn checked(source: &Source, options: &Options) -> Result<Contest, Tun
     }
     problems.extend(study.scenario.start_externals().err().map(|error| error.to_string()));
     let Some(rules) = study.contest.clone() else {
-        problems.push("it has no [[contest.case]]: what the controllers are judged on".to_owned());
+        problems.push(NO_CASES.to_owned());
         return Err(refused(source, problems, Vec::new()));
     };
     let tuning = study.tuning.clone();

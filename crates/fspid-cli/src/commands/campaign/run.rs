@@ -1,5 +1,7 @@
 //! `fspid campaign run`: fly all of it here.
 
+use std::path::{Path, PathBuf};
+
 use clap::Args;
 use serde_json::json;
 
@@ -9,7 +11,7 @@ use super::engine::{Asked, Cluster, Engine};
 use super::progress::told;
 use super::{Planned, PlannedFolder, failure, fits_as_a_shard, planned};
 use crate::argument::{InFile, count};
-use crate::exit::Failure;
+use crate::exit::{Failure, note};
 use fspid_campaign::table::{Digest, Reader};
 use fspid_campaign::{Folder, local};
 use fspid_scenario::count as counts;
@@ -83,7 +85,23 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
                 "digest": digest.to_string(),
             })
         },
-    )
+    )?;
+    if !arguments.quiet && matches!(arguments.format, Format::Text) {
+        note(format_args!("next: {}", reporting(folder.path())));
+    }
+    Ok(())
+}
+
+/// The command that tells what a campaign has found.
+fn reporting(folder: &Path) -> String {
+    let shown = folder.display().to_string();
+    // `.` and its like have no name.
+    let page = folder.file_name().map_or_else(
+        || PathBuf::from("campaign.html"),
+        |name| folder.with_file_name(format!("{}.html", name.to_string_lossy())),
+    );
+    let page = page.display().to_string();
+    format!("fspid campaign report {} --out {}", shell::word(&shown), shell::word(&page))
 }
 
 /// Digest of all rows that were merged.

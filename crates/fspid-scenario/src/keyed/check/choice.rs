@@ -5,13 +5,14 @@ use crate::keyed::document::Member;
 use crate::keyed::{Choice, KeyName, KeyRow, Section, Way, join};
 use fspid_diagnostics::Report;
 
-/// Exactly one of the ways must be used, and completely.
+/// Exactly one of the ways must be used, and completely; keys that were meant by other names are not missed.
 pub(super) fn check(
     report: &mut Report,
     (section, known): (&Section, &[KeyRow]),
-    members: &[Member],
+    (members, meant): (&[Member], &[&str]),
     choice: &Choice,
 ) {
+    let is_meant = |name: &&KeyName| meant.contains(&name.as_str());
     let present = |name: &KeyName| members.iter().find(|member| member.name == name.as_str());
     let keys = |way: &'static Way| way.required.iter().chain(way.optional);
     let used: Vec<(&'static Way, &Member)> = choice
@@ -20,21 +21,19 @@ pub(super) fn check(
         .filter_map(|way| keys(way).find_map(present).map(|m| (way, m)))
         .collect();
     match used.as_slice() {
-        [] => report.missing(section.place, &section.path, "a key is missing", words(choice)),
+        [] => match choice.ways.iter().find(|way| keys(way).any(|name| is_meant(&name))) {
+            Some(way) => {
+                let given = keys(way).find(is_meant);
+                let missing = way.required.iter().filter(|name| !is_meant(name));
+                incomplete(report, (section, known), given, missing);
+            }
+            None => report.missing(section.place, &section.path, "a key is missing", words(choice)),
+        },
         [(way, _)] => {
             let given = keys(way).find(|name| present(name).is_some());
-            for name in way.required.iter().filter(|name| present(name).is_none()) {
-                let partner = given.map_or("", |name| name.as_str());
-                let message = format!("missing key; it goes with `{partner}`");
-                let key = known.iter().find(|key| key.name() == *name);
-                let allowed = key.map(|key| value::allowed(key.kind()));
-                report.missing(
-                    section.place,
-                    &section.path(*name),
-                    message,
-                    allowed.unwrap_or_default(),
-                );
-            }
+            let is_missing = |name: &&KeyName| present(name).is_none() && !is_meant(name);
+            let missing = way.required.iter().filter(is_missing);
+            incomplete(report, (section, known), given, missing);
         }
         [(_, first), others @ ..] => {
             for (_, member) in others {
@@ -43,6 +42,22 @@ pub(super) fn check(
                 report.missing(member.place, &path, message, words(choice));
             }
         }
+    }
+}
+
+/// Reports the keys that go with one that is given.
+fn incomplete<'a>(
+    report: &mut Report,
+    (section, known): (&Section, &[KeyRow]),
+    given: Option<&KeyName>,
+    missing: impl Iterator<Item = &'a KeyName>,
+) {
+    let partner = given.map_or("", |name| name.as_str());
+    for name in missing {
+        let message = format!("missing key; it goes with `{partner}`");
+        let key = known.iter().find(|key| key.name() == *name);
+        let allowed = key.map(|key| value::allowed(key.kind())).unwrap_or_default();
+        report.missing(section.place, &section.path(*name), message, allowed);
     }
 }
 

@@ -2,9 +2,9 @@
 
 use fspid_diagnostics::nearest;
 
-use crate::keyed::KeyRow;
 use crate::keyed::check::value;
 use crate::keyed::document::Value;
+use crate::keyed::{KeyRow, Kind};
 
 /// Top-level tables in which nothing can be free.
 pub(crate) const FIXED: [&str; 5] = ["requirement", "dispersion", "tuning", "contest", "set"];
@@ -32,6 +32,19 @@ pub(super) fn singular_or_plural(name: &str, keys: &[KeyRow]) -> Option<KeyRow> 
         known.strip_suffix('s') == Some(name) || name.strip_suffix('s') == Some(known)
     };
     keys.iter().find(is_other).copied()
+}
+
+/// The place of a key in the one table of this one that has it: `nominal.kp`.
+pub(super) fn in_table(name: &str, keys: &[KeyRow]) -> Option<String> {
+    let has = |key: &&KeyRow| match key.kind() {
+        Kind::Table(table) => table.keys().any(|key| key.name().as_str() == name),
+        _ => false,
+    };
+    let mut tables = keys.iter().filter(has);
+    match (tables.next(), tables.next()) {
+        (Some(table), None) => Some(format!("{}.{name}", table.name().as_str())),
+        _ => None,
+    }
 }
 
 /// What follows the key's name in a message: the key, and what it holds where that is more than a value.

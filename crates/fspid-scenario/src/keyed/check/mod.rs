@@ -1,6 +1,7 @@
 //! The check of a document against its specification; it collects every problem.
 
 mod choice;
+mod foreign;
 mod grid;
 mod hint;
 pub(crate) mod number_grid;
@@ -73,7 +74,7 @@ impl<'a> Checker<'a> {
         }
         for choice in choices {
             let (report, section) = (&mut *self.report, &self.section);
-            choice::check(report, (section, &keys), self.members, choice);
+            choice::check(report, (section, &keys), (self.members, &meant), choice);
         }
     }
 
@@ -111,26 +112,47 @@ impl<'a> Checker<'a> {
                 self.report.missing(member.place, "", "", "");
                 continue;
             }
-            let (owners, meant) = (owners(spec, name), nearest(name, &known));
-            let other_unit = unit::other_unit(name, &member.item.value, &unit::numbers(keys));
-            let message = if !owners.is_empty() {
-                let kind = self.section.kind;
-                let near = hint::singular_or_plural(name, keys);
-                let near = near.map(|key| format!("; {}", hint::of_key(key))).unwrap_or_default();
-                format!("belongs to kind {}, not to kind \"{kind}\"{near}", quoted_or(&owners))
-            } else if let Some((meant, told)) = other_unit {
-                all_meant.push(meant);
-                format!("unknown key; {told}")
-            } else if let Some(meant) = meant {
-                all_meant.push(meant);
-                format!("unknown key; did you mean `{meant}`?")
-            } else {
-                "unknown key".to_owned()
-            };
+            let (message, meant) = self.unknown(spec, member, (keys, &known));
+            all_meant.extend(meant);
             let path = join(&self.section.path, &excerpt(name));
             self.report.missing(member.place, &path, message, known.join(", "));
         }
         all_meant
+    }
+
+    /// What is told of a key that is not known here, and the key that was meant by it.
+    fn unknown(
+        &self,
+        spec: &'static Table,
+        member: &Member,
+        (keys, known): (&[KeyRow], &[&'static str]),
+    ) -> (String, Option<&'static str>) {
+        let name = member.name.as_str();
+        let within = || hint::in_table(name, keys).map(|path| format!("did you mean `{path}`?"));
+        let owners = owners(spec, name);
+        if !owners.is_empty() {
+            let kind = self.section.kind;
+            let near = hint::singular_or_plural(name, keys).map(hint::of_key).or_else(within);
+            let near = near.map(|told| format!("; {told}")).unwrap_or_default();
+            let owners = quoted_or(&owners);
+            return (format!("belongs to kind {owners}, not to kind \"{kind}\"{near}"), None);
+        }
+        let other_unit = || {
+            let found = unit::other_unit(name, &member.item.value, &unit::numbers(keys));
+            found.map(|(meant, told)| (Some(meant), told))
+        };
+        let nearest = || {
+            let meant = nearest(name, known)?;
+            Some((Some(meant), format!("did you mean `{meant}`?")))
+        };
+        let told = foreign::of_key(name, self.members, known)
+            .or_else(other_unit)
+            .or_else(|| within().map(|told| (None, told)))
+            .or_else(nearest);
+        match told {
+            Some((meant, told)) => (format!("unknown key; {told}"), meant),
+            None => ("unknown key".to_owned(), None),
+        }
     }
 
     /// Checks a key; one that is there under a mistyped name is not missed as well.

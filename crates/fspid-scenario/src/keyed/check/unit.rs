@@ -82,6 +82,9 @@ pub(super) fn other_unit(
     known: &[&'static str],
 ) -> Option<(&'static str, String)> {
     let lower = name.to_lowercase();
+    if let Some(period) = of_rate(&lower, value, known) {
+        return Some(period);
+    }
     let (what, given) = parted(&lower)?;
     let (key, asked) = known.iter().find_map(|key| {
         let (of, asked) = parted(key)?;
@@ -94,6 +97,21 @@ pub(super) fn other_unit(
             format!("write `{key} = {converted}`: this key is in {words}")
         }
         _ => format!("did you mean `{key}`? It is in {words}"),
+    };
+    Some((key, told))
+}
+
+/// The period that is the inverse of a rate: `sample_period_s` for `sample_rate_hz`.
+fn of_rate(name: &str, value: &Value, known: &[&'static str]) -> Option<(&'static str, String)> {
+    let (what, given) = parted(name).filter(|(_, unit)| unit.of == "Hz")?;
+    let of = ["_rate", "_frequency"].iter().find_map(|ending| what.strip_suffix(ending))?;
+    let key = *known.iter().find(|key| key.strip_suffix("_period_s") == Some(of))?;
+    let told = match value {
+        Value::Integer(rate, _) | Value::Float(rate) if rate.is_finite() && *rate > 0.0 => {
+            let period = to_digits(1.0 / (rate * given.size), DIGITS);
+            format!("write `{key} = {period}`: this key is the time between samples, in seconds")
+        }
+        _ => format!("did you mean `{key}`? It is the time between samples, in seconds"),
     };
     Some((key, told))
 }
@@ -141,6 +159,13 @@ mod tests {
         same("airspeed_kt", 100.0, "airspeed_m_s = 51.44444", "metres per second");
         let hertz = told("sample_period_hz", 100.0, &known);
         assert_eq!(hertz.as_deref(), Some("did you mean `sample_period_s`? It is in seconds"));
+        let seconds = "the time between samples, in seconds";
+        for (rate, value) in [("sample_rate_hz", 100.0), ("sample_frequency_kHz", 0.1)] {
+            let expected = format!("write `sample_period_s = 0.01`: this key is {seconds}");
+            assert_eq!(told(rate, value, &known), Some(expected));
+        }
+        let none = told("sample_rate_hz", 0.0, &known).expect("a hint");
+        assert!(none.starts_with("did you mean `sample_period_s`?"), "{none}");
         for other in ["amplitude_deg", "gain_rad", "sample_period", "s", "_s", "period_s"] {
             assert_eq!(told(other, 1.0, &known), None, "{other}");
         }
