@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 use super::text::is_fixed;
 use super::told::{at_least, at_most};
 use super::{disturbances, family, nonlinear};
+use fspid_scenario::turned::turned_in_words;
 use fspid_scenario::units::degrees;
 use fspid_study::json::merged;
 
@@ -24,6 +25,8 @@ pub(super) struct Told {
     nonlinear: Option<String>,
     /// What is commanded, where flights are claimed.
     commanded: String,
+    /// That gains have a sign that turns the loop around, where they do.
+    turned: Option<String>,
 }
 
 impl Told {
@@ -44,7 +47,8 @@ impl Told {
         let commanded = certificate.commanded.as_ref();
         let commanded =
             commanded.map(|it| commands_in_words(&it.commands, dt_s)).unwrap_or_default();
-        Self { stable, left_out, family, moving, nonlinear, commanded }
+        let turned = turned_in_words(certificate.description.controller.nominal());
+        Self { stable, left_out, family, moving, nonlinear, commanded, turned }
     }
 
     /// As [`of`](Self::of) of a certificate that was read and held against no scenario: what its words make of its plants
@@ -68,6 +72,7 @@ impl Told {
         let mut sentences = Vec::new();
         if let Some(scope) = &self.stable {
             sentences.push(("holds for", range_in_words(scope)));
+            sentences.extend(self.turned.iter().map(|it| ("sign", sign(it))));
             if scope.rest_error_rad > 0.0 {
                 sentences.push(("error at rest", rest_error(scope)));
             }
@@ -207,6 +212,13 @@ fn remains(scope: &Scope) -> String {
         0.0 => format!("nothing: every deviation dies out towards {rest}"),
         most => format!("the pitch angle may stay up to {} deg off {rest}", at_most(most)),
     }
+}
+
+/// What a claim of a loop with gains of the other sign is worth.
+fn sign(turned: &str) -> String {
+    format!(
+        "{turned}: proved is the loop with elevator_sign as it is written; if that is wrong, the aircraft's own loop is another one"
+    )
 }
 
 /// What becomes of limits.

@@ -48,3 +48,45 @@ fn a_trim_right_on_a_kink_of_the_aircrafts_data_is_not_proved_and_one_beside_it_
     };
     assert!(!is_proved(0.0) && is_proved(1e-4));
 }
+
+/// An aircraft whose elevator sign is turned, with gains that are turned with it, as a first answer to "is elevator_sign
+/// right?" leads to.
+const TURNED: &str = r#"
+schema = 1
+name = "turned twice"
+[plant]
+numerator = [-36.11]
+denominator = [1.0, 5.3, 24.7]
+elevator_sign = "nose-up-positive"
+[loop]
+sample_period_s = 0.01
+duration_s = 10.0
+[setpoint]
+kind = "step"
+amplitude_deg = 5.0
+at_s = 0.0
+[[controller]]
+name = "PID"
+kind = "pid"
+kp = -1.5
+ki = -0.5
+kd = -0.15
+derivative_filter_s = 0.02
+"#;
+
+/// It was PROVED without a word, and is reversed on the aircraft.
+#[test]
+fn a_proof_of_a_loop_with_negative_gains_says_that_they_are_negative() {
+    let text = certified(&study(TURNED, &[])).text();
+    assert!(text.contains("PROVED: stable"), "{text}");
+    let told = "kp is negative, and here a positive command turns the nose up whatever the elevator does, so gains are positive (kp = 1.5): proved is the loop with elevator_sign as it is written";
+    assert!(text.contains(told), "{text}");
+    let right = [
+        "plant.elevator_sign=nose-down-positive",
+        "controller.PID.kp=1.5",
+        "controller.PID.ki=0.5",
+        "controller.PID.kd=0.15",
+    ];
+    let text = certified(&study(TURNED, &right)).text();
+    assert!(text.contains("PROVED: stable") && !text.contains("is negative"), "{text}");
+}

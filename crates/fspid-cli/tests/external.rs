@@ -311,6 +311,7 @@ fn flown(controller: &Controller, folder: &Path) -> Vec<Trace> {
         samples: 3,
         points: 0,
         digest: "drawn",
+        elevator: None,
         evidence: false,
     };
     let exported = export(controller, &request).expect("nothing that is drawn is refused");

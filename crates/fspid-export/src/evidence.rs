@@ -196,6 +196,7 @@ mod tests {
             digest: "0",
             precision: program.precision,
             angles: Some(Angles::Radians),
+            elevator: None,
         };
         let subject = Subject {
             program: &program,
@@ -260,7 +261,7 @@ mod tests {
             let controller = Controller::SelfTuning(fspid);
             let program = crate::program(&controller, Angles::Radians).expect("nothing is refused");
             let (precision, angles) = (program.precision, Some(Angles::Radians));
-            let heading = Heading { name: "FSPID", digest: "0", precision, angles };
+            let heading = Heading { name: "FSPID", digest: "0", precision, angles, elevator: None };
             proof::first_line(&Subject {
                 program: &program,
                 controller: &controller,

@@ -34,6 +34,8 @@ pub struct Request<'a> {
     pub points: usize,
     /// SHA-256 of the scenario, in hexadecimal digits.
     pub digest: &'a str,
+    /// For which elevator it was designed, in a sentence that every file gets; none where nobody knows.
+    pub elevator: Option<String>,
     /// Data for a review is asked for, which takes a minute; C has it.
     pub evidence: bool,
 }
@@ -135,6 +137,7 @@ fn exported<R: Real>(
         digest: request.digest,
         precision: precision_of::<R>(),
         angles: Some(request.angles),
+        elevator: request.elevator.as_deref(),
     };
     let source = Source {
         program: &program,

@@ -14,8 +14,13 @@ const STAND_IN: &str = include_str!("data/ardupilot_stand_in.lua");
 
 fn write(controller: &Controller<f32>, angles: Angles, folder: &Path) {
     let program = program(controller, angles).expect("nothing here is refused");
-    let heading =
-        Heading { name: "pitch", digest: "0", precision: program.precision, angles: Some(angles) };
+    let heading = Heading {
+        name: "pitch",
+        digest: "0",
+        precision: program.precision,
+        angles: Some(angles),
+        elevator: None,
+    };
     for (name, text) in [
         ("pitch.lua", lua(&program, &heading)),
         ("pitch_ardupilot.lua", ardupilot(&program, "pitch", &heading).expect("10 ms")),
@@ -91,6 +96,7 @@ fn a_period_that_is_no_whole_number_of_milliseconds_has_no_script() {
     let controller = crate::common::paper_every(0.0025).rounded::<f32>().expect("small numbers");
     let program = program(&controller, Angles::Radians).expect("nothing here is refused");
     let (precision, angles) = (program.precision, Angles::Radians);
-    let heading = Heading { name: "pitch", digest: "0", precision, angles: Some(angles) };
+    let heading =
+        Heading { name: "pitch", digest: "0", precision, angles: Some(angles), elevator: None };
     assert_eq!(ardupilot(&program, "pitch", &heading), None);
 }

@@ -43,8 +43,13 @@ pub(crate) fn write_all<R: Real>(
     main: Option<&str>,
 ) {
     let program = program(controller, angles).expect("nothing here is refused");
-    let heading =
-        Heading { name: "pitch", digest: "0", precision: program.precision, angles: Some(angles) };
+    let heading = Heading {
+        name: "pitch",
+        digest: "0",
+        precision: program.precision,
+        angles: Some(angles),
+        elevator: None,
+    };
     let files = c(&program, "pitch", &heading);
     let vectors = eventful(controller, angles, 1, 3000);
     let harness = c_harness(&program, "pitch", &vectors);

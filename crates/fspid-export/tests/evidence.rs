@@ -25,6 +25,7 @@ fn exported() -> Export {
         samples: 2500,
         points: fspid_export::table::POINTS,
         digest: "0",
+        elevator: None,
         evidence: true,
     };
     export(&controller(), &request).expect("nothing is refused")

@@ -36,6 +36,7 @@ fn called(
         samples: 10,
         points: fspid_export::table::POINTS,
         digest: "0",
+        elevator: None,
         evidence: false,
     };
     let exported = export(controller, &request).expect("nothing here is refused");

@@ -20,8 +20,13 @@ const SAMPLES: usize = 2000;
 /// Writes the module and its check.
 fn write<R: Real>(controller: &Controller<R>, angles: Angles, folder: &Path) {
     let program = program(controller, angles).expect("nothing here is refused");
-    let heading =
-        Heading { name: "pitch", digest: "0", precision: program.precision, angles: Some(angles) };
+    let heading = Heading {
+        name: "pitch",
+        digest: "0",
+        precision: program.precision,
+        angles: Some(angles),
+        elevator: None,
+    };
     let vectors = eventful(controller, angles, 1, SAMPLES);
     for (name, text) in [
         ("pitch.lua", lua(&program, &heading)),
@@ -124,6 +129,7 @@ fn a_controller_that_is_called_like_a_library_gets_another_name_and_answers() {
         samples: 50,
         points: 25,
         digest: "0",
+        elevator: None,
         evidence: false,
     };
     let exported = export(&crate::common::paper(), &request).expect("nothing here is refused");

@@ -44,6 +44,7 @@ fn written<R: Real>(controller: &Controller<R>, angles: Angles, folder: &Path) -
         digest: "0",
         precision: precision_of::<R>(),
         angles: Some(angles),
+        elevator: None,
     };
     let vectors = vectors(controller, angles, 1, 400);
     let check = rust_harness(controller, "pitch", &heading, &vectors);

@@ -45,6 +45,7 @@ proptest! {
             samples: 400,
             points: 7,
             digest: "0",
+            elevator: None,
             evidence: false,
         };
         let folder = tempfile::tempdir().expect("a temporary folder");

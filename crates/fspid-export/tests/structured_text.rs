@@ -38,8 +38,13 @@ struct Text {
 
 fn text<R: Real>(controller: &Controller<R>, angles: Angles, vectors: &[Vector<R>]) -> Text {
     let program = program(controller, angles).expect("nothing here is refused");
-    let heading =
-        Heading { name: "pitch", digest: "0", precision: program.precision, angles: Some(angles) };
+    let heading = Heading {
+        name: "pitch",
+        digest: "0",
+        precision: program.precision,
+        angles: Some(angles),
+        elevator: None,
+    };
     let samples: Vec<Vec<R>> =
         vectors.iter().take(40).map(|vector| vector.sample.clone()).collect();
     Text {
@@ -224,6 +229,7 @@ fn the_check_for_a_plc_notices_each_number_of_a_design_that_is_turned() {
         samples: 2000,
         points: 25,
         digest: "0",
+        elevator: None,
         evidence: false,
     };
     let controller = limited().rounded::<f64>().expect("the same numbers");

@@ -125,7 +125,13 @@ proptest! {
 fn different(system: &System) -> Option<usize> {
     use fspid_structured_text::{Library, Value};
     let program = system_program::<f64>(system).ok()?;
-    let heading = Heading { name: "a", digest: "0", precision: Precision::Double, angles: None };
+    let heading = Heading {
+        name: "a",
+        digest: "0",
+        precision: Precision::Double,
+        angles: None,
+        elevator: None,
+    };
     let text = structured_text(&program.program, "a", &heading);
     let library = Library::read(&text).unwrap_or_else(|problem| panic!("{problem}\n{text}"));
     let mut block = library.instance("FB_a").unwrap_or_else(|problem| panic!("{problem}\n{text}"));

@@ -57,7 +57,7 @@ fn the_table_in_c_answers_as_the_one_that_was_proved_without_a_warning() {
     let table = SurfaceTable::of(&tuner(supervisor), 7).expect("a table");
     let angles = Some(fspid_export::Angles::Radians);
     let precision = fspid_export::program::Precision::Single;
-    let heading = write::Heading { name: "pitch", digest: "0", precision, angles };
+    let heading = write::Heading { name: "pitch", digest: "0", precision, angles, elevator: None };
     let files = write::table(&table, "pitch", &heading);
     let check = write::table_harness(&table, &supervisor, "pitch", 2000);
     let folder = tempfile::tempdir().expect("a temporary folder");

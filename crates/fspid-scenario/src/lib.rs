@@ -28,5 +28,6 @@ mod setting_path;
 pub mod supervisor;
 mod system_text;
 pub mod tuning;
+pub mod turned;
 
 pub use fspid_numeric::units;

@@ -1,11 +1,13 @@
 //! A controller of a study in another language: which one is meant, if it can leave, and what its code is called.
 
+use fspid_diagnostics::digits::to_six_decimals;
 use fspid_diagnostics::listed;
 use fspid_export::program::Precision;
 use fspid_export::{Angles, Export, Request, Target, export_called, prefix, prefixes};
 use fspid_scenario::file::{Study, known_words};
 use fspid_scenario::tuning::TunableParameter;
-use fspid_sim::NamedController;
+use fspid_scenario::units::degrees;
+use fspid_sim::{Controller, ElevatorSign, NamedController, Plant};
 
 /// What is asked for.
 #[derive(Clone, Copy, Debug)]
@@ -122,10 +124,42 @@ pub fn export(study: &Study, asked: &Question<'_>) -> Result<Export, ExportError
         samples: asked.samples,
         points: asked.points,
         digest: &study.digest,
+        elevator: elevator_in_words(study, &named.controller, asked.angles),
         evidence: asked.evidence,
     };
     let called = asked.prefix.map_or_else(|| called(study, &named.name), str::to_owned);
     Ok(export_called(&named.controller, &request, &called)?)
+}
+
+/// For which elevator a controller was designed: the way that it turns, and who limits it. None where another simulator has
+/// an elevator of its own.
+fn elevator_in_words(study: &Study, controller: &Controller, angles: Angles) -> Option<String> {
+    let scenario = &study.scenario;
+    let sign = match &scenario.plant {
+        Plant::Linear(plant) => plant.elevator_sign(),
+        Plant::Aircraft(_) => ElevatorSign::NoseDownPositive,
+        Plant::External(_) => return None,
+    };
+    let command = format!("command_{}", angles.unit());
+    let turns = match sign {
+        ElevatorSign::NoseDownPositive => format!(
+            "whose elevator is positive trailing edge down, which turns the nose down: elevator = -{command}"
+        ),
+        ElevatorSign::NoseUpPositive => {
+            format!("whose elevator is positive where it turns the nose up: elevator = {command}")
+        }
+    };
+    let not_here = match controller.config().limits {
+        Some(_) => "",
+        None => ", not here",
+    };
+    let actuator = &scenario.actuator;
+    let limited = actuator.travel_rad().or(actuator.command_limits_rad()).map(|(least, most)| {
+        let [least, most] = [least, most].map(|it| to_six_decimals(degrees(it)));
+        format!("travel beyond {least} to {most} deg of command is cut there{not_here}")
+    });
+    let limited = limited.unwrap_or_else(|| format!("no travel is cut there"));
+    Some(format!("Designed for an aircraft {turns}; {limited}."))
 }
 
 /// What its code is called, which no other controller of the scenario is.
@@ -133,4 +167,85 @@ fn called(study: &Study, name: &str) -> String {
     let names: Vec<&str> = study.scenario.controllers.iter().map(|it| it.name.as_str()).collect();
     let mut all = names.iter().zip(prefixes(&names)).filter(|(it, _)| **it == name);
     all.next().map_or_else(|| prefix(name), |(_, own)| own)
+}
+
+#[cfg(test)]
+mod tests {
+    use fspid_scenario::file;
+
+    use super::*;
+
+    const DESIGN: &str = r#"
+schema = 1
+name = "a design"
+[plant]
+numerator = [-36.11]
+denominator = [1.0, 5.3, 24.7]
+elevator_sign = "nose-down-positive"
+[actuator]
+time_constant_s = 0.05
+position_limit_deg = 25.0
+[loop]
+sample_period_s = 0.01
+duration_s = 1.0
+[setpoint]
+kind = "step"
+amplitude_deg = 5.0
+at_s = 0.0
+[[controller]]
+name = "PID"
+kind = "pid"
+kp = 1.5
+ki = 0.5
+kd = 0.15
+"#;
+
+    fn exported(target: Target, set: &[&str]) -> Export {
+        let set: Vec<String> = set.iter().map(|&it| it.to_owned()).collect();
+        let study = file::parse(DESIGN, "design.toml", None, &set).expect("a design");
+        export(&study, &Question { samples: 3, ..Question::of(target) }).expect("it can leave")
+    }
+
+    /// The text of every file without what marks a comment and where lines are broken.
+    fn said(export: &Export) -> Vec<(String, String)> {
+        let plain = |bytes: &[u8]| {
+            let text = String::from_utf8_lossy(bytes).into_owned();
+            let words =
+                text.split_whitespace().filter(|word| !["*", "//", "--", "//!"].contains(word));
+            words.collect::<Vec<_>>().join(" ")
+        };
+        export.files.iter().map(|file| (file.name.clone(), plain(&file.bytes))).collect()
+    }
+
+    /// "Nose up is positive" alone was all that an integrator had.
+    #[test]
+    fn code_says_for_which_elevator_it_was_designed() {
+        let told = "Designed for an aircraft whose elevator is positive trailing edge down, which turns the nose down: elevator = -command_rad; travel beyond -25 to 25 deg of command is cut there, not here.";
+        let names = [
+            (Target::C, &[".h", ".ino"][..]),
+            (Target::Lua, &[".lua"]),
+            (Target::Rust, &[".rs"]),
+            (Target::StructuredText, &[".st"]),
+        ];
+        for (target, ends) in names {
+            let files = said(&exported(target, &[]));
+            for end in ends {
+                let mut own = files.iter().filter(|(name, _)| name.ends_with(end));
+                let found = own.any(|(_, text)| text.contains(told));
+                let all: Vec<&String> = files.iter().map(|(name, _)| name).collect();
+                assert!(found, "{target:?} {end} of {all:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_other_sign_and_own_limits_are_told_as_they_are() {
+        let told = |set: &[&str]| said(&exported(Target::C, set))[0].1.clone();
+        let up =
+            told(&["plant.elevator_sign=nose-up-positive", "actuator.position_limit_deg=20.0"]);
+        let words = "whose elevator is positive where it turns the nose up: elevator = command_rad; travel beyond -20 to 20 deg of command is cut there, not here.";
+        assert!(up.contains(words), "{up}");
+        let own = told(&["controller.PID.output_limits_deg=[-15.0, 15.0]"]);
+        assert!(own.contains("is cut there.") && !own.contains("not here"), "{own}");
+    }
 }

@@ -6,7 +6,6 @@ use fspid_scenario::tuning::{Over, Tuning};
 use fspid_sim::load::{ConstantLoad, HALF_GONE};
 use fspid_study::judgement::Judgement;
 use fspid_study::metrics::Verdict;
-use fspid_study::simulation::WRONG_WAY;
 use serde::{Deserialize, Serialize};
 
 use crate::bits;
@@ -54,7 +53,7 @@ impl FlightScore {
                 _ => 1.0,
             };
             let mut reasons = flight.ending().failures();
-            reasons.extend(flight.metrics.wrong_way.then(|| WRONG_WAY.to_owned()));
+            reasons.extend(flight.metrics.wrong_way.then(|| flight.at_rest.wrong_way_in_words()));
             return Self { violation: LOST * (2.0 - late), values: Vec::new(), reasons };
         }
         let values: Option<Vec<f64>> = measured.iter().map(value).collect();

@@ -162,6 +162,9 @@ pub(super) fn front<R: Real>(
         subject.heading.name.replace('\n', " "),
         about(subject)
     );
+    if let Some(elevator) = subject.heading.elevator {
+        let _ = writeln!(text, "\n{elevator}");
+    }
     let _ = write!(
         text,
         "\n## Changes that the vectors find\n\nMeasured here by the interpreter of the program from which the C is \

@@ -74,6 +74,7 @@ fn exported<R: Real>(
         digest: request.digest,
         precision: request.precision,
         angles: None,
+        elevator: None,
     };
     let ranged = matches!(request.target, Target::Fmu2 | Target::Fmu3)
         .then(|| with_ranges(&program.program, system));

@@ -1,7 +1,11 @@
 //! What every file of an export says of itself.
 
+use super::wrapped;
 use crate::compose::Angles;
 use crate::program::Precision;
+
+/// Most characters of a line of what is said of the elevator.
+const WIDTH: usize = 100;
 
 /// Where an export comes from.
 #[derive(Clone, Copy, Debug)]
@@ -14,6 +18,8 @@ pub struct Heading<'a> {
     pub precision: Precision,
     /// The unit of a controller's angles; a fuzzy system has none.
     pub angles: Option<Angles>,
+    /// For which elevator a controller was designed, in a sentence; none of a fuzzy system, or where nobody knows.
+    pub elevator: Option<&'a str>,
 }
 
 impl Heading<'_> {
@@ -36,7 +42,9 @@ impl Heading<'_> {
                 (first, "scenario")
             }
         };
-        Self::with(&first, source, self.digest)
+        let mut lines = Self::with(&first, source, self.digest);
+        lines.extend(self.elevator.iter().flat_map(|it| wrapped(it, WIDTH)));
+        lines
     }
 
     /// The lines of a table, which has digits of its own and no angles.
@@ -85,7 +93,13 @@ mod tests {
     #[test]
     fn a_name_puts_nothing_unseen_into_a_comment() {
         let name = "a\u{202e}b\u{1}c\u{7f}d*/e\\\nf";
-        let heading = Heading { name, digest: "0", precision: Precision::Single, angles: None };
+        let heading = Heading {
+            name,
+            digest: "0",
+            precision: Precision::Single,
+            angles: None,
+            elevator: None,
+        };
         assert!(heading.lines()[0].contains(" a b c d  e  f,"), "{:?}", heading.lines());
         assert!(heading.of_table()[0].starts_with("The supervisor of controller a b"));
     }

@@ -295,6 +295,20 @@ fn a_controller_that_commands_nothing_is_warned_of() {
     assert!(found.len() == 1 && found[0].contains("this controller commands nothing"), "{found:?}");
 }
 
+/// It was "good" without a word, and unstable or turned around.
+#[test]
+fn gains_of_a_sign_that_turns_the_loop_around_are_warned_of() {
+    let [kp, ki, kd] = ["kp=-1.5", "ki=-0.5", "kd=-0.15"].map(|it| format!("controller.PID.{it}"));
+    let found = warnings(&[&kp, &ki, &kd]);
+    assert!(found.len() == 1 && found[0].contains("kp is negative"), "{found:?}");
+    assert!(
+        found[0].ends_with("(kp = 1.5); if kp is meant so, is elevator_sign right?"),
+        "{found:?}"
+    );
+    assert_eq!(warnings(&["controller.FSPID.nominal.kp=-1.5"]).len(), 1);
+    assert!(warnings(&[&ki, &kd]).is_empty());
+}
+
 #[test]
 fn the_digest_follows_text_overrides_and_the_files_referred_to() {
     let folder = tempfile::tempdir().expect("a folder");

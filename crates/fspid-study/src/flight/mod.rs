@@ -7,9 +7,9 @@ pub(crate) use ending::on_its_own;
 pub use ending::{Ending, FAILS_BY_ITSELF, FailedFlight};
 pub use words::WRONG_WAY;
 
-use fspid_sim::Trace;
 use fspid_sim::signal::Edge;
 use fspid_sim::stability::{Unstable, lost_at_a_limit};
+use fspid_sim::{NamedController, Plant, Scenario, Trace};
 
 use crate::analysis::{AtRest, RestGains};
 use crate::metrics::{Absent, FlightMetrics, Verdict};
@@ -32,6 +32,8 @@ pub struct ControllerResult {
     pub duration_s: f64,
     /// The air moves around the aircraft.
     pub in_moving_air: bool,
+    /// Something limits the command or the elevator.
+    pub is_limited: bool,
 }
 
 impl ControllerResult {
@@ -67,6 +69,7 @@ impl ControllerResult {
             range_rule: study.range_rule,
             duration_s: timing.end_s(),
             in_moving_air: scenario.has_moving_air(),
+            is_limited: is_limited(scenario, named),
         }
     }
 
@@ -95,4 +98,13 @@ impl ControllerResult {
         let controller = self.name.clone();
         (!failures.is_empty()).then_some(FailedFlight { controller, own_step_deg, failures })
     }
+}
+
+/// Whether the controller's own limits, those of the servo's command or the stops of the elevator end what is commanded. What
+/// is not flown by equations of ours has limits that nobody here knows.
+fn is_limited(scenario: &Scenario, named: Option<&NamedController>) -> bool {
+    let actuator = &scenario.actuator;
+    let of_controller = named.is_none_or(|it| it.controller.config().limits.is_some());
+    let of_servo = actuator.command_limits_rad().or(actuator.travel_rad()).is_some();
+    of_controller || of_servo || !matches!(scenario.plant, Plant::Linear(_))
 }

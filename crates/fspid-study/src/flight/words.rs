@@ -10,9 +10,14 @@ use crate::analysis::{AtRest, RestGains, held_in_words};
 use crate::metrics::{Absent, EdgeMetrics, left_validity};
 use fspid_diagnostics::digits::{to_digits, to_six_decimals};
 use fspid_scenario::file::RangeRule;
+use fspid_scenario::turned::turned_and_asked_in_words;
+use fspid_scenario::units::degrees;
 
-/// What is asked where the first movement is steadily away from the set-point.
+/// What is asked where the first movement is steadily away from the set-point, and gains are not turned.
 pub const WRONG_WAY: &str = "moves the wrong way: is elevator_sign right?";
+
+/// Beyond this no elevator moves, deg: assumption A37.
+const FAR_DEG: f64 = 60.0;
 
 /// What is said of the measures of steps where the air moves.
 const IN_MOVING_AIR: &str =
@@ -40,6 +45,13 @@ impl AtRest {
                 "gains nominal {nominal}; at rest they drift without end, so that stability at rest is not asked"
             ),
         })
+    }
+
+    /// What is said where the first movement is steadily away from the set-point: a gain of the wrong sign is the nearer cause.
+    #[must_use]
+    pub fn wrong_way_in_words(&self) -> String {
+        turned_and_asked_in_words(self.nominal)
+            .map_or_else(|| WRONG_WAY.to_owned(), |turned| format!("moves the wrong way: {turned}"))
     }
 
     /// Why stability or load at rest could not be asked; none where they were, or there are no gains at rest.
@@ -134,11 +146,24 @@ impl EdgeMetrics {
 }
 
 impl ControllerResult {
+    /// That command or elevator goes where no elevator does, and nothing stops it; none where something would, or neither does.
+    fn far_in_words(&self) -> Option<String> {
+        if self.is_limited {
+            return None;
+        }
+        let (command, elevator) = (self.metrics.effort.ok()?, self.metrics.elevator.ok()?);
+        let largest_deg = degrees(command.largest_rad.max(elevator.largest_rad));
+        (largest_deg > FAR_DEG).then(|| {
+            let largest = to_digits(largest_deg, 4);
+            format!("commands {largest} deg of elevator, and no limit is given: actuator.position_limit_deg")
+        })
+    }
+
     /// What is to be known beside the verdict and fails nothing: the question of the sign, a load that stays, what could
     /// not be asked, a range that may be left and was.
     #[must_use]
     pub fn notes(&self) -> Vec<String> {
-        let question = self.metrics.wrong_way.then(|| WRONG_WAY.to_owned());
+        let question = self.metrics.wrong_way.then(|| self.at_rest.wrong_way_in_words());
         let load = self.at_rest.load_in_words(self.duration_s);
         let allowed = self.trace.exit.filter(|_| self.range_rule == RangeRule::Warns);
         let left = allowed.map(|exit| left_validity(&exit));
@@ -150,7 +175,8 @@ impl ControllerResult {
             .chain(self.at_rest.undecided_in_words());
         let has_steps = self.metrics.edges.iter().any(|edge| edge.step.overshoot_pct.is_ok());
         let air = (self.in_moving_air && has_steps).then(|| IN_MOVING_AIR.to_owned());
-        let of_flight = load.into_iter().chain(air).chain(left).chain(not_asked);
+        let far = self.far_in_words();
+        let of_flight = load.into_iter().chain(air).chain(far).chain(left).chain(not_asked);
         question.into_iter().chain(held).chain(of_flight).collect()
     }
 }

@@ -103,12 +103,16 @@ fn around(found: &AnalysedLoop) -> Option<String> {
 }
 
 fn of_frozen(found: &AnalysedLoop) -> String {
-    let map = found.worst_frozen().map(|(_, worst)| &worst.margins);
+    let worst = found.worst_frozen().map(|(_, worst)| &worst.margins);
+    let looked_at = found.worst().and_then(PlantLoop::map).map_or(0, FrozenMap::count);
     let reach = found.worst_within_reach().map(|worst| &worst.margins);
     let disk = |margins: &Margins| fixed(margins.disk_margin, 3);
-    match (map, reach) {
+    match (worst, reach) {
         (Some(Ok(margins)), _) => {
-            format!(" Of all its frozen gains the worst has a disk margin of {}.", disk(margins))
+            format!(
+                " Of the {looked_at} gains on the map, frozen, and those searched about the worst of them the worst has a disk margin of {}.",
+                disk(margins)
+            )
         }
         (Some(Err(reason)), _) => {
             format!(" A frozen gain of its supervisor does not hold: {reason}.")
@@ -301,7 +305,8 @@ fn frozen(study: &Study, found: &AnalysedLoop) -> Option<Chapter> {
     let id = format!("frozen-{}", found.name);
     let of = |quantity, what: &str| {
         let caption = format!(
-            "The {what} at every gain that the supervisor can produce, the gain standing still; the line is the way of the flight. This is no proof about gains that move."
+            "The {what} at the {} gains on the map, each standing still; the line is the way of the flight. This is no proof about gains between them, nor about gains that move.",
+            map.count()
         );
         let svg = gain_map(&found.name, map, quantity, flown.clone()).render();
         picture(&format!("{id}-{}", what.replace(' ', "-")), svg, &caption)

@@ -256,3 +256,30 @@ fn what_the_text_says_beside_a_flight_the_answer_for_programs_says_too() {
     }
     assert!(notes > 4 && doubts > 0, "{notes} {doubts}");
 }
+
+/// Only the elevator's sign was asked about, and whoever turned it flew away from the set-point with a proof beside it.
+#[test]
+fn a_loop_with_negative_gains_that_goes_the_wrong_way_is_told_of_its_gains_first() {
+    let negative = ["controller.PID.kp=-1.5", "controller.PID.ki=-0.3", "controller.PID.kd=-0.05"];
+    let turned = &flown(&negative).results[0];
+    assert!(turned.metrics.wrong_way);
+    let expected = "moves the wrong way: kp is negative, and here a positive command turns the nose up whatever the elevator does, so gains are positive (kp = 1.5); if kp is meant so, is elevator_sign right?";
+    assert!(turned.notes().iter().any(|it| it == expected), "{:?}", turned.notes());
+}
+
+/// A step of 5000 deg was settled, and nothing said that no elevator goes there.
+#[test]
+fn a_command_beyond_what_any_elevator_does_is_told_where_nothing_limits_it() {
+    let notes = |set: &[&str]| flown(set).results[0].notes();
+    let far = |set: &[&str]| notes(set).into_iter().find(|it| it.contains("no limit is given"));
+    let told = far(&["setpoint.amplitude_deg=5000.0"]).expect("it is told");
+    assert!(
+        told.starts_with("commands ") && told.ends_with("actuator.position_limit_deg"),
+        "{told}"
+    );
+    assert_eq!(far(&[]), None);
+    let stops = "actuator.position_limit_deg=25.0";
+    assert_eq!(far(&["setpoint.amplitude_deg=5000.0", stops]), None);
+    let limits = "controller.PID.output_limits_deg=[-90.0, 90.0]";
+    assert_eq!(far(&["setpoint.amplitude_deg=5000.0", limits]), None);
+}

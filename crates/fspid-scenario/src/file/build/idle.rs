@@ -1,4 +1,4 @@
-//! Controllers that do nothing, and supervisors that see nothing: right as they are written, and hardly meant.
+//! Controllers that do nothing or the opposite, and supervisors that see nothing: right as they are written, and hardly meant.
 
 use fspid_core::{Gains, PidConfig, SelfTuner};
 use fspid_diagnostics::Report;
@@ -6,8 +6,10 @@ use fspid_sim::Controller;
 
 use crate::file::spec::controller as keys;
 use crate::keyed::Section;
+use crate::turned::turned_and_asked_in_words;
 
-/// Warns of a controller whose command never moves, and of a supervisor that is blind.
+/// Warns of a controller whose command never moves, of one with gains of a sign that turns the loop around, and of a
+/// supervisor that is blind.
 pub(super) fn warn(report: &mut Report, section: &Section, controller: &Controller) {
     let (config, gains_are_zero) = match controller {
         Controller::Fixed(pid) => (pid.config(), pid.gains() == Gains::ZERO),
@@ -19,6 +21,9 @@ pub(super) fn warn(report: &mut Report, section: &Section, controller: &Controll
             (fspid.config(), gains_stay_zero(tuner))
         }
     };
+    if let Some(turned) = turned_and_asked_in_words(controller.nominal()) {
+        report.warn(format!("{}: {turned}", section.path));
+    }
     if gains_are_zero && adds_nothing(config) {
         report.warn(format!(
             "{}: all gains are 0 and nothing is fed forward: this controller commands nothing",
