@@ -351,3 +351,123 @@ fn plants_that_are_in_no_part_of_the_win_are_no_evidence_of_it() {
     assert!(has_interval(&enough) && !has_interval(&too_few), "{}", enough.text());
     assert!(too_few.headline().contains("nothing is said for certain"), "{}", too_few.headline());
 }
+
+/// One plant whose numbers differ in their ninth digit was six, with intervals of no width.
+#[test]
+fn plants_that_differ_in_their_ninth_digit_are_one() {
+    let of = |apart: f64| {
+        let cases = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0].map(|number| {
+            case(&format!("plant {number}"), 4.0 * (1.0 + apart * number), 40.0, 3.0)
+        });
+        measured_on(&(head() + &cases.concat()), 2, 1).expect("an answer")
+    };
+    let near = of(1e-9);
+    assert_eq!((near.flights, near.plants.len(), near.plants[0].written), (6, 1, 6));
+    assert!(near.headline().contains("here one is flown"), "{}", near.headline());
+    assert_eq!(of(1e-3).plants.len(), 6);
+}
+
+/// Six plants that integrate, and a self-tuner and a PID by their proportional gains.
+fn integrating([of_pid, of_tuner]: [f64; 2], beside: &str) -> String {
+    let mut text = format!(
+        r#"schema = 1
+name = "unstable"
+[plant]
+numerator = [1.15101, 0.17742]
+denominator = [1.0, 0.739, 0.921468, 0.0]
+elevator_sign = "nose-up-positive"
+[actuator]
+time_constant_s = 0.1
+[loop]
+sample_period_s = 0.05
+duration_s = 2.0
+[setpoint]
+kind = "step"
+amplitude_deg = 5.0
+at_s = 0.0
+[[controller]]
+name = "PID"
+kind = "pid"
+kp = {of_pid}
+ki = 0.5
+kd = 0.05
+output_limits_deg = [-100.0, 100.0]
+[[controller]]
+name = "FSPID"
+kind = "fspid"
+nominal = {{ kp = {of_tuner}, ki = 0.5, kd = 0.05 }}
+output_limits_deg = [-100.0, 100.0]
+supervisor = {{ table = "mirrored", range = 5.0, error_scale = 1.0, change_scale = 0.2, output_scale = {{ kp = 0.1, ki = 0.01, kd = 0.01 }} }}
+{beside}
+[contest]
+against = "PID"
+"#
+    );
+    for plant in 0..6 {
+        let effectiveness = 1.0 + 0.1 * f64::from(plant);
+        text.push_str(&format!(
+            "[[contest.case]]\nname = \"{plant}\"\nset = [\"plant.numerator[0]={effectiveness}\"]\n"
+        ));
+    }
+    text
+}
+
+/// "IAE -60 %", "answers the moment" of loops of which a contest says that nobody wins with them.
+#[test]
+fn loops_that_are_unstable_at_rest_win_nothing_and_nothing_is_won_over_them() {
+    let own = measured_on(&integrating([0.5, 4.0], ""), 2, 1).expect("an answer");
+    let headline = own.headline();
+    assert!(headline.starts_with("Nothing is won by FSPID: "), "{}", own.text());
+    assert!(headline.ends_with("flights are of loops that are unstable at rest."), "{headline}");
+    assert!(own.text().contains("What the difference is made of"), "{}", own.text());
+    assert!(own.steps.iter().all(|it| it.share.is_none()) && own.page().contains("No win"));
+    assert_eq!(own.json()["barred"], headline);
+    let row = |treatment| own.rows.iter().find(|row| row.treatment == treatment).expect("flown");
+    assert!(row(Treatment::AsItIs).unstable.is_some_and(|it| it > 0));
+    assert_eq!(
+        (row(Treatment::Against).unstable, row(Treatment::Shuffled).unstable),
+        (Some(0), None)
+    );
+    let other = measured_on(&integrating([4.0, 0.5], ""), 2, 1).expect("an answer").headline();
+    assert!(other.starts_with("Nothing is won over PID: "), "{other}");
+    let neither = measured_on(&integrating([0.4, 0.5], ""), 2, 1).expect("an answer");
+    assert!(neither.barred.is_none() && neither.json()["barred"].is_null(), "{}", neither.text());
+}
+
+#[test]
+fn loops_of_which_nobody_can_tell_win_nothing() {
+    let load = "[[disturbance]]\nkind = \"step\"\nenters_at = \"servo\"\namplitude_deg = 3.0\nat_s = 0.0\n";
+    let text = integrating([0.4, 0.5], load).replace("[-100.0, 100.0]", "[-2.5, 2.5]");
+    let answer = measured_on(&text, 2, 1).expect("an answer");
+    let headline = answer.headline();
+    assert!(headline.contains("of which nobody can tell"), "{}", answer.text());
+    assert!(answer.text().contains("0 of 6, undecided 6"), "{}", answer.text());
+}
+
+#[test]
+fn the_one_that_fails_more_of_its_flights_wins_nothing() {
+    let asked =
+        "[[requirement]]\nmeasure = \"overshoot_pct\"\nmost = 1e-9\ncontroller = \"FSPID\"\n";
+    let answer = measured_on(&integrating([0.4, 0.8], asked), 2, 1).expect("an answer");
+    assert_eq!(answer.headline(), "Nothing is won by FSPID: all of its flights fail.");
+}
+
+/// The seed of everything that is drawn was not that of the plants.
+#[test]
+fn the_seed_draws_the_plants_where_no_contest_says_another() {
+    let text = head().split("[tuning]").next().expect("a head").to_owned()
+        + "[[dispersion]]\npath = \"actuator.time_constant_s\"\ndistribution = \"uniform\"\nlower = 0.05\nupper = 0.2\n";
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("drawn.toml");
+    std::fs::write(&path, text).expect("written");
+    let source = Source { path, overrides: Vec::new() };
+    let of = |seed: u64| {
+        let options = Options { seeds: 1, budget: 1, runs: Some(3), seed, ..Options::default() };
+        let flown = uncounted();
+        let asked = Adaptation::new(&source, &options).expect("it can be asked");
+        let answer = asked.measured(Watch { stops: &|| false, flown: &flown }).expect("an answer");
+        answer.plants.iter().map(|it| it.mean.kp).collect::<Vec<_>>()
+    };
+    assert_eq!(of(Options::default().seed), of(1));
+    assert_ne!(of(1), of(2));
+}

@@ -1,6 +1,5 @@
 //! The answer: what is known of the probability, what it took, and the likeliest failure.
 
-use fspid_scenario::dispersion::{Dispersion, Distribution};
 use fspid_scenario::requirement::Requirement;
 use serde_json::{Value, json};
 
@@ -9,6 +8,7 @@ use super::importance::Importance;
 use super::interval::{CONFIDENCE, Interval};
 use super::point::Point;
 use super::question::{Method, Question};
+use super::seldom::Seldom;
 use super::subset::{Known, Subset};
 use super::target::Target;
 use super::teams::TEAMS;
@@ -41,24 +41,11 @@ pub struct Rare {
     pub likeliest: Option<Likeliest>,
     /// Whether a seed is drawn.
     pub draws_seeds: bool,
-    /// Probability of the values of choices that independent flights have met too seldom for anybody to know what they do: all of
-    /// it counts in every upper end.
-    pub hardly_flown: f64,
-}
-
-/// So often independent flights have to meet a value that is chosen among others, in the mean: none of them does in one of
-/// 20 000 questions ($e^{-10}$). A choice of this project.
-const FEWEST_MEETINGS: f64 = 10.0;
-
-/// Probability of values that so many independent flights meet less than [`FEWEST_MEETINGS`] times.
-fn hardly_flown(dispersions: &[Dispersion], flights: f64) -> f64 {
-    let choices = dispersions.iter().filter_map(|it| match &it.distribution {
-        Distribution::Choice(choice) => Some(choice),
-        _ => None,
-    });
-    let shares = choices.flat_map(|choice| choice.shares());
-    // No weight is no value.
-    shares.filter(|share| *share > 0.0 && share * flights < FEWEST_MEETINGS).sum::<f64>().min(1.0)
+    /// Combinations of chosen values that independent flights have met too seldom for anybody to know what they do: all of
+    /// their probability counts in every upper end.
+    pub hardly_flown: Seldom,
+    /// Flights that do not fail, and of whose loop nobody can tell whether it is stable at rest.
+    pub undecided: u64,
 }
 
 /// A failure, as it can be flown again.
@@ -79,7 +66,7 @@ impl Rare {
     pub(super) fn new(
         campaign: &Campaign,
         question: &Question,
-        target: &Target<'_>,
+        (target, undecided): (&Target<'_>, u64),
         mut found: Found,
     ) -> Self {
         let independent = match &found.subset {
@@ -87,12 +74,12 @@ impl Rare {
             None => question.flights as f64,
         };
         let study = campaign.template().study();
-        let hardly_flown = hardly_flown(&study.dispersions, independent);
+        let hardly_flown = Seldom::of(&study.dispersions, independent);
         if let Some(subset) = &mut found.subset {
-            subset.known = subset.known.raised(hardly_flown);
+            subset.known = subset.known.raised(hardly_flown.share);
         }
         if let Some(importance) = &mut found.importance {
-            importance.known = importance.known.raised(hardly_flown);
+            importance.known = importance.known.raised(hardly_flown.share);
         }
         let of_subset = found.subset.as_ref().and_then(Subset::likeliest);
         let of_importance = found.importance.as_ref().and_then(|it| it.likeliest.as_ref());
@@ -109,6 +96,7 @@ impl Rare {
         };
         Self {
             hardly_flown,
+            undecided,
             question: question.clone(),
             controller: target.controller().to_owned(),
             requirement: target.requirement().clone(),
@@ -167,10 +155,11 @@ impl Rare {
         bounds.fold(if disagree { 0.0 } else { 1.0 }, if disagree { f64::max } else { f64::min })
     }
 
-    /// Whether the probability is below what is required, if that is asked.
+    /// Whether the probability is known to be below what is required, if that is asked: not where nobody can tell whether what
+    /// was flown is stable.
     #[must_use]
     pub fn is_allowed(&self) -> Option<bool> {
-        self.question.most.map(|most| self.at_most() <= most)
+        self.question.most.map(|most| self.at_most() <= most && self.undecided == 0)
     }
 
     /// Flights that were asked for.
@@ -229,6 +218,7 @@ impl Rare {
             "agree": self.agree(),
             "most": self.question.most,
             "allowed": self.is_allowed(),
+            "undecided": self.undecided,
             "subset": self.found.subset.as_ref().map(subset_json),
             "importance": self.found.importance.as_ref().map(importance_json),
             "likeliest": self.likeliest.as_ref().map(|it| json!({

@@ -94,7 +94,7 @@ pub fn rare(
     let aimed = of_method(Method::Importance);
     let aimed = aimed.map(|flights| importance(&mut record, question.seed, flights)).transpose()?;
     let found = Found { subset: climbed, importance: aimed };
-    let answer = Rare::new(campaign, question, record.target(), found);
+    let answer = Rare::new(campaign, question, (record.target(), record.undecided()), found);
     if let Some(folder) = folder {
         let files = [
             (folder.path().join("answer.json"), format!("{:#}\n", answer.json())),

@@ -9,13 +9,15 @@ use fspid_study::output;
 
 use super::chains::LimitState;
 use super::point::{Point, Shape};
-use super::target::Target;
+use super::target::{Scored, Target};
 use crate::error::CampaignError;
 use crate::folder::Folder;
 use crate::table::Digest;
 
 /// The first line of a part.
-const HEAD: &str = "fspid rare scores 1";
+const HEAD: &str = "fspid rare scores 2";
+/// Behind the score of a flight of which nobody can tell whether its loop is stable at rest.
+const UNDECIDED: &str = " undecided";
 
 /// Flights with what is known of them.
 pub(super) struct Record<'a> {
@@ -27,34 +29,40 @@ pub(super) struct Record<'a> {
     /// Points of a part.
     part: usize,
     parts: u64,
+    undecided: u64,
 }
 
 impl<'a> Record<'a> {
     pub(super) fn new(target: Target<'a>, folder: Option<&'a Folder>, id: &'a str) -> Self {
         let part = target.part();
-        Self { target, folder, id, part, parts: 0 }
+        Self { target, folder, id, part, parts: 0, undecided: 0 }
     }
 
     pub(super) fn target(&self) -> &Target<'a> {
         &self.target
     }
 
-    fn part_scores(&mut self, points: &[Point]) -> Result<Vec<f64>, CampaignError> {
+    /// Flights so far, read ones too, that do not fail and are of a loop of which nobody can tell whether it is stable at rest.
+    pub(super) const fn undecided(&self) -> u64 {
+        self.undecided
+    }
+
+    fn part_scored(&mut self, points: &[Point]) -> Result<Vec<Scored>, CampaignError> {
         let number = self.parts;
         self.parts += 1;
-        let Some(folder) = self.folder else { return self.target.scores(points) };
+        let Some(folder) = self.folder else { return self.target.scored(points) };
         let path = folder.flights_path().join(format!("{number:06}.scores"));
         let head = format!("{HEAD}\n{}\n{}\n", self.id, digest(points));
         if path.exists() {
-            let scores = read(&path, &head, points.len())?;
+            let scored = read(&path, &head, points.len())?;
             self.target.found(points.len() as u64);
-            return Ok(scores);
+            return Ok(scored);
         }
-        let scores = self.target.scores(points)?;
-        let lines: String = scores.iter().map(|score| format!("{score:?}\n")).collect();
+        let scored = self.target.scored(points)?;
+        let lines: String = scored.iter().map(line).collect();
         let written = output::write(&path, format!("{head}{lines}end\n"));
         written.map_err(|error| CampaignError::from(error).of_writing(&path))?;
-        Ok(scores)
+        Ok(scored)
     }
 }
 
@@ -68,14 +76,16 @@ impl LimitState for Record<'_> {
     fn scores(&mut self, points: &[Point]) -> Result<Vec<f64>, CampaignError> {
         let mut scores = Vec::with_capacity(points.len());
         for points in points.chunks(self.part) {
-            scores.extend(self.part_scores(points)?);
+            let scored = self.part_scored(points)?;
+            self.undecided += scored.iter().filter(|it| it.is_undecided).count() as u64;
+            scores.extend(scored.iter().map(|it| it.score));
         }
         Ok(scores)
     }
 }
 
 /// The scores of a part that is whole and of these points.
-fn read(path: &Path, head: &str, count: usize) -> Result<Vec<f64>, CampaignError> {
+fn read(path: &Path, head: &str, count: usize) -> Result<Vec<Scored>, CampaignError> {
     let foreign =
         |reason: &str| CampaignError::Foreign { path: path.to_owned(), reason: reason.to_owned() };
     let text = fspid_scenario::file::read_text(path)?;
@@ -83,12 +93,24 @@ fn read(path: &Path, head: &str, count: usize) -> Result<Vec<f64>, CampaignError
         return Err(foreign("it is not of these flights"));
     };
     let Some(lines) = rest.strip_suffix("end\n") else { return Err(foreign("its end is missing")) };
-    let scores: Option<Vec<f64>> =
-        lines.lines().map(|line| line.parse().ok().filter(|it: &f64| it.is_finite())).collect();
-    match scores {
-        Some(scores) if scores.len() == count => Ok(scores),
+    match lines.lines().map(scored).collect::<Option<Vec<Scored>>>() {
+        Some(scored) if scored.len() == count => Ok(scored),
         _ => Err(foreign("it does not hold a number for each flight")),
     }
+}
+
+fn line(Scored { score, is_undecided }: &Scored) -> String {
+    format!("{score:?}{}\n", if *is_undecided { UNDECIDED } else { "" })
+}
+
+/// The flight of a line; none where it is damaged.
+fn scored(line: &str) -> Option<Scored> {
+    let (score, is_undecided) = match line.strip_suffix(UNDECIDED) {
+        Some(score) => (score, true),
+        None => (line, false),
+    };
+    let score = score.parse().ok().filter(|it: &f64| it.is_finite())?;
+    Some(Scored { score, is_undecided })
 }
 
 /// What names points: every bit of them.

@@ -13,6 +13,7 @@ use crate::campaign::{Campaign, Progress};
 use crate::engine::{self, FlightResult, Memory};
 use crate::error::CampaignError;
 use crate::plan::{SHARD_RUNS, SLOW_SHARD_RUNS};
+use crate::rows::UNDECIDED;
 
 /// Score of a flight that fails before anything of it is measured; lost earlier is higher.
 const LOST: f64 = 1e300;
@@ -30,6 +31,24 @@ enum Axis {
     Air,
     /// Another seed.
     Seed,
+}
+
+/// What a flight says of its point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Scored {
+    /// Above 0 where it fails.
+    pub(super) score: f64,
+    /// Whether it does not fail, and nobody can tell whether its loop is stable at rest.
+    pub(super) is_undecided: bool,
+}
+
+impl Scored {
+    const LOST: Self = Self { score: LOST, is_undecided: false };
+
+    fn of(flight: &FlightResult, score: f64) -> Self {
+        let is_undecided = flight.at_rest.stability_word() == Some(UNDECIDED);
+        Self { score, is_undecided: is_undecided && !(score > 0.0) }
+    }
 }
 
 /// The place of the seed that can be mixed, and of the mixture.
@@ -156,7 +175,21 @@ impl<'a> Target<'a> {
         Ok(study)
     }
 
-    fn flown(&self, memory: &mut Memory, points: &[Point]) -> Result<Vec<f64>, CampaignError> {
+    /// What the flights of points say.
+    pub(super) fn scored(&self, points: &[Point]) -> Result<Vec<Scored>, CampaignError> {
+        let at_once = engine::at_once(self.campaign.template().study());
+        let parts: Vec<Result<Vec<Scored>, CampaignError>> = points
+            .par_chunks(at_once)
+            .map_init(Memory::default, |memory, points| self.flown(memory, points))
+            .collect();
+        let mut scored = Vec::with_capacity(points.len());
+        for part in parts {
+            scored.extend(part?);
+        }
+        Ok(scored)
+    }
+
+    fn flown(&self, memory: &mut Memory, points: &[Point]) -> Result<Vec<Scored>, CampaignError> {
         if self.progress.is_stopped() {
             return Err(CampaignError::Stopped);
         }
@@ -167,12 +200,14 @@ impl<'a> Target<'a> {
             let flights = if study.is_ok() { flown.next() } else { None };
             match flights {
                 Some(Err(error)) if error.is_of_host() => Err(error.into()),
-                Some(Ok(flights)) => Ok(flights.first().map_or(LOST, |it| self.score(it))),
+                Some(Ok(flights)) => {
+                    Ok(flights.first().map_or(Scored::LOST, |it| Scored::of(it, self.score(it))))
+                }
                 // Numbers that make no scenario, or one that cannot be flown: refused runs fail in campaigns too.
-                _ => Ok(LOST),
+                _ => Ok(Scored::LOST),
             }
         });
-        let scores: Result<Vec<f64>, CampaignError> = scores.collect();
+        let scores: Result<Vec<Scored>, CampaignError> = scores.collect();
         self.progress.add_flown(points.len() as u64);
         scores
     }
@@ -206,17 +241,7 @@ impl LimitState for Target<'_> {
     }
 
     fn scores(&mut self, points: &[Point]) -> Result<Vec<f64>, CampaignError> {
-        let at_once = engine::at_once(self.campaign.template().study());
-        let this = &*self;
-        let parts: Vec<Result<Vec<f64>, CampaignError>> = points
-            .par_chunks(at_once)
-            .map_init(Memory::default, |memory, points| this.flown(memory, points))
-            .collect();
-        let mut scores = Vec::with_capacity(points.len());
-        for part in parts {
-            scores.extend(part?);
-        }
-        Ok(scores)
+        Ok(self.scored(points)?.iter().map(|it| it.score).collect())
     }
 }
 

@@ -4,6 +4,7 @@ use super::answer::Rare;
 use super::importance::{Importance, LEAST_EFFECTIVE};
 use super::interval::Interval;
 use super::question::Method;
+use super::seldom::Seldom;
 use super::subset::{Known, Subset, Unfinished};
 use crate::summary::words::{number, whole};
 
@@ -21,7 +22,9 @@ impl Unfinished {
             Self::Flat => {
                 "no flight was nearer to the failure than others that are alike: nothing that is drawn leads there, as far as was seen"
             }
-            Self::Deep => "failures are rarer than the coordinates of the draws can tell, 3e-13",
+            Self::Deep => {
+                "no team of flights, or too few of one, reached a failure on the levels that are climbed at most, down to 3e-13"
+            }
             Self::Lost => "a team of flights found no way up; ask for more flights with --flights",
             Self::Apart => {
                 "the teams' estimates are too far apart for an interval that holds what it says; ask for more flights with --flights"
@@ -170,6 +173,31 @@ impl Rare {
         out
     }
 
+    /// Whether what is required is met, and how many flights nobody can tell of.
+    fn required_in_words(&self) -> Vec<String> {
+        let mut notes = Vec::new();
+        if self.undecided > 0 {
+            notes.push(format!(
+                "Stability at rest is UNDECIDED of {} of the {} flights, which count as well flown in every number: `fspid simulate` says why.",
+                whole(self.undecided),
+                whole(self.flights())
+            ));
+        }
+        if let (Some(most), Some(is_allowed)) = (self.question.most, self.is_allowed()) {
+            let verdict = match (is_allowed, self.at_most() <= most) {
+                (true, _) => "MET",
+                (false, true) => "NOT MET, for nobody can tell whether all that flew is stable",
+                (false, false) => "NOT MET",
+            };
+            notes.push(format!(
+                "Required: at most {} a flight. The upper end is {}: {verdict}.",
+                number(most),
+                number(self.at_most())
+            ));
+        }
+        notes
+    }
+
     /// What should be known beside the number.
     #[must_use]
     pub fn notes(&self) -> Vec<String> {
@@ -200,18 +228,13 @@ impl Rare {
             Some(true) => notes.push("Both methods agree within their intervals.".to_owned()),
             None => {}
         }
-        if let (Some(most), Some(is_allowed)) = (self.question.most, self.is_allowed()) {
-            let verdict = if is_allowed { "MET" } else { "NOT MET" };
+        notes.extend(self.required_in_words());
+        let Seldom { share, likeliest } = &self.hardly_flown;
+        if *share > 0.0 {
             notes.push(format!(
-                "Required: at most {} a flight. The upper end is {}: {verdict}.",
-                number(most),
-                number(self.at_most())
-            ));
-        }
-        if self.hardly_flown > 0.0 {
-            notes.push(format!(
-                "Of what is chosen among, values that come in {} of all flights were met too seldom to know what they do: all of that is in the upper end. Ask again with such a value alone (--set), or with more flights.",
-                number(self.hardly_flown)
+                "Of what is chosen among, combinations that come in {} of all flights were met too seldom to know what they do: all of that is in the upper end. The likeliest of them is {}. Ask again with it alone (--set), or with more flights.",
+                number(*share),
+                likeliest.join(", ")
             ));
         }
         notes.push("It is about the dispersions as they are written. Failures in a region that no flight came near are not in it.".to_owned());

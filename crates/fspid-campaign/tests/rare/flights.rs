@@ -137,11 +137,127 @@ fn a_value_that_is_hardly_ever_chosen_counts_as_if_it_always_failed() {
         asked(&text, &question(Method::Subset, 4000)).expect("answered")
     };
     let hardly = of("[9999, 1]");
-    assert!((hardly.hardly_flown - 1e-4).abs() < 1e-15 && hardly.at_most() >= 1e-4);
+    assert!((hardly.hardly_flown.share - 1e-4).abs() < 1e-15 && hardly.at_most() >= 1e-4);
     assert!(hardly.notes().iter().any(|note| note.contains("met too seldom")), "{hardly:?}");
     // What is met often enough is counted, and a value without weight is none.
     let often = of("[9, 1]");
-    assert!(often.hardly_flown.abs() < 1e-18 && often.interval().is_some_and(|it| it.low < 0.1));
+    assert!(
+        often.hardly_flown.share.abs() < 1e-18 && often.interval().is_some_and(|it| it.low < 0.1)
+    );
     assert!(often.interval().is_some_and(|it| it.high > 0.1 && it.high < 0.2), "{often:?}");
-    assert!(of("[1, 0]").hardly_flown.abs() < 1e-18);
+    assert!(of("[1, 0]").hardly_flown.share.abs() < 1e-18);
+}
+
+/// Two choices that are harmless each, and unstable together: 9e-4 of all flights. Each comes often enough, and "at most 1e-12"
+/// was told of both.
+const TOGETHER: &str = r#"
+schema = 1
+name = "two choices that fail together"
+[plant]
+numerator = [1.15101, 0.17742]
+denominator = [1.0, 0.739, 0.921468, 0.0]
+elevator_sign = "nose-up-positive"
+[actuator]
+time_constant_s = 0.1
+delay_samples = 1
+[loop]
+sample_period_s = 0.1
+duration_s = 3.0
+[setpoint]
+kind = "step"
+amplitude_deg = 1.0
+at_s = 0.0
+[[controller]]
+name = "PID"
+kind = "pid"
+kp = 1.0
+ki = 0.3
+kd = 0.5
+[[requirement]]
+measure = "largest_error_deg"
+most = 3.0
+[[dispersion]]
+path = "setpoint.amplitude_deg"
+distribution = "normal"
+mean = 1.0
+standard_deviation = 0.2
+[[dispersion]]
+path = "controller[0].kp"
+distribution = "choice"
+values = [1.0, 3.0]
+weights = [0.97, 0.03]
+[[dispersion]]
+path = "actuator.delay_samples"
+distribution = "choice"
+values = [1, 6]
+weights = [0.97, 0.03]
+"#;
+
+#[test]
+fn values_that_come_often_and_hardly_ever_together_count_as_if_they_always_failed() {
+    let asked_for = |flights| Question { most: Some(1e-4), ..question(Method::Subset, flights) };
+    let found = asked(TOGETHER, &asked_for(2000)).expect("answered");
+    assert!((found.hardly_flown.share - 9e-4).abs() < 1e-15, "{:?}", found.hardly_flown);
+    assert_eq!(found.hardly_flown.likeliest, ["controller[0].kp=3.0", "actuator.delay_samples=6"]);
+    assert!(found.at_most() >= 9e-4 && found.is_allowed() == Some(false), "{}", found.text());
+    let told = "The likeliest of them is controller[0].kp=3.0, actuator.delay_samples=6.";
+    assert!(found.text().contains(told) && found.text().contains(": NOT MET."), "{}", found.text());
+}
+
+/// A load that the command does not hold within its limit: every flight is undecided at rest, and was "MET".
+#[test]
+fn what_nobody_can_tell_to_be_stable_is_counted_and_never_met() {
+    let text = r#"
+schema = 1
+name = "undecided"
+[plant]
+preset = "navion-paper"
+[loop]
+sample_period_s = 0.05
+duration_s = 1.0
+[setpoint]
+kind = "step"
+amplitude_deg = 1.0
+[[disturbance]]
+kind = "step"
+enters_at = "servo"
+amplitude_deg = 3.0
+at_s = 0.0
+[[controller]]
+name = "PID"
+kind = "pid"
+kp = 1.0
+ki = 0.5
+kd = 0.2
+output_limits_deg = [-2.5, 2.5]
+[[requirement]]
+measure = "largest_error_deg"
+most = 30.0
+[[dispersion]]
+path = "setpoint.amplitude_deg"
+distribution = "normal"
+mean = 1.0
+standard_deviation = 0.1
+"#;
+    let question = Question { most: Some(0.5), ..question(Method::Subset, 1000) };
+    let campaign = campaign(text);
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new(folder.path());
+    let ask = || {
+        let progress = Progress::default();
+        let asked = || rare(&campaign, &question, Some(&folder), &progress);
+        local::in_threads(2, asked).expect("threads").expect("answered")
+    };
+    let found = ask();
+    assert_eq!(found.undecided, found.flights());
+    assert!(found.at_most() < 0.5 && found.is_allowed() == Some(false), "{}", found.text());
+    assert!(found.text().contains("UNDECIDED of 1") && !found.text().contains(": MET"));
+    assert!(found.text().contains("NOT MET, for nobody can tell"), "{}", found.text());
+    assert_eq!(found.json()["undecided"], found.flights());
+    // What was flown before is counted as well.
+    assert_eq!(ask().json(), found.json());
+    // A limit that holds the load leaves nothing in doubt.
+    let held = text.replace("[-2.5, 2.5]", "[-20.0, 20.0]");
+    let held = asked(&held, &question).expect("answered");
+    assert_eq!((held.undecided, held.is_allowed()), (0, Some(true)), "{}", held.text());
 }

@@ -1,11 +1,14 @@
 //! What the flights tell: shares of the win, how gains move, and what they follow.
 
+use fspid_campaign::rows::UNDECIDED;
 use fspid_core::Gains;
 
 use super::Adaptation;
+use super::barred;
 use super::best::Best;
+use super::draws::{Draws, Estimate, Kind, Parts, Weights};
 use super::flown::{First, Treated};
-use super::means::{Draws, Estimate, Kind, Means, Parts, Quantity, Weights, line};
+use super::means::{Means, Quantity, line};
 use super::plants::Plants;
 use super::treatment::Treatment;
 use crate::source::in_commands;
@@ -25,6 +28,10 @@ pub struct Row {
     pub flights: usize,
     /// Flights that break a requirement; none where they were not asked.
     pub broken: Option<usize>,
+    /// Flights of loops that are unstable at rest; none where they were not asked, as with gains of other moments.
+    pub unstable: Option<u64>,
+    /// The same of loops of which nobody can tell.
+    pub undecided: Option<u64>,
 }
 
 /// A part of the win.
@@ -90,7 +97,7 @@ pub struct Following {
 pub struct PlantRow {
     /// Its first case.
     pub name: String,
-    /// In how many ways it is written; flights that have the same bits with either are of one plant.
+    /// In how many ways it is written; flights that are alike with either are of one plant.
     pub written: usize,
     /// Its flights.
     pub flights: usize,
@@ -143,6 +150,18 @@ pub struct Answer {
     pub moved: [Moved; 3],
     /// What they follow.
     pub following: [Following; 3],
+    /// Why nothing is won, whatever the errors are, in a sentence; none where that stands in nobody's way.
+    pub barred: Option<String>,
+}
+
+impl Answer {
+    /// The same where this keeps it from being a win, if it does: of no win there are no shares.
+    pub(super) fn barred_by(mut self, barred: Option<String>) -> Self {
+        if barred.is_some() {
+            self.steps.iter_mut().for_each(|step| step.share = None);
+        }
+        Self { barred, ..self }
+    }
 }
 
 const GAINS: [&str; 3] = ["kp", "ki", "kd"];
@@ -190,6 +209,7 @@ pub(super) fn answer(
         rows: rows(&told, treated, asked.against.is_some()),
         moved: facts.moved(nominal.unwrap_or(Gains::ZERO)),
         following: facts.following(),
+        barred: None,
     }
 }
 
@@ -253,15 +273,12 @@ impl Told<'_> {
         let pairs = chain.iter().zip(chain.iter().skip(1));
         pairs
             .map(|(&from, &to)| {
-                let share = |weights: &Weights| {
-                    let part = self.logarithm(from, to, Quantity::Iae, weights)?;
-                    Some(part / whole(weights)?)
-                };
+                let part = |weights: &Weights| self.logarithm(from, to, Quantity::Iae, weights);
                 Step {
                     treatment: to,
                     iae: self.between(Some(from), to, Quantity::Iae),
                     travel: self.between(Some(from), to, Quantity::Travel),
-                    share: if is_win { self.draws.estimate(Kind::Any, share) } else { None },
+                    share: if is_win { self.draws.share(part, whole) } else { None },
                 }
             })
             .collect()
@@ -279,6 +296,8 @@ fn rows(told: &Told<'_>, treated: &[Treated], against: bool) -> Vec<Row> {
             lost: flown().filter(|it| it.lost).count(),
             flights: flown().count(),
             broken: is_asked.then(|| flown().filter(|it| it.broken != Some(false)).count()),
+            unstable: barred::count(flown(), barred::UNSTABLE),
+            undecided: barred::count(flown(), UNDECIDED),
         }
     };
     let asked = |treatment: &Treatment| against || *treatment != Treatment::Against;

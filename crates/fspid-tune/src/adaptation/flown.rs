@@ -11,8 +11,8 @@ use fspid_scenario::measure::Measure;
 use fspid_scenario::units::degrees;
 use fspid_sim::replay::{Replay, fly_replayed, fly_watching_inputs};
 use fspid_sim::{Controller, Instant, Outcome, Prepared, SimError, Surroundings, Weather};
-use sha2::{Digest as _, Sha256};
 
+use super::trace::{Sketch, Trace};
 use super::treatment::{COUNT, Treatment};
 use crate::draw::Draw;
 use crate::error::TuneError;
@@ -48,11 +48,18 @@ pub(super) struct Value {
     pub(super) lost: bool,
     /// Whether it breaks a requirement; none where that was not asked.
     pub(super) broken: Option<bool>,
+    /// Whether its loop is stable at rest, in a word; none where that was not asked.
+    pub(super) stability: Option<&'static str>,
 }
 
 impl Value {
-    const LOST: Self =
-        Self { iae_deg_s: f64::INFINITY, travel_deg: f64::INFINITY, lost: true, broken: None };
+    pub(super) const LOST: Self = Self {
+        iae_deg_s: f64::INFINITY,
+        travel_deg: f64::INFINITY,
+        lost: true,
+        broken: None,
+        stability: None,
+    };
 
     pub(super) fn of(flight: &FlightResult) -> Self {
         let measured = |measure| flight.metrics.measured(measure).unwrap_or(f64::INFINITY);
@@ -62,7 +69,8 @@ impl Value {
         let near = degrees(flight.metrics.largest_error_rad) <= LOST_DEG;
         let lost = flight.metrics.verdict.is_failure() || !near || !iae_deg_s.is_finite();
         let broken = flight.judgements.iter().any(|judgement| !judgement.met);
-        Self { iae_deg_s, travel_deg, lost, broken: Some(broken) }
+        let stability = flight.at_rest.stability_word();
+        Self { iae_deg_s, travel_deg, lost, broken: Some(broken), stability }
     }
 }
 
@@ -90,7 +98,7 @@ impl Meter {
             return Value::LOST;
         }
         let (iae_deg_s, travel_deg) = (degrees(self.error_rad * dt_s), degrees(self.travel_rad));
-        Value { iae_deg_s, travel_deg, lost: false, broken: None }
+        Value { iae_deg_s, travel_deg, lost: false, broken: None, stability: None }
     }
 }
 
@@ -108,25 +116,20 @@ pub(super) struct Record {
     gains: Vec<Gains<f64>>,
     inputs: Vec<[f64; 2]>,
     lost: bool,
-    /// The same for flights with the same bits of pitch, elevator and gains.
-    trace: String,
+    trace: Trace,
 }
 
 impl Record {
     fn of(prepared: &Prepared, controller: &Fspid<f64>) -> Result<Self, SimError> {
         let (mut record, mut meter) = (Self::default(), Meter::default());
-        let mut trace = Sha256::new();
         let outcome = fly_watching_inputs(prepared, controller, |instant, inputs| {
             record.gains.push(instant.step.gains);
             let Gains { kp, ki, kd } = instant.step.gains;
-            for value in [instant.theta_rad, instant.elevator_rad, kp, ki, kd] {
-                trace.update(value.to_bits().to_le_bytes());
-            }
+            record.trace.push([instant.theta_rad, instant.elevator_rad, kp, ki, kd]);
             record.inputs.push(inputs);
             meter.take(&instant)
         })?;
         record.lost = meter.value(outcome, prepared.timing().dt_s()).lost;
-        record.trace = trace.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
         Ok(record)
     }
 
@@ -147,8 +150,8 @@ impl Record {
 pub(super) struct First {
     /// The same for flights whose plant is written alike.
     pub(super) key: String,
-    /// The same for flights with the same bits.
-    pub(super) trace: String,
+    /// What it shows, in short.
+    pub(super) sketch: Sketch,
     /// Change of pitch acceleration with the elevator, 1/s².
     pub(super) effectiveness_1_s2: Option<f64>,
     pub(super) airspeed_m_s: Option<f64>,
@@ -175,7 +178,7 @@ pub(super) fn first(
     let largest = prepared.setpoint_rad().iter().fold(0.0, |most: f64, it| most.max(it.abs()));
     let first = First {
         key: hex_digest(&format!("{parts:?}")),
-        trace: record.trace.clone(),
+        sketch: record.trace.sketch(),
         effectiveness_1_s2: effectiveness_1_s2(study),
         airspeed_m_s: study.airframes.first().and_then(|it| it.airspeed_m_s),
         amplitude_deg: degrees(largest),
@@ -194,12 +197,12 @@ impl First {
     }
 }
 
-/// What a flight comes to with the plant of another study in the place of its own; none where that cannot be flown.
+/// What a flight shows with the plant of another study in the place of its own; none where that cannot be flown.
 pub(super) fn with_plant_of(
     mut study: Study,
     other: Study,
     watch: Watch<'_>,
-) -> Result<Option<String>, TuneError> {
+) -> Result<Option<Trace>, TuneError> {
     watch.ask(1)?;
     let (own, other) = (&mut study.scenario, other.scenario);
     (own.plant, own.plant_changes, own.actuator) =
@@ -489,29 +492,6 @@ pub(super) fn judged(
     watch.ask(studies.len())?;
     let flown = engine::fly_judging(memory, studies, JUDGING);
     Ok(flown.into_iter().map(|flights| flights.ok()?.into_iter().next()).collect())
-}
-
-/// Values of what flies with gains that stand still; of the flight as it is; and of the other controller.
-pub(super) fn stood(
-    memory: &mut Memory,
-    study: &Study,
-    other: Option<&Study>,
-    means: &[(Treatment, Gains<f64>)],
-    watch: Watch<'_>,
-) -> Result<(Values, Option<FlightResult>), TuneError> {
-    let mut values = Values::default();
-    let value = |flight: &Option<FlightResult>| flight.as_ref().map_or(Value::LOST, Value::of);
-    let as_it_is = judged(memory, std::slice::from_ref(study), watch)?.pop().flatten();
-    values[Treatment::AsItIs.place()] = vec![value(&as_it_is)];
-    if let Some(other) = other {
-        let flight = judged(memory, std::slice::from_ref(other), watch)?.pop().flatten();
-        values[Treatment::Against.place()] = vec![value(&flight)];
-    }
-    let gains: Vec<Gains<f64>> = means.iter().map(|(_, gains)| *gains).collect();
-    for ((treatment, _), value) in means.iter().zip(standing(memory, study, &gains, watch)?) {
-        values[treatment.place()] = vec![value];
-    }
-    Ok((values, as_it_is))
 }
 
 /// Values of a study that flies with gains that stand still, one after the other.

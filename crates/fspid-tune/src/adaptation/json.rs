@@ -5,7 +5,7 @@ use fspid_study::json::with_null_reasons;
 use serde_json::{Value, json};
 
 use super::answer::{Answer, Followed, Following, Moved, PlantRow, Row, Step};
-use super::means::Estimate;
+use super::draws::Estimate;
 
 impl Answer {
     /// For programs, schema 1.
@@ -22,6 +22,7 @@ impl Answer {
             "seed": seed,
             "budget": budget,
             "answer": self.headline(),
+            "barred": self.barred,
             "flights": self.flights,
             "kept": self.kept,
             "plants_kept": self.plants_kept(),
@@ -38,12 +39,20 @@ impl Answer {
 
 const FEW: &str = "of the flights that are compared too few are left";
 const STILL: &str = "what it is a share of, or follows, does not move";
+const REPLAYED: &str =
+    "gains or inputs of other moments have no rest, or nobody knows its equations";
 /// Why what may be missing is missing.
-const NULL: [(&str, &str); 14] = [
+const NULL: [(&str, &str); 17] = [
+    ("barred", "nothing keeps a win from being one"),
+    ("unstable", REPLAYED),
+    ("undecided", REPLAYED),
     ("iae_ratio", FEW),
     ("travel_ratio", FEW),
     ("share", "there is no win of which it would be a share, or too few flights are left"),
-    ("interval", "it is of fewer than five plants, or nothing is left of it without some of them"),
+    (
+        "interval",
+        "it is of fewer than five plants, or nothing is left of it without some of them, or it is a share of what may be nothing",
+    ),
     ("breaks_a_requirement", "nothing is required"),
     ("share_between_plants", STILL),
     ("share_between_flights", STILL),
@@ -78,6 +87,8 @@ fn row(it: &Row) -> Value {
         "lost": it.lost,
         "flights": it.flights,
         "breaks_a_requirement": it.broken,
+        "unstable": it.unstable,
+        "undecided": it.undecided,
     })
 }
 

@@ -13,26 +13,34 @@
 //! win, so that each has a share of it. What is put in earlier takes what later things could have done as well; the order is
 //! that of how much has to be known.
 //!
+//! # What is no win
+//! Who wins is held to what a contest holds its winner to: where a flight as it is, or of the one compared with, is of a loop
+//! that is unstable at rest or of which nobody can tell, or where the self-tuner fails more flights, its error says nothing.
+//!
 //! # How sure
-//! A plant is an aircraft at a condition with its actuator, however it is written: plants whose flights have the same bits
-//! with either of them are one. Flights of one plant are not independent, least of all steps up and down of a linear one; so
-//! plants that have a flight in the win are left out with all their flights, in at most twenty parts, one after the other, and
-//! the flights of the others that go by gains of all or of other plants are flown again without them (a jackknife: Busing,
-//! Meijer and van der Leeden 1999). Seeds of the shuffles are left out one by one. Intervals are Student's, of 95 %.
+//! A plant is an aircraft at a condition with its actuator, however it is written: plants whose flights are alike with either
+//! of them, to a millionth of their size at every sample, are one. Flights of one plant are not independent, least of all steps
+//! up and down of a linear one; so plants that have a flight in the win are left out with all their flights, in at most twenty
+//! parts, one after the other, and the flights of the others that go by gains of all or of other plants are flown again without
+//! them (a jackknife: Busing, Meijer and van der Leeden 1999). Seeds of the shuffles are left out one by one. Intervals are
+//! Student's, of 95 %, and of shares Fieller's, of which there are none where the whole may be nothing.
 
 mod answer;
+mod barred;
 mod best;
+mod draws;
 mod flown;
 mod json;
 mod means;
 mod page;
 mod plants;
 mod text;
+mod trace;
 mod treatment;
 
 use std::sync::atomic::AtomicUsize;
 
-use fspid_campaign::engine::{FlightResult, Judging, Memory, Stability};
+use fspid_campaign::engine::{Judging, Memory, Stability};
 use fspid_core::Gains;
 use fspid_scenario::count::{BUDGET, RUNS, SEEDS};
 use fspid_scenario::file::{Study, known_words};
@@ -42,8 +50,8 @@ use fspid_study::memory::Needed;
 use rayon::prelude::*;
 
 pub use answer::{Answer, Followed, Following, Moved, PlantRow, Row, Step};
+pub use draws::Estimate;
 pub use flown::Watch;
-pub use means::Estimate;
 pub use treatment::Treatment;
 
 use crate::crew::Part;
@@ -52,9 +60,10 @@ use crate::flights::{Asked, Dispersed, Flights, FlownCase, each_once, flown_case
 use crate::flyer::Flyer;
 use crate::source::Source;
 use crate::space::Space;
+use barred::{Contested, Flier};
 use best::Best;
+use draws::Parts;
 use flown::{First, Schedules, Treated, Value, Values};
-use means::Parts;
 use plants::Plants;
 
 /// What can be chosen.
@@ -66,7 +75,7 @@ pub struct Options {
     pub against: Option<String>,
     /// How often time is shuffled.
     pub seeds: u64,
-    /// The first of the seeds, of all random numbers.
+    /// The first of the seeds, of all random numbers but the draws of dispersions that a contest or a tuning says the seed of.
     pub seed: u64,
     /// Candidates of the search for the best gains of each plant.
     pub budget: usize,
@@ -104,6 +113,23 @@ struct Known<'a> {
     schedules: &'a Schedules,
 }
 
+/// A flight with everything in the place of the supervisor that needs no other plant; as it is; and of the other controller.
+struct Stood {
+    values: Values,
+    as_it_is: Contested,
+    other: Option<Contested>,
+}
+
+/// A controller with those of its flights that it has.
+fn flier<'a>(name: &str, flown: impl Iterator<Item = Option<&'a Contested>>) -> Flier {
+    let mut flier = Flier { name: name.to_owned(), ..Flier::default() };
+    for Contested { value, flight, .. } in flown.flatten() {
+        flier.values.push(*value);
+        flier.flights.push(flight.clone());
+    }
+    flier
+}
+
 /// A flight: its case and the number of its run.
 type Job<'a> = (&'a FlownCase, usize);
 
@@ -121,7 +147,7 @@ impl Adaptation {
         let study = template.study();
         let controller = self_tuner(study, options.controller.as_deref())?;
         let against = compared_with(study, options.against.as_deref(), &controller)?;
-        let (cases, dispersed) = cases(study, options.runs);
+        let (cases, dispersed) = cases(study, options);
         let flights = |controller: &str| {
             // Marks fly as they start.
             let cases = flown_cases(source, Flyer { controller, free: &[] }, cases, dispersed)?;
@@ -159,7 +185,7 @@ impl Adaptation {
     pub fn expected(&self) -> usize {
         let drawn = Treatment::DRAWN.len() * usize::try_from(self.options.seeds).unwrap_or(0);
         // Without each part of the plants two flights more; nobody knows yet how many plants there are.
-        let left = Treatment::OF_OTHERS.len() * means::most_parts(self.flights.count());
+        let left = Treatment::OF_OTHERS.len() * draws::most_parts(self.flights.count());
         // Also to tell plants apart, and for the gains of others.
         self.flights.count() * (12 + drawn + left + self.options.budget)
     }
@@ -177,7 +203,7 @@ impl Adaptation {
         let nobody = Parts::of(&vec![false; plants.count()]);
         let schedules = self.schedules(&jobs, (&firsts, &plants), &nobody, watch)?;
         let known = Known { firsts: &firsts, plants: &plants, schedules: &schedules };
-        let treated: Vec<(Values, Option<FlightResult>)> = jobs
+        let stood: Vec<Stood> = jobs
             .par_iter()
             .enumerate()
             .map_init(Memory::default, |memory, (number, job)| {
@@ -186,9 +212,10 @@ impl Adaptation {
             .collect::<Result<_, _>>()?;
         let best: Vec<Option<Best>> = (0..plants.count())
             .into_par_iter()
-            .map(|plant| self.best(plant, &jobs, &treated, &plants, watch))
+            .map(|plant| self.best(plant, &jobs, &stood, &plants, watch))
             .collect::<Result<_, _>>()?;
-        let mut values: Vec<Values> = treated.into_iter().map(|(values, _)| values).collect();
+        let barred = self.barred(&stood);
+        let mut values: Vec<Values> = stood.into_iter().map(|it| it.values).collect();
         for (plant, best) in best.iter().enumerate() {
             let mine = plants.flown(plant, &firsts);
             for (place, value) in mine.zip(best.iter().flat_map(|best| &best.values)) {
@@ -200,7 +227,16 @@ impl Adaptation {
         let treated = values.into_iter().zip(left).map(|(values, left)| Treated { values, left });
         let treated: Vec<Treated> = treated.collect();
         let named = jobs.iter().map(|(case, _)| case.name.clone()).collect();
-        Ok(answer::answer(self, named, (&firsts, &plants, &parts), &treated, &best))
+        let answer = answer::answer(self, named, (&firsts, &plants, &parts), &treated, &best);
+        Ok(answer.barred_by(barred))
+    }
+
+    /// Why nothing is won, if it is not, whatever the errors are.
+    fn barred(&self, stood: &[Stood]) -> Option<String> {
+        let own = stood.iter().map(|it| Some(&it.as_it_is));
+        let own = flier(&self.controller, own);
+        let against = self.against.as_deref();
+        barred::bar(own, against.map(|name| flier(name, stood.iter().map(|it| it.other.as_ref()))))
     }
 
     /// All flights as they are.
@@ -263,7 +299,7 @@ impl Adaptation {
         (number, job): (usize, Job<'_>),
         Known { firsts, plants, schedules }: Known<'_>,
         watch: Watch<'_>,
-    ) -> Result<(Values, Option<FlightResult>), TuneError> {
+    ) -> Result<Stood, TuneError> {
         let study = self.study(job)?;
         let other = self.theirs.as_ref().map(|theirs| {
             let (case, run) = theirs.jobs().nth(number).ok_or("nobody flies".to_owned())?;
@@ -278,28 +314,37 @@ impl Adaptation {
             (Treatment::PlantMean, plants.means.get(plant).copied().unwrap_or(nominal)),
             (Treatment::FlightMean, firsts.get(number).map_or(nominal, First::mean)),
         ];
-        let (mut values, as_it_is) = flown::stood(memory, &study, other.as_ref(), &means, watch)?;
+        let as_it_is = Contested::of(memory, &study, watch)?;
+        let other = other.map(|other| Contested::of(memory, &other, watch)).transpose()?;
+        let mut values = Values::default();
+        values[Treatment::AsItIs.place()] = vec![as_it_is.value];
+        values[Treatment::Against.place()].extend(other.as_ref().map(|it| it.value));
+        let gains = means.map(|(_, gains)| gains);
+        let standing = flown::standing(memory, &study, &gains, watch)?;
+        for ((treatment, _), value) in means.iter().zip(standing) {
+            values[treatment.place()] = vec![value];
+        }
         let seeds = (self.options.seed, self.options.seeds);
         let again = flown::replayed(&study, (number, plant), schedules, seeds, watch)?;
         for treatment in Treatment::DRAWN.into_iter().chain([Treatment::OtherPlants]) {
             values[treatment.place()].clone_from(&again[treatment.place()]);
         }
-        Ok((values, as_it_is))
+        Ok(Stood { values, as_it_is, other })
     }
 
     fn best(
         &self,
         plant: usize,
         jobs: &[Job<'_>],
-        treated: &[(Values, Option<FlightResult>)],
+        stood: &[Stood],
         plants: &Plants,
         watch: Watch<'_>,
     ) -> Result<Option<Best>, TuneError> {
-        let mine = jobs.iter().zip(treated).zip(&plants.of).filter(|(_, of)| **of == plant);
+        let mine = jobs.iter().zip(stood).zip(&plants.of).filter(|(_, of)| **of == plant);
         let mut asked = Vec::new();
-        for ((job, (_, as_it_is)), _) in mine {
+        for ((job, Stood { as_it_is: Contested { value, result, .. }, .. }), _) in mine {
             // What is lost as it is has nothing to be compared with; the places are those of `Plants::flown`.
-            if let Some(as_it_is) = as_it_is.clone().filter(|it| !Value::of(it).lost) {
+            if let Some(as_it_is) = result.clone().filter(|_| !value.lost) {
                 asked.push(best::Asked { study: self.study(*job)?, as_it_is });
             }
         }
@@ -356,7 +401,8 @@ fn compared_with(
 }
 
 /// The cases that are flown, and how often.
-fn cases(study: &Study, runs: Option<u64>) -> (&[Case], Dispersed) {
+fn cases<'a>(study: &'a Study, options: &Options) -> (&'a [Case], Dispersed) {
+    let runs = options.runs;
     let key = "--runs";
     if let Some(contest) = &study.contest {
         let runs = runs.unwrap_or(contest.runs);
@@ -367,7 +413,7 @@ fn cases(study: &Study, runs: Option<u64>) -> (&[Case], Dispersed) {
             let runs = runs.unwrap_or(tuning.runs);
             (&tuning.cases, Dispersed { key, runs, seed: tuning.run_seed })
         }
-        None => (&[], Dispersed { key, runs: runs.unwrap_or(0), seed: 1 }),
+        None => (&[], Dispersed { key, runs: runs.unwrap_or(0), seed: options.seed }),
     }
 }
 

@@ -11,8 +11,8 @@ use fspid_plot::{
 use fspid_study::shell::word;
 
 use super::answer::{Answer, PlantRow};
-use super::means::Estimate;
-use super::text::{UNDEFINED, broken, change, gains, known, lost, moved, name, share};
+use super::draws::Estimate;
+use super::text::{UNDEFINED, broken, change, gains, known, lost, moved, name, share, unstable};
 use super::treatment::Treatment;
 
 impl Answer {
@@ -38,14 +38,13 @@ impl Answer {
     }
 
     fn verdict(&self) -> Verdict {
-        let is_told = self.is_told();
-        let adapts = is_told && self.helps(Treatment::AsItIs);
-        let word = match (is_told, adapts) {
-            (false, _) => "Open",
-            (true, true) => "Adapts",
-            (true, false) => "Not shown to adapt",
+        let adapts = self.helps(Treatment::AsItIs);
+        let (word, standing) = match (self.is_told(), &self.barred, adapts) {
+            (false, _, _) => ("Open", Colour::Fair),
+            (true, Some(_), _) => ("No win", Colour::Bad),
+            (true, None, true) => ("Adapts", Colour::Good),
+            (true, None, false) => ("Not shown to adapt", Colour::Fair),
         };
-        let standing = if adapts { Colour::Good } else { Colour::Fair };
         let detail = format!("{} {}", self.headline(), self.detail());
         Verdict { standing, word: word.to_owned(), name: self.controller.clone(), detail }
     }
@@ -141,9 +140,10 @@ impl Answer {
                 number(row.travel, change),
                 Datum::Number(lost(row)),
                 Datum::Number(broken(row)),
+                Datum::Number(unstable(row)),
             ]
         });
-        let head = ["flown", "IAE", "travel", "lost", "breaks a requirement"];
+        let head = ["flown", "IAE", "travel", "lost", "breaks a requirement", "unstable at rest"];
         let caption = "The same flights with something else in the place of the supervisor's gains, beside them as they are (geometric mean of the ratios).";
         let items = vec![
             picture(

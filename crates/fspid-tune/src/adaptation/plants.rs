@@ -1,13 +1,14 @@
 //! Which flights are of the same plant, however that is written.
 //!
-//! What is written otherwise may fly the same: a limit that never acts makes no other plant, and would count as evidence
-//! once more. Two plants are one where each of their flights has the same bits with either of them.
+//! What is written otherwise may fly the same: a limit that never acts, or another ninth digit, makes no other plant, and would
+//! count as evidence once more. Two plants are one where each of their flights is alike with either of them.
 
 use fspid_core::Gains;
 use rayon::prelude::*;
 
+use super::draws::Parts;
 use super::flown::First;
-use super::means::Parts;
+use super::trace::{Sketch, Trace};
 use crate::error::TuneError;
 
 /// Most flights in which all plants are told apart before pairs of them are asked in all of their flights.
@@ -25,11 +26,11 @@ pub(super) struct Plants {
 }
 
 impl Plants {
-    /// Of flights, and what a flight comes to with the plant of another one, both by their numbers; none where it cannot be
+    /// Of flights, and what a flight shows with the plant of another one, both by their numbers; none where it cannot be
     /// flown.
     pub(super) fn of(
         firsts: &[First],
-        fly: impl Fn(usize, usize) -> Result<Option<String>, TuneError> + Sync,
+        fly: impl Fn(usize, usize) -> Result<Option<Trace>, TuneError> + Sync,
     ) -> Result<Self, TuneError> {
         let mut keys: Vec<&str> = Vec::new();
         let as_written: Vec<usize> = firsts.iter().map(|it| place_of(&mut keys, &it.key)).collect();
@@ -73,17 +74,23 @@ struct Asked<'a, F> {
     fly: F,
 }
 
-impl<F: Fn(usize, usize) -> Result<Option<String>, TuneError> + Sync> Asked<'_, F> {
+impl<F: Fn(usize, usize) -> Result<Option<Trace>, TuneError> + Sync> Asked<'_, F> {
     /// The plant that each is that is written.
     fn plants(&self, written: usize) -> Result<Vec<usize>, TuneError> {
-        let alike = self.probed(written)?;
+        let probed = self.probed(written)?;
+        let may_be_one = |own: usize, leader: usize| {
+            probed[own].iter().zip(&probed[leader]).all(|it| match it {
+                (Some(one), Some(other)) => one.may_be_like(other),
+                (one, other) => one.is_none() && other.is_none(),
+            })
+        };
         // The first that each plant is written as.
         let mut leaders: Vec<usize> = Vec::new();
         let mut plant_of = Vec::with_capacity(written);
         for own in 0..written {
             let mut found = None;
             for (plant, leader) in leaders.iter().enumerate() {
-                if alike[own] == alike[*leader] && self.are_one(own, *leader)? {
+                if may_be_one(own, *leader) && self.are_one(own, *leader)? {
                     found = Some(plant);
                     break;
                 }
@@ -96,8 +103,8 @@ impl<F: Fn(usize, usize) -> Result<Option<String>, TuneError> + Sync> Asked<'_, 
         Ok(plant_of)
     }
 
-    /// What each plant comes to in some flights, those of the largest commands, which limits and rates are met in.
-    fn probed(&self, written: usize) -> Result<Vec<Vec<Option<String>>>, TuneError> {
+    /// What each plant shows in some flights, those of the largest commands, which limits and rates are met in.
+    fn probed(&self, written: usize) -> Result<Vec<Vec<Option<Sketch>>>, TuneError> {
         let mut probes: Vec<usize> = Vec::new();
         let mut order: Vec<usize> = self.flown(|_| true).collect();
         let amplitude = |place: &usize| self.firsts[*place].amplitude_deg;
@@ -113,15 +120,27 @@ impl<F: Fn(usize, usize) -> Result<Option<String>, TuneError> + Sync> Asked<'_, 
         let probes = if written > 1 { probes } else { Vec::new() };
         (0..written)
             .into_par_iter()
-            .map(|plant| probes.iter().map(|probe| self.flies(*probe, plant)).collect())
+            .map(|plant| probes.iter().map(|probe| self.probe(*probe, plant)).collect())
             .collect()
     }
 
-    /// Whether all flights of two plants have the same bits with either of them.
+    fn probe(&self, flight: usize, plant: usize) -> Result<Option<Sketch>, TuneError> {
+        if self.as_written[flight] == plant {
+            return Ok(Some(self.firsts[flight].sketch.clone()));
+        }
+        Ok(self.flies(flight, plant)?.map(|trace| trace.sketch()))
+    }
+
+    /// Whether all flights of two plants are alike with either of them.
     fn are_one(&self, one: usize, other: usize) -> Result<bool, TuneError> {
         for (plant, beside) in [(one, other), (other, one)] {
             for flight in self.flown(|it| it == plant) {
-                if self.flies(flight, beside)?.as_ref() != Some(&self.firsts[flight].trace) {
+                let Some(found) = self.flies(flight, beside)? else { return Ok(false) };
+                if !self.firsts[flight].sketch.may_be_like(&found.sketch()) {
+                    return Ok(false);
+                }
+                let own = self.flies(flight, plant)?;
+                if !own.is_some_and(|own| own.is_like(&found)) {
                     return Ok(false);
                 }
             }
@@ -129,11 +148,8 @@ impl<F: Fn(usize, usize) -> Result<Option<String>, TuneError> + Sync> Asked<'_, 
         Ok(true)
     }
 
-    /// What a flight comes to with a plant.
-    fn flies(&self, flight: usize, plant: usize) -> Result<Option<String>, TuneError> {
-        if self.as_written[flight] == plant {
-            return Ok(Some(self.firsts[flight].trace.clone()));
-        }
+    /// What a flight shows with a plant.
+    fn flies(&self, flight: usize, plant: usize) -> Result<Option<Trace>, TuneError> {
         let first = self.as_written.iter().position(|it| *it == plant);
         first.map_or(Ok(None), |first| (self.fly)(flight, first))
     }

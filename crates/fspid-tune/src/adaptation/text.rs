@@ -5,7 +5,7 @@ use fspid_page::columns::{Align, Columns};
 use fspid_page::number::significant;
 
 use super::answer::{Answer, Followed, Moved, PlantRow, Row, Step};
-use super::means::{Estimate, FEWEST};
+use super::draws::{Estimate, FEWEST};
 use super::treatment::Treatment;
 
 impl Answer {
@@ -26,9 +26,11 @@ impl Answer {
         out
     }
 
-    /// What the steps add up to: a win only where the error is smaller for certain.
+    /// What the steps add up to: a win only where the error is smaller for certain, and nothing bars it.
     pub(super) fn whole(&self) -> &'static str {
-        let is_win = self.win.is_some_and(|it| it.interval.is_some_and(|[_, upper]| upper < 1.0));
+        let is_smaller =
+            self.win.is_some_and(|it| it.interval.is_some_and(|[_, upper]| upper < 1.0));
+        let is_win = is_smaller && self.barred.is_none();
         if is_win { "win" } else { "difference" }
     }
 
@@ -85,6 +87,9 @@ impl Answer {
             return format!(
                 "Of {name} nothing is said for certain: adaptation is judged over {FEWEST} plants or more, and {here}."
             );
+        }
+        if let Some(barred) = &self.barred {
+            return barred.clone();
         }
         if self.step(Treatment::OtherPlants).is_none() {
             return format!(
@@ -151,18 +156,25 @@ impl Answer {
     /// What is to be known before the numbers are believed.
     pub(super) fn notes(&self) -> Vec<String> {
         let (seeds, _, budget) = self.effort;
-        let mut notes = vec![
+        // Beside few plants the headline says that they are few.
+        let barred = self.barred.clone().filter(|barred| *barred != self.headline());
+        let mut notes: Vec<String> = barred.into_iter().collect();
+        notes.extend([
             "Gains of the other plants: at each moment the mean of those that the same flight has on all of them. They know command, disturbance, air and time, and not the plant; what the own gains do beyond them is adaptation.".to_owned(),
             "A step takes what later ones could have done as well; the order is that of how much has to be known. Frozen gains carry with them what follows the gains.".to_owned(),
             format!(
                 "{} of time with each flight; the gains of a plant are the best of {budget} candidates within the gain limits (or 4 times nominal either way), with at most the travel of the flights as they are, breaking nothing that these keep.",
                 counted(usize::try_from(seeds).unwrap_or(usize::MAX), "shuffle")
             ),
-        ];
+        ]);
         notes.push(match self.plants_kept() < FEWEST {
             true => format!("Fewer than {FEWEST} plants in the win: no intervals of it."),
             false => "Intervals are of 95 %, Student's, by what it changes to leave out plants, each with all its flights and its gains in the means of others, and seeds; of very few plants they are still somewhat short.".to_owned(),
         });
+        let has_no_end = |it: &Step| it.share.is_some_and(|share| share.interval.is_none());
+        if self.plants_kept() >= FEWEST && self.steps.iter().any(has_no_end) {
+            notes.push("The shares have no intervals: the whole may be nothing, and of nothing anything is any share.".to_owned());
+        }
         if self.kept < self.flights {
             notes.push(format!(
                 "{} of {} left out of the win: lost with some of what it is made of, or flown on no other plant.",
@@ -189,7 +201,7 @@ impl Answer {
         }
         for plant in self.plants.iter().filter(|it| it.written > 1) {
             notes.push(format!(
-                "The plant of \"{}\" is written in {} ways, and is one: each of its flights has the same bits with any of them.",
+                "The plant of \"{}\" is written in {} ways, and is one: each of its flights is alike with any of them.",
                 plant.name, plant.written
             ));
         }
@@ -259,6 +271,18 @@ pub(super) fn broken(row: &Row) -> String {
     row.broken.map_or("not asked".to_owned(), |it| format!("{it} of {}", row.flights))
 }
 
+/// Flights of loops that are unstable at rest, and those of which nobody can tell.
+pub(super) fn unstable(row: &Row) -> String {
+    match (row.unstable, row.undecided) {
+        (Some(0), Some(0)) => "none".to_owned(),
+        (Some(unstable), Some(0)) => format!("{unstable} of {}", row.flights),
+        (Some(unstable), Some(undecided)) => {
+            format!("{unstable} of {}, undecided {undecided}", row.flights)
+        }
+        _ => "not asked".to_owned(),
+    }
+}
+
 fn steps(answer: &Answer) -> String {
     let of_whole = format!("share of the {}", answer.whole());
     let heads = ["what comes in", "IAE", &of_whole, "travel"];
@@ -278,7 +302,7 @@ fn steps(answer: &Answer) -> String {
 }
 
 fn rows(answer: &Answer) -> String {
-    let heads = ["flown", "IAE", "travel", "lost", "breaks a requirement"];
+    let heads = ["flown", "IAE", "travel", "lost", "breaks a requirement", "unstable at rest"];
     let mut table = Columns::new(&heads.map(|head| (head, Align::Left)));
     for row in &answer.rows {
         let number = |it: Option<Estimate>| it.map_or(UNDEFINED.to_owned(), change);
@@ -286,7 +310,7 @@ fn rows(answer: &Answer) -> String {
             Treatment::AsItIs => ("1".to_owned(), "1".to_owned()),
             _ => (number(row.iae), number(row.travel)),
         };
-        table.row(vec![name(answer, row), iae, travel, lost(row), broken(row)]);
+        table.row(vec![name(answer, row), iae, travel, lost(row), broken(row), unstable(row)]);
     }
     table.to_string()
 }

@@ -2,7 +2,7 @@
 
 use super::compare::{Comparison, Standing, barred};
 use super::outcome::Outcome;
-use super::words::{counted, cut, failing, finding, list, name, p_value, standing};
+use super::words::{counted, cut, failing, finding, list, name, p_value, some_of, standing};
 
 /// Who is first on all cases, and what that rests on.
 #[derive(Clone, Debug, PartialEq)]
@@ -127,12 +127,8 @@ pub(super) fn beside_first(outcome: &Outcome) -> Option<String> {
 fn bar_of_first(outcome: &Outcome, first: usize) -> Option<String> {
     let (judged, count) = (&outcome.judged, outcome.summaries.get(first)?.whole.count);
     if count.unstable > 0 {
-        return Some(format!(
-            "{} of its {} flights {} of loops that are unstable at rest",
-            count.unstable,
-            count.of,
-            if count.unstable == 1 { "is" } else { "are" }
-        ));
+        let some = some_of(count.unstable, count.of);
+        return Some(format!("{some} of loops that are unstable at rest"));
     }
     let others = (0..judged.contestants.len()).filter(|place| *place != first);
     let bars = others.filter(|place| barred(judged, first, *place).is_some());

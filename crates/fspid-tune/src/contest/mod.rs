@@ -54,6 +54,7 @@ use fspid_study::output;
 pub use crate::kept::Then;
 pub(crate) use compare::{Bar, CONFIDENCE, barred};
 pub use compare::{Comparison, Lost, Ratio, Standing};
+pub(crate) use flight::measured;
 pub use flight::{Flight, MEASURES};
 pub use judged::{Case, CaseGroup, Contestant, Count, Design, Judged, Quantity};
 pub use outcome::{First, Outcome, Setting};
@@ -62,6 +63,7 @@ pub(crate) use student::beyond;
 pub use summary::{Mirror, Part, Spread, Summary};
 pub use tuning::{Found, Progress};
 pub use two_way::{TwoWay, holm};
+pub(crate) use words::some_of;
 
 use crate::crew::Crew;
 use crate::error::TuneError;

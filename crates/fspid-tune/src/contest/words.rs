@@ -58,6 +58,11 @@ pub(super) fn spread(found: Option<Spread>, designs: usize) -> String {
     format!("{median} ({} to {})", number(found.lower), number(found.upper))
 }
 
+/// Some flights of a controller, of so many: "5 of its 6 flights are".
+pub(crate) fn some_of(some: u64, of: u64) -> String {
+    format!("{some} of its {of} flights {}", if some == 1 { "is" } else { "are" })
+}
+
 /// By how much a ratio is less or more than 1: "12 % less".
 pub(super) fn change(ratio: f64) -> String {
     if ratio.is_infinite() {
