@@ -292,7 +292,7 @@ pub(crate) fn gain_map(
     };
     let row = |row: &[FrozenPoint]| row.iter().map(|point| cell(point, quantity)).collect();
     GainMap {
-        title: format!("{name}: {label} of {} frozen gains", map.count()),
+        title: format!("{name}: {label} of {} frozen gains", map.points.len()),
         // The error is on the side, as in rule tables.
         x_label: format!("{} [supervisor units]", map.beside),
         y_label: "error [supervisor units]".to_owned(),

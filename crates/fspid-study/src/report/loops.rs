@@ -104,7 +104,7 @@ fn around(found: &AnalysedLoop) -> Option<String> {
 
 fn of_frozen(found: &AnalysedLoop) -> String {
     let worst = found.worst_frozen().map(|(_, worst)| &worst.margins);
-    let looked_at = found.worst().and_then(PlantLoop::map).map_or(0, FrozenMap::count);
+    let looked_at = found.worst().and_then(PlantLoop::map).map_or(0, |map| map.points.len());
     let reach = found.worst_within_reach().map(|worst| &worst.margins);
     let disk = |margins: &Margins| fixed(margins.disk_margin, 3);
     match (worst, reach) {
@@ -306,7 +306,7 @@ fn frozen(study: &Study, found: &AnalysedLoop) -> Option<Chapter> {
     let of = |quantity, what: &str| {
         let caption = format!(
             "The {what} at the {} gains on the map, each standing still; the line is the way of the flight. This is no proof about gains between them, nor about gains that move.",
-            map.count()
+            map.points.len()
         );
         let svg = gain_map(&found.name, map, quantity, flown.clone()).render();
         picture(&format!("{id}-{}", what.replace(' ', "-")), svg, &caption)

@@ -50,12 +50,6 @@ impl FrozenMap {
         Mapper { loops }.map()
     }
 
-    /// How many gains there are on the map.
-    #[must_use]
-    pub fn count(&self) -> usize {
-        self.points.len()
-    }
-
     /// Every gain that was looked at: on the map, at the cells, and the worst of the search.
     pub fn all(&self) -> impl Iterator<Item = &FrozenPoint> + Clone {
         self.points.iter().chain(&self.nodes).chain([&self.worst])
