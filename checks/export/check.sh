@@ -87,6 +87,10 @@ for design in "${designs[@]}"; do
             elsewhere riscv64-linux-gnu-gcc qemu-riscv64 riscv64
             elsewhere powerpc-linux-gnu-gcc qemu-ppc "powerpc, big-endian"
         fi
+        if [ "$long$numbers" = --longdouble ] && avr-gcc -std=c99 -mmcu=atmega1284p -fsyntax-only fspid.c 2> /dev/null; then
+            echo "$name: an AVR, whose double has 32 bits, takes numbers of 64"
+            exit 1
+        fi
         cd - > /dev/null
     done
     [ "$board" = yes ] || continue

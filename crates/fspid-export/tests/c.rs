@@ -6,7 +6,7 @@ use std::process::Command;
 use fspid_core::Controller;
 use fspid_export::program::Value;
 use fspid_export::vectors::eventful;
-use fspid_export::write::{Heading, c, c_harness, c_selftest};
+use fspid_export::write::{Heading, c, c_harness, c_selftest, platformio, sketch};
 use fspid_export::{Angles, program};
 use fspid_numeric::Real;
 use proptest::prelude::*;
@@ -115,6 +115,78 @@ fn self_tested<R: Real>(controller: &Controller<R>, angles: Angles, folder: &Pat
     let main = change.to_owned() + WRONG;
     write_all(controller, angles, folder, Some(&main));
     built_and_run(folder, &["pitch.c", "pitch_selftest.c", "main.c"])
+}
+
+/// What the compiler says of the controller's source with these flags; nothing where it takes it.
+fn refusal(folder: &Path, flags: &[&str]) -> String {
+    let built = Command::new("cc")
+        .args(["-std=c99", "-O1", "-fsyntax-only", "pitch.c"])
+        .args(flags)
+        .current_dir(folder)
+        .output()
+        .expect("the compiler that links Rust");
+    if built.status.success() {
+        String::new()
+    } else {
+        String::from_utf8_lossy(&built.stderr).into_owned()
+    }
+}
+
+/// Flags as of a machine whose constant `name` is `value`.
+fn machine(name: &str, value: &str) -> [String; 2] {
+    [format!("-U{name}"), format!("-D{name}={value}")]
+}
+
+#[test]
+fn a_compiler_with_other_numbers_than_those_that_were_checked_stops() {
+    let (controller, folder) =
+        (crate::common::paper(), tempfile::tempdir().expect("a temporary folder"));
+    let refused = |flags: &[String]| {
+        let flags: Vec<&str> = flags.iter().map(String::as_str).collect();
+        refusal(folder.path(), &flags)
+    };
+    let eval = |method: &str| machine("__FLT_EVAL_METHOD__", method);
+    let plain = |flag: &str| [flag.to_owned()];
+    let other_bits = "-DFSPID_OTHER_BITS".to_owned();
+    let single = controller.rounded::<f32>().expect("a controller of 32 bits");
+    write_all(&single, Angles::Radians, folder.path(), None);
+    assert_eq!(refused(&machine("__DBL_MANT_DIG__", "24")), "", "an AVR");
+    assert!(refused(&eval("1")).contains("rounded at every operation"));
+    write_all(&controller, Angles::Radians, folder.path(), None);
+    assert_eq!(refused(&[]), "");
+    let avr = [&machine("__DBL_MANT_DIG__", "24")[..], std::slice::from_ref(&other_bits)].concat();
+    assert!(refused(&avr).contains("--numbers single"), "an AVR");
+    assert!(refused(&plain("-ffinite-math-only")).contains("-ffast-math"));
+    assert_eq!(refused(&eval("1")), "");
+    for method in ["2", "-1"] {
+        assert!(refused(&eval(method)).contains("rounded at every operation"), "{method}");
+    }
+    for word in ["__ASSOCIATIVE_MATH__", "__RECIPROCAL_MATH__", "__NO_SIGNED_ZEROS__"] {
+        let flags = machine(word, "1");
+        assert!(refused(&flags).contains("as it is written"), "{word}");
+        assert_eq!(
+            refused(&[&flags[..], std::slice::from_ref(&other_bits)].concat()),
+            "",
+            "{word}"
+        );
+    }
+}
+
+#[test]
+fn what_lies_beside_a_controller_of_64_bits_says_that_an_avr_has_none() {
+    let controller = crate::common::paper();
+    let program_of_64 = program(&controller, Angles::Degrees).expect("nothing here is refused");
+    let single = controller.rounded::<f32>().expect("a controller of 32 bits");
+    let program_of_32 = program(&single, Angles::Degrees).expect("nothing here is refused");
+    for (program, avr) in [(program_of_64, false), (program_of_32, true)] {
+        let angles = Some(Angles::Degrees);
+        let heading = Heading { name: "pitch", digest: "0", precision: program.precision, angles };
+        let sketch = sketch(&program, "pitch", &heading).expect("a sketch");
+        assert_eq!(sketch.contains("export it with --numbers single"), !avr);
+        let library = platformio("pitch", program.precision);
+        assert_eq!(library.contains("\"platforms\": \"*\""), avr, "{library}");
+        assert!(!library.contains("avr"), "{library}");
+    }
 }
 
 proptest! {

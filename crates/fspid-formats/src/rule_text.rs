@@ -62,5 +62,7 @@ fn no_rule() -> Problem {
 /// # Errors
 /// What there are no words for.
 pub fn write(rule: &Rule, parts: &Parts) -> Result<String, String> {
-    written(rule, parts, Style { upper: false, negation: true, hedges: true, between: " and " })
+    let style =
+        Style { upper: false, negation: true, hedges: true, carries: false, between: " and " };
+    written(rule, parts, style)
 }

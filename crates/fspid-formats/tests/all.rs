@@ -12,4 +12,5 @@ mod fis_errors;
 mod fis_properties;
 mod fis_write;
 mod fll;
+mod fll_hedges;
 mod fml;

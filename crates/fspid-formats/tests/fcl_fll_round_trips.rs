@@ -321,9 +321,16 @@ fn antecedent(choices: &mut Choices, parts: &Parts, depth: usize) -> Antecedent 
 
 fn rule(choices: &mut Choices, parts: &Parts, all_outputs: bool) -> Rule {
     let outputs = if all_outputs { parts.outputs.len() } else { 1 };
+    // Where hedges go on to the conclusions behind them, a system has rules that such a file can have.
+    let mut carried = Vec::new();
     let consequents = (0..outputs).map(|output| {
         let term = choices.below(parts.outputs[output].terms.len());
-        Consequent { output, term, hedges: hedges(choices) }
+        let mut hedges = hedges(choices);
+        if choices.is_extended() && parts.outputs[output].enabled {
+            hedges.append(&mut carried);
+            carried.clone_from(&hedges);
+        }
+        Consequent { output, term, hedges }
     });
     let consequents = consequents.collect();
     let named = matches!(choices.target, Target::Fcl(_)) && choices.coin();

@@ -461,3 +461,17 @@ fn sets_of_inputs_may_ask_for_an_output_and_get_the_answer_before() {
     assert_eq!(answers[0].value, Some(9.0));
     assert_eq!(system.firings(&room).next().map(|fired| fired.strength), Some(0.5));
 }
+
+#[test]
+fn a_set_that_a_weighted_method_reads_by_several_conclusions_is_told() {
+    let told = |text: &str| {
+        let reading = fll::read(text).expect("a system");
+        notes(&reading).into_iter().filter(|note| note.contains("before version 8")).count()
+    };
+    assert_eq!(told(TSUKAMOTO), 0);
+    let (_, rule) = TSUKAMOTO.rsplit_once("  rule: ").expect("a rule");
+    assert_eq!(told(&format!("{}\n  rule: {rule}", TSUKAMOTO.trim_end())), 1);
+    // Numbers do not depend on the strength.
+    let (_, rule) = SUGENO.rsplit_once("  rule: ").expect("a rule");
+    assert_eq!(told(&format!("{}\n  rule: {rule}", SUGENO.trim_end())), 0);
+}

@@ -14,7 +14,7 @@ pub(super) fn files<R: Real>(source: &Source<'_, R>) -> Vec<File> {
         File::text(format!("{prefix}.c"), written.source),
         File::text(format!("{prefix}_check.c"), write::c_harness(program, prefix, vectors)),
         File::text("CMakeLists.txt", write::cmake(prefix)),
-        File::text("library.json", write::platformio(prefix)),
+        File::text("library.json", write::platformio(prefix, program.precision)),
     ];
     if let Some(sketch) = write::sketch(program, prefix, heading) {
         files.push(File::text(format!("arduino/{prefix}_sketch/{prefix}_sketch.ino"), sketch));

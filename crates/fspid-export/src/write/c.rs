@@ -1,4 +1,4 @@
-//! C99, freestanding: one header and one source, `stdint.h` alone.
+//! C99, freestanding: one header and one source, with `stdint.h` and `float.h` alone.
 
 use super::dialect::{Block, Dialect, Truths, all_arguments, block};
 use super::{Heading, Page, decimal, wrapped};
@@ -35,6 +35,26 @@ pub(crate) fn c_number(program: &Program, value: f64) -> String {
 pub(crate) fn c_expression(program: &Program, prefix: &str, value: &Expression) -> String {
     super::dialect::outer(&Writer { program, prefix }, value)
 }
+
+/// What the preprocessor asks of a compiler before anything is built. Tools that read the code without its headers know none
+/// of these words and pass.
+const ARITHMETIC: &str = "\
+#if defined(DIGITS) && (DIGITS != COUNT)
+#error \"OTHER NUMBERS\"
+#endif
+#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && (__FINITE_MATH_ONLY__ != 0))
+#error \"This controller needs the arithmetic of IEEE 754: build it without -ffast-math.\"
+#endif
+/* Define FSPID_OTHER_BITS to fly it where answers may differ in their last bits from those it was checked with. */
+#if !defined(FSPID_OTHER_BITS)
+#if defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || defined(__NO_SIGNED_ZEROS__)
+#error \"The bits of this controller need every operation as it is written: build it without -funsafe-math-optimizations.\"
+#endif
+#if defined(FLT_EVAL_METHOD) && (WIDER(FLT_EVAL_METHOD == 2) || (FLT_EVAL_METHOD == -1))
+#error \"The bits of this controller need numbers that are rounded at every operation: for x86 build it with -msse2 -mfpmath=sse.\"
+#endif
+#endif
+";
 
 struct Writer<'a> {
     program: &'a Program,
@@ -126,10 +146,9 @@ impl Writer<'_> {
         let prefix = self.prefix;
         let mut page = Page::default();
         page.line(&format!("#include \"{prefix}.h\""));
+        page.line("#include <float.h>");
         page.line("");
-        page.line("#if defined(__FAST_MATH__)");
-        page.line("#error \"This controller needs the arithmetic of IEEE 754: build it without -ffast-math.\"");
-        page.line("#endif");
+        self.arithmetic(&mut page);
         page.line(
             "/* Products and sums are rounded one by one; for gcc build with -ffp-contract=off. */",
         );
@@ -158,6 +177,26 @@ impl Writer<'_> {
             page.line("}");
         }
         page.text
+    }
+
+    /// Stops compilers whose numbers are not those that the answers were computed with.
+    fn arithmetic(&self, page: &mut Page) {
+        let ([digits, count], wider) = match self.program.precision {
+            Precision::Single => (["FLT_MANT_DIG", "24"], "(FLT_EVAL_METHOD == 1) || "),
+            Precision::Double => (["DBL_MANT_DIG", "53"], ""),
+        };
+        let other = match self.program.precision {
+            Precision::Single => "float has not the 32 bits of IEEE 754 here.",
+            Precision::Double => {
+                "double has not the 64 bits of IEEE 754 here, as on an AVR: export this controller with --numbers single."
+            }
+        };
+        let text = ARITHMETIC
+            .replace("DIGITS", digits)
+            .replace("COUNT", count)
+            .replace("OTHER NUMBERS", other)
+            .replace("WIDER", wider);
+        text.lines().for_each(|line| page.line(line));
     }
 
     fn design(&self, page: &mut Page) {

@@ -34,9 +34,36 @@ endif()
 
 /// `library.json` of PlatformIO.
 #[must_use]
-pub fn platformio(prefix: &str) -> String {
-    PLATFORMIO.replace("PREFIX", prefix).replace("VERSION", env!("CARGO_PKG_VERSION"))
+pub fn platformio(prefix: &str, precision: Precision) -> String {
+    let platforms = match precision {
+        Precision::Single => "\"*\"".to_owned(),
+        Precision::Double => {
+            format!("[{}]", DOUBLE_HAS_64_BITS.map(|name| format!("\"{name}\"")).join(", "))
+        }
+    };
+    PLATFORMIO
+        .replace("PREFIX", prefix)
+        .replace("VERSION", env!("CARGO_PKG_VERSION"))
+        .replace("PLATFORMS", &platforms)
 }
+
+/// Platforms of PlatformIO by their names there; not `atmelavr`, `atmelmegaavr` and others whose double may have 32 bits.
+const DOUBLE_HAS_64_BITS: [&str; 14] = [
+    "atmelsam",
+    "espressif32",
+    "espressif8266",
+    "freescalekinetis",
+    "linux_arm",
+    "linux_x86_64",
+    "native",
+    "nordicnrf52",
+    "nxpimxrt",
+    "nxplpc",
+    "raspberrypi",
+    "sifive",
+    "ststm32",
+    "titiva",
+];
 
 const PLATFORMIO: &str = "\
 {
@@ -44,7 +71,7 @@ const PLATFORMIO: &str = "\
   \"version\": \"VERSION\",
   \"description\": \"A controller that fspid has written\",
   \"frameworks\": \"*\",
-  \"platforms\": \"*\",
+  \"platforms\": PLATFORMS,
   \"headers\": \"PREFIX.h\",
   \"build\": {
     \"srcDir\": \".\",
@@ -59,9 +86,14 @@ const PLATFORMIO: &str = "\
 #[must_use]
 pub fn sketch(program: &Program, prefix: &str, heading: &Heading<'_>) -> Option<String> {
     let angles = heading.angles?;
-    let real = match heading.precision {
-        Precision::Single => "float",
-        Precision::Double => "double",
+    let (real, numbers) = match heading.precision {
+        Precision::Single => {
+            ("float", "Its numbers have 32 bits, on boards with an AVR as elsewhere.")
+        }
+        Precision::Double => (
+            "double",
+            "Its numbers have 64 bits: for boards whose double has 32, such as those with an AVR, export it with --numbers single.",
+        ),
     };
     // What 5 V is in the unit of the angles: 30 degrees of pitch, 60 degrees a second.
     let (unit, pitch, rate) = match angles {
@@ -86,6 +118,7 @@ pub fn sketch(program: &Program, prefix: &str, heading: &Heading<'_>) -> Option<
     let text = SKETCH
         .replace("READS\n", &reads)
         .replace("PREFIX", prefix)
+        .replace("NUMBERS", numbers)
         .replace("REAL", real)
         .replace("UNIT", unit)
         .replace("PITCH", pitch)
@@ -98,7 +131,8 @@ const SKETCH: &str = "\
 //
 // An example: copy PREFIX.h and PREFIX.c beside this sketch. Set-point, pitch and pitch rate come as voltages at A0, A1 and
 // A2 (0 to 5 V from the least to the largest angle), the command leaves as pulses at pin 9. Put your sensors and your servo
-// in their places. Boards whose double has 32 bits do not have the bits of an export with numbers of 64.
+// in their places.
+// NUMBERS
 #include \"PREFIX.h\"
 
 static_assert(sizeof(REAL) == sizeof(((PREFIX_configuration *)0)->dt_s), \"one kind of number\");

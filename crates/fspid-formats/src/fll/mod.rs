@@ -8,6 +8,7 @@
 //! | `lock-range` | an input is moved into its range, an output's answer too |
 //! | `lock-previous`, `default` | first and second choice where no rule fires |
 //! | a range without ends | no universe |
+//! | a hedge in a conclusion | one of the conclusions behind it in the rule too |
 //!
 //! # Source
 //! The language as documented by fuzzylite; numbers and names only, no program text.

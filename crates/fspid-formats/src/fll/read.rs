@@ -1,8 +1,10 @@
 //! Reading.
 
+use std::collections::BTreeMap;
+
 use fspid_fuzzy::system::{
-    Conclusion, Defuzzifier, Input, Membership, Output, Parts, Rule, RuleBlock, Sampling,
-    SetReading, Term,
+    Conclusion, Consequent, Defuzzifier, Input, Membership, Output, Parts, Rule, RuleBlock,
+    Sampling, SetReading, Term,
 };
 use fspid_fuzzy::{OutOfRange, SNormKind, TNormKind};
 
@@ -53,6 +55,48 @@ fn tell(parts: &Parts, report: &mut Report) {
         }
         bisected(output, report);
         inverted(output, report);
+    }
+    if report.is_clean() {
+        concluded_again(parts, report);
+        concluded_from_nothing(parts, report);
+    }
+}
+
+/// Tells of hedges by which something is concluded of nothing.
+///
+/// Seen of pyfuzzylite 8.0.6, and not of fuzzylite 6.0.
+fn concluded_from_nothing(parts: &Parts, report: &mut Report) {
+    let rules = parts.blocks.iter().flat_map(|block| &block.rules);
+    let of_nothing = |consequent: &Consequent| {
+        consequent.hedges.iter().rev().fold(0.0, |degree: f64, hedge| hedge.apply(degree)) > 0.0
+    };
+    if rules.flat_map(|rule| &rule.consequents).any(of_nothing) {
+        report.note_whole(
+            "a rule that does not fire concludes nothing, also by `not` or `any`, as in fuzzylite before version 8",
+        );
+    }
+}
+
+/// Tells of sets that a weighted method reads by the strength of several conclusions.
+///
+/// Read in pyfuzzylite 8.0.6, and seen of it and of fuzzylite 6.0.
+fn concluded_again(parts: &Parts, report: &mut Report) {
+    let mut counts = BTreeMap::new();
+    let rules = parts.blocks.iter().flat_map(|block| &block.rules);
+    for consequent in rules.flat_map(|rule| &rule.consequents) {
+        *counts.entry((consequent.output, consequent.term)).or_insert(0) += 1;
+    }
+    for ((output, term), count) in counts {
+        let Some(output) = parts.outputs.get(output) else { continue };
+        let Some(term) = output.terms.get(term) else { continue };
+        let is_set = matches!(term.conclusion, Conclusion::Set { .. });
+        if count > 1 && is_set && output.defuzzifier.sampling().is_none() {
+            report.note_whole(format!(
+                "`{}`, `{}`: each of its {count} conclusions has a value by its own strength, as in fuzzylite before version 8; \
+                 from that version on their strengths are joined first",
+                output.name, term.name
+            ));
+        }
     }
 }
 
@@ -132,11 +176,8 @@ fn assembled(sections: &[FllSection], report: &mut Report) -> Parts {
         let terms = section.terms.iter().map(|line| line.tokens().next.text).collect();
         names.push(section.heading.text(), section.kind == Kindred::Output, terms);
     }
-    let weighted: Vec<bool> =
-        parts.outputs.iter().map(|output| output.defuzzifier.sampling().is_none()).collect();
-    for section in of(Kindred::Block) {
-        parts.blocks.push(block(section, &names, &weighted, report));
-    }
+    let read = |section| block(section, &names, &parts.outputs, report);
+    parts.blocks = of(Kindred::Block).map(read).collect();
     parts
 }
 
@@ -172,11 +213,16 @@ fn input(section: &FllSection, with_x: &[&str], report: &mut Report) -> Input {
     }
 }
 
-fn block(section: &FllSection, names: &Names, weighted: &[bool], report: &mut Report) -> RuleBlock {
-    let rules = rules(section, names, report);
+fn block(
+    section: &FllSection,
+    names: &Names,
+    outputs: &[Output],
+    report: &mut Report,
+) -> RuleBlock {
+    let rules = rules(section, names, outputs, report);
     let integrates = |rule: &Rule| {
-        let own = rule.consequents.iter().map(|consequent| weighted.get(consequent.output));
-        own.flatten().any(|weighted| !weighted)
+        let own = rule.consequents.iter().map(|consequent| outputs.get(consequent.output));
+        own.flatten().any(|output| output.defuzzifier.sampling().is_some())
     };
     if section.implication.is_none() && rules.iter().any(integrates) {
         let message = "has no implication, but concludes fuzzy sets";
@@ -195,8 +241,14 @@ fn block(section: &FllSection, names: &Names, weighted: &[bool], report: &mut Re
     }
 }
 
-fn rules(section: &FllSection, names: &Names, report: &mut Report) -> Vec<Rule> {
+fn rules(
+    section: &FllSection,
+    names: &Names,
+    outputs: &[Output],
+    report: &mut Report,
+) -> Vec<Rule> {
     let mut rules = Vec::new();
+    let enabled = rule::switches(outputs);
     let (mut and, mut or) = (None, None);
     for line in &section.rules {
         let mut reader =
@@ -207,7 +259,10 @@ fn rules(section: &FllSection, names: &Names, report: &mut Report) -> Vec<Rule> 
         if found.is_some() && next.kind != Kind::End {
             report.problem(next.place(), next.text, "does not fit here", "the end of the rule");
         }
-        rules.extend(found);
+        rules.extend(found.map(|mut rule| {
+            rule::take_along(&mut rule, &enabled, line.start.place(), report);
+            rule
+        }));
     }
     let (t_norms, s_norms) = (norms::classes(norms::T_NORMS), norms::classes(norms::S_NORMS));
     if section.conjunction.is_none() && and.is_some() {

@@ -39,6 +39,7 @@ fn adapted(parts: &Parts, loss: &mut Loss) -> Parts {
     NAMES.apply(&mut parts, loss);
     adapt::without_disabled_rules(&mut parts, loss);
     adapt::without_rule_names(&mut parts, loss);
+    rule::arrange(&mut parts, loss);
     one_line(&mut parts, loss);
     for input in &mut parts.inputs {
         if input.out_of_range == OutOfRange::Error {
@@ -223,7 +224,8 @@ impl Writer<'_> {
 }
 
 /// Hedges are written as words; a negation is one of them.
-const STYLE: Style = Style { upper: false, negation: false, hedges: true, between: " and " };
+const STYLE: Style =
+    Style { upper: false, negation: false, hedges: true, carries: true, between: " and " };
 
 fn alias(
     kind: fspid_fuzzy::membership::ShapeKind,

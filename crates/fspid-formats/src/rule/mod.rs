@@ -3,9 +3,11 @@
 //! Keywords are read in any case. *And* binds tighter than *or*. Conclusions are separated by *and*
 //! or a comma.
 
+mod carry;
 mod read;
 mod write;
 
+pub(crate) use carry::{arrange, switches, take_along};
 pub(crate) use read::Reader;
 pub(crate) use write::{Style, written};
 

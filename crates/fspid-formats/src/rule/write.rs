@@ -3,6 +3,7 @@
 use fspid_fuzzy::Hedge;
 use fspid_fuzzy::system::{Antecedent, Consequent, Parts, Rule, Statement, Variable};
 
+use super::carry;
 use crate::number::written as number;
 
 /// How a tool wants its rules.
@@ -14,6 +15,8 @@ pub(crate) struct Style {
     pub(crate) negation: bool,
     /// Whether hedges other than `not` may be written.
     pub(crate) hedges: bool,
+    /// Whether a hedge of a conclusion goes on to those behind it, as in fuzzylite.
+    pub(crate) carries: bool,
     /// What separates conclusions.
     pub(crate) between: &'static str,
 }
@@ -25,8 +28,13 @@ pub(crate) struct Style {
 pub(crate) fn written(rule: &Rule, parts: &Parts, style: Style) -> Result<String, String> {
     let writer = Writer { parts, style };
     let condition = writer.condition(&rule.antecedent, Level::Or)?;
+    let hedges: Vec<&[Hedge]> = match style.carries {
+        true => carry::own(&rule.consequents, &parts.outputs),
+        false => rule.consequents.iter().map(|own| own.hedges.as_slice()).collect(),
+    };
+    let conclusions = rule.consequents.iter().zip(hedges);
     let conclusions: Result<Vec<_>, _> =
-        rule.consequents.iter().map(|consequent| writer.conclusion(consequent)).collect();
+        conclusions.map(|(consequent, hedges)| writer.conclusion(consequent, hedges)).collect();
     let [begin, then, with] = ["if", "then", "with"].map(|word| writer.keyword(word));
     let mut text = format!("{begin} {condition} {then} {}", conclusions?.join(style.between));
     if rule.weight < 1.0 {
@@ -128,13 +136,13 @@ impl Writer<'_> {
         }
     }
 
-    fn conclusion(&self, consequent: &Consequent) -> Result<String, String> {
+    fn conclusion(&self, consequent: &Consequent, hedges: &[Hedge]) -> Result<String, String> {
         let output = self.parts.outputs.get(consequent.output);
         let term = output.and_then(|output| output.terms.get(consequent.term));
         let (Some(output), Some(term)) = (output, term) else {
             return Err("a conclusion is about a term that is not there".into());
         };
-        self.clause(&output.name, &consequent.hedges, Some(&term.name))
+        self.clause(&output.name, hedges, Some(&term.name))
     }
 
     fn clause(

@@ -27,14 +27,20 @@ pub(super) fn reading(draft: Draft, dialect: Option<Dialect>) -> Result<Reading,
     let names = rule_names(&variables, &mut report);
     let mut missing_sign = None;
     let read = |block| rules::block(block, &names, &mut missing_sign, &mut report);
-    let mut rules: Vec<RuleBlock> = blocks.iter().map(read).collect();
-    variables.truncate(variables.len() - without);
-    partial::leave_out(&mut rules, &variables, &mut report);
+    let (mut rules, places): (Vec<RuleBlock>, Vec<_>) = blocks.iter().map(read).unzip();
     if let Some(place) = missing_sign {
         evidence.fuzzylite(place, "a rule without `;`");
     }
     let (found, how) = evidence.judge();
     let dialect = dialect.unwrap_or(found);
+    if dialect == Dialect::Fuzzylite {
+        let enabled: Vec<bool> =
+            variables.iter().filter(|v| v.is_output()).map(|v| v.enabled).collect();
+        let placed = rules.iter_mut().flat_map(|block| &mut block.rules).zip(places.concat());
+        placed.for_each(|(rule, place)| rule::take_along(rule, &enabled, place, &mut report));
+    }
+    variables.truncate(variables.len() - without);
+    partial::leave_out(&mut rules, &variables, &mut report);
     let accus = accumulations(&rules, &blocks, variables.len());
     let (names, inputs) = formula_names(&variables);
     let mut builder = Builder { dialect, formula_names: names, inputs, report, accus };

@@ -11,14 +11,14 @@ use crate::report::Report;
 use crate::rule;
 use fspid_diagnostics::Place;
 
-/// A rule block with its rules; `missing_sign` becomes the place of the first rule without `;`.
+/// A rule block with its rules, and where each of them begins; `missing_sign` becomes the place of the first rule without `;`.
 pub(super) fn block(
     draft: &Block,
     names: &Names,
     missing_sign: &mut Option<Place>,
     report: &mut Report,
-) -> RuleBlock {
-    let mut rules = Vec::new();
+) -> (RuleBlock, Vec<Place>) {
+    let (mut rules, mut places) = (Vec::new(), Vec::new());
     let (mut and_used, mut or_used) = (None, None);
     for (index, text) in draft.rules.iter().enumerate() {
         let mut reader = rule::Reader::new(text.tokens, names, report, is_section_word);
@@ -28,11 +28,12 @@ pub(super) fn block(
         if let Some(mut rule) = found {
             rule.name = own_name(text.name, index);
             rules.push(rule);
+            places.push(text.tokens.next.place());
             rule_end(next, missing_sign, report);
         }
     }
     let (and, or) = connectives(draft, and_used, or_used, report);
-    RuleBlock {
+    let block = RuleBlock {
         name: draft.name.clone(),
         description: String::new(),
         enabled: draft.enabled,
@@ -41,7 +42,8 @@ pub(super) fn block(
         implication: draft.act.unwrap_or(TNormKind::Minimum).into(),
         activation: Activation::General,
         rules,
-    }
+    };
+    (block, places)
 }
 
 /// A number that only counts is no name.

@@ -13,7 +13,7 @@ use crate::fcl::Dialect;
 use crate::fcl::parser::is_section_word;
 use crate::identifiers::{self, is_plain};
 use crate::loss::Loss;
-use crate::rule::RESERVED;
+use crate::rule::{RESERVED, arrange};
 
 const NAMES: identifiers::Rule = identifiers::Rule {
     readable,
@@ -39,6 +39,9 @@ pub(super) fn adapted(parts: &Parts, dialect: Dialect, loss: &mut Loss) -> Parts
     parts.inputs.iter_mut().for_each(|input| self::input(input, dialect, loss));
     parts.outputs.iter_mut().for_each(|output| self::output(output, dialect, loss));
     parts.blocks.iter_mut().for_each(|block| self::block(block, loss));
+    if dialect == Dialect::Fuzzylite {
+        arrange(&mut parts, loss);
+    }
     parts
 }
 

@@ -174,14 +174,9 @@ impl Writer<'_> {
     }
 
     fn style(&self) -> Style {
-        match self.dialect {
-            Dialect::Fuzzylite => {
-                Style { upper: false, negation: false, hedges: true, between: " and " }
-            }
-            Dialect::Iec | Dialect::JFuzzyLogic => {
-                Style { upper: true, negation: true, hedges: false, between: ", " }
-            }
-        }
+        let own = self.dialect == Dialect::Fuzzylite;
+        let between = if own { " and " } else { ", " };
+        Style { upper: !own, negation: !own, hedges: own, carries: own, between }
     }
 
     /// The accumulation of the outputs that a block concludes.
