@@ -26,7 +26,8 @@ const OVERFLOW: u8 = Faults::OVERFLOW.bits();
 
 impl Angles {
     /// The end of a name.
-    pub(crate) const fn unit(self) -> &'static str {
+    #[must_use]
+    pub const fn unit(self) -> &'static str {
         match self {
             Self::Radians => "rad",
             Self::Degrees => "deg",
