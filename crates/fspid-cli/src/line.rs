@@ -67,7 +67,7 @@ fn arguments<P: Parser>(mut words: Vec<OsString>) -> Result<P, Option<Failure>> 
     if matches.subcommand_name() != Some("serve") {
         apart::declare(outputs);
     }
-    P::from_arg_matches(&matches).map_err(failure)
+    P::from_arg_matches(&matches).map_err(|error| failure(error, &words))
 }
 
 /// The files that the command is asked to write. Refuses those that are the file of an input or of each other, before

@@ -180,7 +180,13 @@ fn what_lies_beside_a_controller_of_64_bits_says_that_an_avr_has_none() {
     let program_of_32 = program(&single, Angles::Degrees).expect("nothing here is refused");
     for (program, avr) in [(program_of_64, false), (program_of_32, true)] {
         let angles = Some(Angles::Degrees);
-        let heading = Heading { name: "pitch", digest: "0", precision: program.precision, angles };
+        let heading = Heading {
+            name: "pitch",
+            digest: "0",
+            precision: program.precision,
+            angles,
+            elevator: None,
+        };
         let sketch = sketch(&program, "pitch", &heading).expect("a sketch");
         assert_eq!(sketch.contains("export it with --numbers single"), !avr);
         let library = platformio("pitch", program.precision);
