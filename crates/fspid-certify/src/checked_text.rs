@@ -6,7 +6,7 @@ use super::checked::{Answer, CheckedFile};
 use super::comparison::Comparison;
 use super::file::Seal;
 use super::scope::Told;
-use super::text::{push_claim, push_rechecked, range, refuted, sentence};
+use super::text::{Line, claim_lines, gains_line, push_lines, rechecked_line, refuted, sentence};
 
 impl CheckedFile {
     /// The answer of `certify --check`.
@@ -25,14 +25,12 @@ impl CheckedFile {
             origin.scenario,
             sentence(certificate)
         );
-        let dt_s = certificate.description.controller.config().dt_s;
-        push_claim(&mut out, certificate, self.result.as_ref().ok(), dt_s);
+        push_lines(&mut out, claim_lines(certificate, self.result.as_ref().ok()));
         if let Ok(rechecked) = &self.result {
-            push_rechecked(&mut out, rechecked);
-            push_kept(&mut out, certificate, rechecked);
-            let [kp, ki, kd] = rechecked.bounds.map(range);
-            out.push_str(&format!("  gains              kp {kp}, ki {ki}, kd {kd}\n"));
-            self.told(rechecked).push(&mut out);
+            push_lines(&mut out, [rechecked_line(rechecked)]);
+            push_lines(&mut out, kept(certificate, rechecked));
+            push_lines(&mut out, [gains_line(rechecked.bounds)]);
+            push_lines(&mut out, self.told(rechecked).sentences());
         }
         push_seal(&mut out, &self.seal);
         if let Some(against) = &self.against {
@@ -79,12 +77,10 @@ impl CheckedFile {
 }
 
 /// Whether the law of the loop keeps its gains to the rate that is claimed.
-fn push_kept(out: &mut String, certificate: &Certificate, rechecked: &Rechecked) {
-    if !matches!(certificate.claim, Claim::BoundedRate(_)) {
-        return;
-    }
+fn kept(certificate: &Certificate, rechecked: &Rechecked) -> Option<Line> {
     let kept = if rechecked.keeps_to_the_rate { "in every flight" } else { "not shown" };
-    out.push_str(&format!("  law keeps to this  {kept}\n"));
+    let is_asked = matches!(certificate.claim, Claim::BoundedRate(_));
+    is_asked.then(|| ("law keeps to this", kept.to_owned()))
 }
 
 fn push_seal(out: &mut String, seal: &Seal) {

@@ -9,6 +9,17 @@ use sha2::{Digest as _, Sha256};
 pub(super) fn digest(value: &Value, without: &str) -> String {
     let mut hasher = Sha256::new();
     add(&mut hasher, value, Some(without));
+    hexadecimal(hasher)
+}
+
+/// SHA-256 of the bytes of a text, in hexadecimal digits, as programs beside this one compute it of a file.
+pub(super) fn of_text(text: &str) -> String {
+    let mut hasher = Sha256::new();
+    hasher.update(text.as_bytes());
+    hexadecimal(hasher)
+}
+
+fn hexadecimal(hasher: Sha256) -> String {
     hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
@@ -44,6 +55,12 @@ fn add(hasher: &mut Sha256, value: &Value, without: Option<&str>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_digest_of_a_file_is_that_of_other_programs() {
+        let of_nothing = "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855";
+        assert_eq!(of_text(""), of_nothing);
+    }
 
     #[test]
     fn the_order_of_keys_does_not_matter_and_every_value_does() {

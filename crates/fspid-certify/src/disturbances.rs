@@ -57,6 +57,36 @@ fn degrees_per_unit(one: &Disturbed) -> f64 {
     degrees(one.per_unit) / unit(&one.way).1
 }
 
+/// A bound of what a disturbance does, as the cells of a table: what disturbs, by which measure, what is bounded, by how much
+/// at most, and up to which size no limit acts.
+pub(super) fn cells(one: &Disturbed) -> [String; 5] {
+    let (word, per) = unit(&one.way);
+    let (measure, root) = match one.extent {
+        Extent::Peak => ("peak", ""),
+        Extent::Energy => ("energy (L2)", " times the root of a second"),
+    };
+    let at_servo = one.at_servo && one.extent == Extent::Peak;
+    let unlimited = match one.unlimited_up_to.filter(|most| most.is_finite()) {
+        Some(most) => format!("{} {word}{root}", at_least(most * per)),
+        None => "\u{2013}".to_owned(),
+    };
+    [
+        named(&one.way, at_servo).to_owned(),
+        measure.to_owned(),
+        bounded(one.quantity).to_owned(),
+        format!("{} deg per {word}", at_most(degrees_per_unit(one))),
+        unlimited,
+    ]
+}
+
+const fn bounded(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Pitch => "the pitch angle",
+        Quantity::Command => "the command",
+        Quantity::Limits => "a limit",
+    }
+}
+
 /// One sentence for each way and measure; `moving` says how gains move.
 pub(super) fn sentences(scope: &Scope, moving: &str) -> Vec<String> {
     let mut told = Vec::new();
@@ -77,14 +107,7 @@ pub(super) fn sentences(scope: &Scope, moving: &str) -> Vec<String> {
 fn sentence(scope: &Scope, group: &[Disturbed], moving: &str) -> String {
     let Some(first) = group.first() else { return String::new() };
     let (word, _) = unit(&first.way);
-    let each = group.iter().map(|one| {
-        let what = match one.quantity {
-            Quantity::Pitch => "the pitch angle",
-            Quantity::Command => "the command",
-            Quantity::Limits => "a limit",
-        };
-        (what, at_most(degrees_per_unit(one)))
-    });
+    let each = group.iter().map(|one| (bounded(one.quantity), at_most(degrees_per_unit(one))));
     let each: Vec<(&str, String)> = each.collect();
     let limits = limits(scope, group, word);
     match first.extent {

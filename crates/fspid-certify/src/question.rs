@@ -4,6 +4,7 @@
 use fspid_proof::Effort;
 use fspid_scenario::file::Template;
 use fspid_sim::SimError;
+use fspid_study::shell;
 
 use super::Certification;
 use super::family::Chosen;
@@ -25,6 +26,19 @@ pub struct Question<'a> {
 }
 
 impl Question<'_> {
+    /// What is asked as `fspid certify` takes it behind a scenario, with a space before each word.
+    #[must_use]
+    pub fn options(&self) -> String {
+        let only = self.only.map(|name| format!(" --controller {}", shell::word(name)));
+        let beside = [
+            (self.disturbances, " --disturbances"),
+            (self.family, " --family"),
+            (self.nonlinear, " --nonlinear"),
+        ];
+        let beside = beside.into_iter().filter(|(is_asked, _)| *is_asked);
+        only.into_iter().chain(beside.map(|(_, option)| option.to_owned())).collect()
+    }
+
     /// How much is asked of each controller, stability among it.
     #[must_use]
     pub fn parts(&self) -> usize {

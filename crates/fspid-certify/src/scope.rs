@@ -7,12 +7,15 @@ use fspid_proof::{
 };
 use serde_json::{Value, json};
 
-use super::text::is_fixed;
+use super::text::{Line, is_fixed};
 use super::told::{at_least, at_most};
 use super::{disturbances, family, nonlinear};
 use fspid_scenario::turned::turned_in_words;
 use fspid_scenario::units::degrees;
 use fspid_study::json::merged;
+
+/// What the first of the sentences is about that say what a claim does not speak of; the others have nothing there.
+pub(super) const NOT_IN_CLAIM: &str = "not in this claim";
 
 /// The scope of a claim, ready to be told.
 pub(super) struct Told {
@@ -68,7 +71,7 @@ impl Told {
     }
 
     /// Sentences, each with what it is about.
-    pub(super) fn sentences(&self) -> Vec<(&'static str, String)> {
+    pub(super) fn sentences(&self) -> Vec<Line> {
         let mut sentences = Vec::new();
         if let Some(scope) = &self.stable {
             sentences.push(("holds for", range_in_words(scope)));
@@ -89,16 +92,10 @@ impl Told {
         sentences.extend(self.nonlinear.iter().map(|it| ("nonlinear", it.clone())));
         let left_out = self.left_out.iter().enumerate();
         sentences.extend(left_out.map(|(place, one)| {
-            let about = if place == 0 { "not in this claim" } else { "" };
+            let about = if place == 0 { NOT_IN_CLAIM } else { "" };
             (about, disturbances::left_out(*one, self.stable.as_ref()))
         }));
         sentences
-    }
-
-    pub(super) fn push(&self, out: &mut String) {
-        for (about, sentence) in self.sentences() {
-            out.push_str(&format!("  {about:<18} {sentence}\n"));
-        }
     }
 
     pub(super) fn json(&self) -> Value {

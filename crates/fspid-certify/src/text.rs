@@ -1,5 +1,7 @@
 //! Certificates in words.
 
+use std::fmt;
+
 use fspid_diagnostics::digits::to_six_decimals;
 use fspid_numeric::scalar::Interval;
 use fspid_proof::{Bearing, BoundedRate, Certificate, Claim, Outcome, Rechecked, Verdict};
@@ -21,57 +23,92 @@ impl Certification {
     }
 }
 
-fn push(out: &mut String, certified: &Certified) {
-    let plant = match certified.from_s {
-        0.0 => String::new(),
-        from_s => format!(", plant from {} s on", to_six_decimals(from_s)),
-    };
-    let name = format!("{}{plant}", certified.controller);
-    match &certified.outcome {
-        Err(reason) => out.push_str(&format!("\n{name}\n  NOT PROVABLE: {reason}\n")),
-        Ok(outcome) => {
-            out.push_str(&format!("\n{name}\n  {}\n", headline(certified, outcome)));
-            push_outcome(out, certified, outcome);
-            // A proved one is among what the certificate says.
-            if let Some(family) = certified.family.as_ref().filter(|it| !it.is_proved()) {
-                out.push_str(&format!("  family             {}\n", family.text()));
-            }
-            let trouble = certified.disturbances.as_ref().and_then(DisturbanceAnswer::trouble);
-            if let Some(reason) = trouble {
-                out.push_str(&format!("  disturbances       NOT BOUNDED: {reason}\n"));
-            }
-            if let Some(nonlinear) = certified.nonlinear.as_ref().filter(|it| !it.is_proved()) {
-                out.push_str(&format!("  nonlinear          {}\n", nonlinear.text()));
-            }
-        }
+/// A sentence, behind what it is about.
+pub(super) type Line = (&'static str, String);
+
+/// Writes lines below each other, what they are about in a column.
+pub(super) fn push_lines(out: &mut String, lines: impl IntoIterator<Item = Line>) {
+    for (about, sentence) in lines {
+        out.push_str(&format!("  {about:<18} {sentence}\n"));
     }
 }
 
-fn headline(certified: &Certified, outcome: &Outcome) -> String {
-    match (&outcome.verdict, &outcome.instead) {
+fn push(out: &mut String, certified: &Certified) {
+    out.push_str(&format!("\n{}\n  {}\n", certified.name(), certified.headline()));
+    push_lines(out, certified.lines());
+}
+
+/// The verdict on a loop: a word in capitals, and what it is about.
+pub(super) struct Headline {
+    pub(super) word: String,
+    pub(super) detail: String,
+}
+
+impl fmt::Display for Headline {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.word, self.detail)
+    }
+}
+
+impl Certified {
+    /// The controller, and from when on the plant is the one of the answer.
+    pub(super) fn name(&self) -> String {
+        match self.from_s {
+            0.0 => self.controller.clone(),
+            from_s => {
+                format!("{}, plant from {} s on", self.controller, to_six_decimals(from_s))
+            }
+        }
+    }
+
+    pub(super) fn headline(&self) -> Headline {
+        match &self.outcome {
+            Err(reason) => Headline { word: "NOT PROVABLE".to_owned(), detail: reason.to_string() },
+            Ok(outcome) => headline(self, outcome),
+        }
+    }
+
+    /// What is told of the loop below its headline.
+    pub(super) fn lines(&self) -> Vec<Line> {
+        let Ok(outcome) = &self.outcome else { return Vec::new() };
+        let mut lines = outcome_lines(outcome);
+        // A proved one is among what the certificate says.
+        let family = self.family.as_ref().filter(|it| !it.is_proved());
+        lines.extend(family.map(|it| ("family", it.text())));
+        let trouble = self.disturbances.as_ref().and_then(DisturbanceAnswer::trouble);
+        lines.extend(trouble.map(|reason| ("disturbances", format!("NOT BOUNDED: {reason}"))));
+        let nonlinear = self.nonlinear.as_ref().filter(|it| !it.is_proved());
+        lines.extend(nonlinear.map(|it| ("nonlinear", it.text())));
+        lines
+    }
+}
+
+fn headline(certified: &Certified, outcome: &Outcome) -> Headline {
+    let (word, detail) = match (&outcome.verdict, &outcome.instead) {
         (Verdict::Proved(certificate, _), _) => match (certified.trouble(), &certified.around) {
-            (Some(trouble), _) => format!(
-                "NOT PROVED as it flies: {trouble}; proved is the pitch loop alone: {}",
-                sentence(certificate)
+            (Some(trouble), _) => (
+                "NOT PROVED as it flies".to_owned(),
+                format!("{trouble}; proved is the pitch loop alone: {}", sentence(certificate)),
             ),
-            (None, None) => format!("PROVED: {}", sentence(certificate)),
+            (None, None) => ("PROVED".to_owned(), sentence(certificate)),
             (None, Some(_)) => {
-                format!("PROVED for the pitch loop alone: {}", sentence(certificate))
+                ("PROVED for the pitch loop alone".to_owned(), sentence(certificate))
             }
         },
         (Verdict::Refuted(certificate, rechecked), _) => {
             let bearing = certificate.bearing(rechecked);
-            format!("{}: {}; {bearing}", refuted(bearing), sentence(certificate))
+            (refuted(bearing).to_owned(), format!("{}; {bearing}", sentence(certificate)))
         }
-        (Verdict::Open, Some((certificate, _))) => format!(
-            "OPEN for what the scenario asks ({}): neither proved nor refuted; proved is less: {}",
-            asked_in_words(outcome.asked),
-            sentence(certificate)
+        (Verdict::Open, Some((certificate, _))) => (
+            format!("OPEN for what the scenario asks ({})", asked_in_words(outcome.asked)),
+            format!("neither proved nor refuted; proved is less: {}", sentence(certificate)),
         ),
-        (Verdict::Open, None) => {
-            "OPEN: neither proved nor refuted; do not call this loop proved".to_owned()
-        }
-    }
+        (Verdict::Open, None) => (
+            "OPEN".to_owned(),
+            "neither proved nor refuted; do not call this loop proved".to_owned(),
+        ),
+    };
+    Headline { word, detail }
 }
 
 /// True of a loop whose gains do not move.
@@ -136,28 +173,29 @@ pub(super) fn sentence(certificate: &Certificate) -> String {
     }
 }
 
-fn push_outcome(out: &mut String, certified: &Certified, outcome: &Outcome) {
-    if let Some(reason) = &outcome.open_because {
-        out.push_str(&format!("  open because       {reason}\n"));
-    }
-    let [kp, ki, kd] = outcome.bounds.map(range);
-    out.push_str(&format!("  gains              kp {kp}, ki {ki}, kd {kd}\n"));
-    let dt_s = match certified.certificate() {
-        Some(certificate) => certificate.description.controller.config().dt_s,
-        None => f64::NAN,
-    };
+fn outcome_lines(outcome: &Outcome) -> Vec<Line> {
+    let mut lines = Vec::new();
+    lines.extend(outcome.open_because.as_ref().map(|it| ("open because", it.to_string())));
+    lines.push(gains_line(outcome.bounds));
     if let Some((certificate, rechecked)) = found(outcome) {
-        push_claim(out, certificate, Some(rechecked), dt_s);
-        push_rechecked(out, rechecked);
+        lines.extend(claim_lines(certificate, Some(rechecked)));
+        lines.push(rechecked_line(rechecked));
     }
-    push_largest(out, outcome);
+    lines.extend(largest(outcome).map(|text| ("output scale", text)));
     if let Some((certificate, rechecked)) = found(outcome) {
-        Told::of(certificate, rechecked).push(out);
+        lines.extend(Told::of(certificate, rechecked).sentences());
     }
+    lines
+}
+
+/// Between which values each gain lies.
+pub(super) fn gains_line(bounds: [Interval; 3]) -> Line {
+    let [kp, ki, kd] = bounds.map(range);
+    ("gains", format!("kp {kp}, ki {ki}, kd {kd}"))
 }
 
 /// How fast each gain may move; half the width of its box or more in a sample is as it likes.
-fn push_speed(out: &mut String, claim: &BoundedRate, dt_s: f64) {
+fn speed_line(claim: &BoundedRate, dt_s: f64) -> Line {
     let speed = |gain: usize| {
         let ([lower, upper], change) = (claim.ends[gain], claim.changes[gain]);
         if !(change < 1.0) {
@@ -166,66 +204,64 @@ fn push_speed(out: &mut String, claim: &BoundedRate, dt_s: f64) {
         format!("{:.4} /s", change * 0.5 * (upper - lower) / dt_s)
     };
     let [kp, ki, kd] = [speed(0), speed(1), speed(2)];
-    out.push_str(&format!("  gains move         at most kp {kp}, ki {ki}, kd {kd}\n"));
+    ("gains move", format!("at most kp {kp}, ki {ki}, kd {kd}"))
 }
 
 /// What is claimed, with what its re-check found where it holds.
-pub(super) fn push_claim(
-    out: &mut String,
-    certificate: &Certificate,
-    rechecked: Option<&Rechecked>,
-    dt_s: f64,
-) {
+pub(super) fn claim_lines(certificate: &Certificate, rechecked: Option<&Rechecked>) -> Vec<Line> {
+    let dt_s = certificate.description.controller.config().dt_s;
     let remains = rechecked.is_some_and(|rechecked| rechecked.remains_rad > 0.0);
     match &certificate.claim {
         Claim::CommonQuadratic { rate, .. } | Claim::SProcedure { rate, .. } => {
-            push_rate(out, *rate, dt_s, remains);
+            vec![rate_line(*rate, dt_s, remains)]
         }
         Claim::BoundedRate(claim) => {
-            push_rate(out, claim.rate, dt_s, remains);
-            push_speed(out, claim, dt_s);
+            vec![rate_line(claim.rate, dt_s, remains), speed_line(claim, dt_s)]
         }
         Claim::FrozenGrowth { factor, .. } => {
-            out.push_str(&format!(
-                "  growth             by a factor of at least {factor:.6} a sample\n"
-            ));
+            vec![("growth", format!("by a factor of at least {factor:.6} a sample"))]
         }
         Claim::SequenceGrowth { factor, .. } => {
-            out.push_str(&format!(
-                "  growth             by a factor of at least {factor:.6} each time the sequence is repeated\n"
-            ));
+            let factor =
+                format!("by a factor of at least {factor:.6} each time the sequence is repeated");
+            vec![("growth", factor)]
         }
     }
 }
 
-fn push_rate(out: &mut String, rate: f64, dt_s: f64, remains: bool) {
-    if rate < 1.0 {
-        let time_s = at_most(-dt_s / libm::log(rate));
-        let down = if remains { ", down to what remains," } else { "" };
-        out.push_str(&format!(
-            "  decay              every deviation falls{down} at least as fast as with a time constant of {time_s} s ({rate:.8} a sample)\n"
-        ));
-    } else {
-        out.push_str("  decay              proved without a rate\n");
+fn rate_line(rate: f64, dt_s: f64, remains: bool) -> Line {
+    if !(rate < 1.0) {
+        return ("decay", "proved without a rate".to_owned());
     }
+    let time_s = time_constant_s(rate, dt_s);
+    let down = if remains { ", down to what remains," } else { "" };
+    let decay = format!(
+        "every deviation falls{down} at least as fast as with a time constant of {time_s} s ({rate:.8} a sample)"
+    );
+    ("decay", decay)
 }
 
-pub(super) fn push_rechecked(out: &mut String, rechecked: &Rechecked) {
+/// The time constant of a decay per sample, as it is told, s.
+pub(super) fn time_constant_s(rate: f64, dt_s: f64) -> String {
+    at_most(-dt_s / libm::log(rate))
+}
+
+pub(super) fn rechecked_line(rechecked: &Rechecked) -> Line {
     let boxes = match rechecked.cells {
         1 => "one box".to_owned(),
         cells => format!("{cells} boxes"),
     };
-    out.push_str(&format!(
-        "  re-check           {} inequalities over {boxes} of gains, in interval arithmetic\n",
-        rechecked.inequalities
-    ));
+    let inequalities = rechecked.inequalities;
+    let text = format!("{inequalities} inequalities over {boxes} of gains, in interval arithmetic");
+    ("re-check", text)
 }
 
-fn push_largest(out: &mut String, outcome: &Outcome) {
+/// How much larger the effect of the supervisor may be.
+fn largest(outcome: &Outcome) -> Option<String> {
     let largest = &outcome.largest;
     // What is proved beside it may be for less.
     let asked = if outcome.instead.is_some() { "for what the scenario asks, it " } else { "" };
-    let text = match (largest.proved, largest.not_proved) {
+    Some(match (largest.proved, largest.not_proved) {
         (proved, Some(above)) if proved > 0.0 => format!(
             "{asked}can be proved up to {} times the supervisor's output scale (not for {})",
             to_six_decimals(proved),
@@ -240,9 +276,8 @@ fn push_largest(out: &mut String, outcome: &Outcome) {
         (_, Some(above)) => {
             format!("{asked}is not proved even for {} of it", to_six_decimals(above))
         }
-        _ => return,
-    };
-    out.push_str(&format!("  output scale       {text}\n"));
+        _ => return None,
+    })
 }
 
 pub(super) fn range(bounds: Interval) -> String {

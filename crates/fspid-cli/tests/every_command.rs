@@ -224,6 +224,8 @@ fn a_hyphen_is_standard_input_and_output() {
         ("simulate - --report -", "<!doctype html>"),
         ("analyse - --map 0 --report -", "<!doctype html>"),
         ("verify - --set ctms --junit -", "<?xml"),
+        ("verify - --set ctms --report -", "<!doctype html>"),
+        ("certify - --controller PID --report -", "<!doctype html>"),
         ("check -", "-: good; my first flight"),
         ("tune - --rule amigo --controller PID --out -", "# "),
     ] {
@@ -270,6 +272,8 @@ fn an_unknown_ending_is_refused_and_the_known_ones_are_named() {
         ("simulate a.toml --report a.pdf", "known are .html, .htm"),
         ("analyse a.toml --report a", "no ending; known are .html, .htm"),
         ("verify a.toml --set ctms --junit a.json", "known is .xml"),
+        ("verify a.toml --set ctms --report a.pdf", "known are .html, .htm"),
+        ("certify a.toml --report a.pdf", "known are .html, .htm"),
         ("tune a.toml --history a.csv", "known is .parquet"),
         ("tune a.toml --out a.json", "known is .toml"),
         ("surface printed --range 5 --out a.png", "known is .svg"),

@@ -59,12 +59,16 @@ const LINKS: [(&str, &str); 13] = [
 ];
 const PART: &str = "run/shards/000000000-000000003.parquet";
 /// Lines that would write over what they read.
-const OVER: [&str; 24] = [
+const OVER: [&str; 28] = [
     "simulate a.toml --trace a.csv",
     "simulate a.toml --report a.html",
     "simulate a.toml --trace new.csv --report a.html",
     "analyse a.toml --map 0 --report a.html",
     "verify a.toml --set ctms --junit a.xml",
+    "verify a.toml --set ctms --report a.html",
+    "verify a.toml --set ctms --junit new.xml --report a.html",
+    "certify a.toml --controller PID --report a.html",
+    "certify a.toml --controller PID --report ./a.html",
     "audit tip.toml --boxes 5 --report tip.html",
     "surface tip.toml --nodes 3 --csv tip.csv",
     "surface tip.toml --nodes 3 --out tip.svg",
@@ -107,7 +111,10 @@ fn what_a_command_reads_is_not_written_over() {
     }
     let after = files.map(|name| fs::read(folder.join(name)).expect("a file"));
     assert!(before == after, "all are as they were");
-    assert!(!folder.join("new.csv").exists(), "nothing is written before all is known");
+    assert!(
+        !folder.join("new.csv").exists() && !folder.join("new.xml").exists(),
+        "nothing is written before all is known"
+    );
 }
 
 #[test]

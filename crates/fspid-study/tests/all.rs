@@ -1,6 +1,7 @@
 //! All integration tests in one binary: linking one takes less than linking many.
 
 mod analysis;
+mod as_read;
 mod envelope;
 mod fly;
 mod flying;

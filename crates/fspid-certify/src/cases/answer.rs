@@ -1,13 +1,12 @@
 //! Certified cases in words and for programs.
 
-use fspid_diagnostics::digits::to_six_decimals;
 use fspid_proof::{LeftOut, Verdict};
 use serde_json::{Value, json};
 
 use super::{CertifiedCase, CertifiedCases};
 use crate::json::NULLS;
-use crate::scope::range_in_words;
-use crate::text::{found, sentence};
+use crate::scope::{NOT_IN_CLAIM, range_in_words};
+use crate::text::{Headline, Line, found, push_lines, sentence};
 use crate::{Certified, DisturbanceAnswer, family};
 use fspid_study::json::{merged, present, with_null_reasons};
 
@@ -27,15 +26,18 @@ impl CertifiedCases {
                 out.push_str(&line(certified));
             }
         }
-        out.push_str(&format!("\n{}\n", self.verdict()));
-        for one in self.left_out() {
-            out.push_str(&format!("  not in this claim  {one}\n"));
+        out.push('\n');
+        for name in self.controllers() {
+            let Headline { word, detail } = self.verdict(name);
+            out.push_str(&format!("{name}: {word} {detail}\n"));
+            push_lines(&mut out, self.in_every_case_in_words(name));
         }
+        push_lines(&mut out, self.left_out().into_iter().map(|it| (NOT_IN_CLAIM, it.to_string())));
         out
     }
 
     /// What some claim of stability does not speak of, each once.
-    fn left_out(&self) -> Vec<LeftOut> {
+    pub(super) fn left_out(&self) -> Vec<LeftOut> {
         let results = self.cases.iter().flat_map(|case| &case.certification.results);
         let claims = results.filter_map(|it| found(it.outcome.as_ref().ok()?));
         let stable = claims.filter(|(certificate, _)| certificate.claim.is_of_stability());
@@ -47,31 +49,30 @@ impl CertifiedCases {
         all
     }
 
-    /// What all of them amount to, in a sentence for each controller.
-    fn verdict(&self) -> String {
-        let names = self.controllers();
-        let sentences = names.iter().map(|name| {
-            let not_proved: Vec<&str> = self.not_proved(name).collect();
-            let count = self.cases.len();
-            let verdict = match not_proved.len() {
-                0 => format!("{name}: PROVED at all {count} {}", self.which.words()),
-                missing => format!(
-                    "{name}: NOT PROVED at {missing} of {count} {}: {}",
-                    self.which.words(),
-                    not_proved.join("; ")
-                ),
-            };
-            let disturbed = self.disturbed_in_words(name).into_iter();
-            let disturbed = disturbed.map(|it| format!("\n  disturbances       {it}"));
-            let near_trim = self.near_trim_in_words(name).into_iter();
-            let near_trim = near_trim.map(|it| format!("\n  nonlinear          {it}"));
-            verdict + &disturbed.chain(near_trim).collect::<String>()
-        });
-        sentences.collect::<Vec<_>>().join("\n")
+    /// What all of them amount to for a controller.
+    pub(super) fn verdict(&self, controller: &str) -> Headline {
+        let not_proved: Vec<&str> = self.not_proved(controller).collect();
+        let (count, words) = (self.cases.len(), self.which.words());
+        let (word, detail) = match not_proved.len() {
+            0 => ("PROVED", format!("at all {count} {words}")),
+            missing => {
+                let names = not_proved.join("; ");
+                ("NOT PROVED", format!("at {missing} of {count} {words}: {names}"))
+            }
+        };
+        Headline { word: word.to_owned(), detail }
+    }
+
+    /// What of all that was asked beside stability holds in every case of a controller; empty where nothing was.
+    pub(super) fn in_every_case_in_words(&self, controller: &str) -> Vec<Line> {
+        let disturbed = self.disturbed_in_words(controller).into_iter();
+        let near_trim = self.near_trim_in_words(controller).into_iter();
+        let disturbed = disturbed.map(|it| ("disturbances", it));
+        disturbed.chain(near_trim.map(|it| ("nonlinear", it))).collect()
     }
 
     /// Names of the controllers, each once.
-    fn controllers(&self) -> Vec<&str> {
+    pub(super) fn controllers(&self) -> Vec<&str> {
         let mut names: Vec<&str> = Vec::new();
         for certified in self.cases.iter().flat_map(|case| &case.certification.results) {
             if !names.contains(&certified.controller.as_str()) {
@@ -82,7 +83,7 @@ impl CertifiedCases {
     }
 
     /// Names of the cases at which a loop of a controller is not proved.
-    fn not_proved<'a>(&'a self, controller: &'a str) -> impl Iterator<Item = &'a str> {
+    pub(super) fn not_proved<'a>(&'a self, controller: &'a str) -> impl Iterator<Item = &'a str> {
         let is_missing = move |case: &&CertifiedCase| {
             let mut own =
                 case.certification.results.iter().filter(|it| it.controller == controller);
@@ -139,11 +140,16 @@ impl CertifiedCases {
 
 /// One loop in a line.
 fn line(certified: &Certified) -> String {
-    let name = match certified.from_s {
-        0.0 => certified.controller.clone(),
-        from_s => format!("{}, plant from {} s on", certified.controller, to_six_decimals(from_s)),
-    };
-    let told = match &certified.outcome {
+    let mut out = format!("  {}: {}\n", certified.name(), told(certified));
+    for (about, sentence) in beside(certified) {
+        out.push_str(&format!("    {about} {sentence}\n"));
+    }
+    out
+}
+
+/// The verdict on a loop, and what it is about.
+pub(super) fn told(certified: &Certified) -> String {
+    match &certified.outcome {
         Err(reason) => format!("NOT PROVABLE: {reason}"),
         Ok(outcome) => {
             let claimed = found(outcome).map(|(certificate, rechecked)| {
@@ -161,16 +167,16 @@ fn line(certified: &Certified) -> String {
                 Verdict::Open => format!("OPEN{}; {claimed}", because.unwrap_or_default()),
             }
         }
-    };
-    let mut out = format!("  {name}: {told}\n");
-    if let Some(reason) = certified.disturbances.as_ref().and_then(DisturbanceAnswer::trouble) {
-        out.push_str(&format!("    disturbances NOT BOUNDED: {reason}\n"));
     }
-    if let Some(nonlinear) = &certified.nonlinear {
-        out.push_str(&format!("    nonlinear aircraft {}\n", nonlinear.in_short()));
-    }
-    if let Some(family) = &certified.family {
-        out.push_str(&format!("    all that is drawn: {}\n", family::in_words(family)));
-    }
-    out
+}
+
+/// What came of all that is asked beside stability, behind what it is about.
+fn beside(certified: &Certified) -> Vec<Line> {
+    let trouble = certified.disturbances.as_ref().and_then(DisturbanceAnswer::trouble);
+    let trouble = trouble.map(|reason| ("disturbances", format!("NOT BOUNDED: {reason}")));
+    let nonlinear = certified.nonlinear.as_ref();
+    let nonlinear = nonlinear.map(|it| ("nonlinear aircraft", it.in_short()));
+    let family = certified.family.as_ref();
+    let family = family.map(|it| ("all that is drawn:", family::in_words(it)));
+    [trouble, nonlinear, family].into_iter().flatten().collect()
 }

@@ -6,6 +6,7 @@ mod asked;
 mod choices;
 mod disturbed;
 mod near_trim;
+mod page;
 
 use fspid_proof::{Asked, LoopDescription, NotProvable, Outcome, certify};
 use fspid_scenario::file::{Study, Template};

@@ -10,11 +10,11 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use super::external_controller::leave_out;
 use super::progress::{Telling, alive, tell};
 use super::{Format, json_text};
-use crate::argument::{Folder, InFile};
-use crate::exit::{Failure, note, print};
+use crate::argument::{Folder, InFile, OutFile, written};
+use crate::exit::{Failure, note, print, wrote};
 use fspid_certify::{
     Answer, Cases, CertificateFile, Certification, CertifiedCases, CheckedFile, Effort,
-    NotWritable, Question, Wrong, check_text,
+    NotWritable, Question, Subject, Wrong, check_text,
 };
 use fspid_diagnostics::lines;
 use fspid_scenario::file::{self, Study, Template};
@@ -32,7 +32,7 @@ const WIDTH: usize = 100;
 /// flies. Exit code 0 if every loop is proved, or the certificate proves the flown loop stable; 1 if not.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples:\n  fspid certify pitch.toml --out certificates\n  fspid certify --check certificates/fspid.certificate.json\n  fspid certify --check certificates/fspid.certificate.json --against pitch.toml\n  fspid certify design.toml --cases tuning"
+    after_help = "Examples:\n  fspid certify pitch.toml --out certificates\n  fspid certify --check certificates/fspid.certificate.json\n  fspid certify --check certificates/fspid.certificate.json --against pitch.toml\n  fspid certify pitch.toml --out certificates --report proof.html\n  fspid certify design.toml --cases tuning"
 )]
 pub(crate) struct Arguments {
     /// The scenario file.
@@ -73,6 +73,10 @@ pub(crate) struct Arguments {
     /// Write the certificates into this folder.
     #[arg(long, value_name = "DIR")]
     out: Option<Folder>,
+    /// Write a report that opens offline in a browser: the verdict on each loop, what its claim holds for, what is not in it,
+    /// and how its certificate is checked; with `--cases` a section for each case.
+    #[arg(value_parser = written(&["html", "htm"]), long, value_name = "OUT.html", conflicts_with = "check")]
+    report: Option<OutFile>,
     /// How the answer is written.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
@@ -129,6 +133,10 @@ fn prove(path: &Path, arguments: &Arguments) -> Result<(), Failure> {
     if let Some(folder) = &arguments.out {
         certification.changed_names().iter().for_each(note);
         write(folder, certification.certificate_files())?;
+    }
+    if let Some(path) = &arguments.report {
+        let page = certification.page(subject(study, arguments, &effort));
+        write_report(path, page)?;
     }
     let answer = || (certification.text(), certification.json());
     told(answer, study, arguments)?;
@@ -189,6 +197,9 @@ fn prove_cases(
         cases.changed_names().iter().for_each(note);
         write(folder, cases.certificate_files())?;
     }
+    if let Some(path) = &arguments.report {
+        write_report(path, cases.page(subject(study, arguments, &effort)))?;
+    }
     told(|| (cases.text(), cases.json()), study, arguments)?;
     met(cases.all_proved())
 }
@@ -198,6 +209,18 @@ fn question<'a>(arguments: &'a Arguments, effort: &'a Effort) -> Question<'a> {
     let only = arguments.controller.as_deref();
     let Arguments { disturbances, family, nonlinear, .. } = *arguments;
     Question { only, disturbances, family, nonlinear, effort }
+}
+
+/// What a page is about.
+fn subject<'a>(study: &'a Study, arguments: &'a Arguments, effort: &'a Effort) -> Subject<'a> {
+    let folder = arguments.out.as_deref().and_then(Path::to_str);
+    Subject { study, question: question(arguments, effort), folder }
+}
+
+fn write_report(path: &Path, page: Result<String, NotWritable>) -> Result<(), Failure> {
+    output::write(path, page.map_err(Failure::input)?)?;
+    wrote(path);
+    Ok(())
 }
 
 /// Does some work, and tells meanwhile whom it is about and for how long.

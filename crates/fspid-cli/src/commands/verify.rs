@@ -7,7 +7,7 @@ use clap::Args;
 use super::external_controller::Beside;
 use super::{Format, json_text};
 use crate::argument::{Folder, InFile, OutFile, written};
-use crate::exit::{Failure, note, print};
+use crate::exit::{Failure, note, print, wrote};
 use fspid_scenario::file;
 use fspid_study::output;
 use fspid_study::verify::interval::{Question as Interval, interval};
@@ -37,7 +37,7 @@ pub(crate) struct Arguments {
     /// Tell between which values a number of the file keeps the requirements met, in place of judging the file as it is
     /// written: `--interval controller.FSPID.nominal.kp`, as `fspid check --paths` calls it. Once for each. What lies between
     /// the values that are looked at is not looked at.
-    #[arg(long = "interval", value_name = "PATH", conflicts_with_all = ["requirement_files", "junit", "replay", "libraries", "fmus"])]
+    #[arg(long = "interval", value_name = "PATH", conflicts_with_all = ["requirement_files", "junit", "report", "replay", "libraries", "fmus"])]
     intervals: Vec<String>,
     /// How the answer is written.
     #[arg(long, value_enum, default_value_t = Format::Text)]
@@ -45,6 +45,10 @@ pub(crate) struct Arguments {
     /// Write the answer as JUnit XML too, for continuous integration.
     #[arg(value_parser = written(&["xml"]), long, value_name = "OUT.xml")]
     junit: Option<OutFile>,
+    /// Write a report that opens offline in a browser: the verdict, a table for each controller, and what is to be known of
+    /// the numbers. The flights are drawn by `fspid simulate --report`.
+    #[arg(value_parser = written(&["html", "htm"]), long, value_name = "OUT.html")]
+    report: Option<OutFile>,
     /// Write a scenario for each line into this folder that gives its number again.
     #[arg(long, value_name = "DIR", num_args = 0..=1, default_missing_value = "verify-replay")]
     replay: Option<Folder>,
@@ -53,6 +57,7 @@ pub(crate) struct Arguments {
 const HELP: &str = "Examples:
   fspid verify pitch.toml --set ctms
   fspid verify pitch.toml --set mil-f-9490d --set mil-f-8785c:level=1,category=C --junit out.xml
+  fspid verify pitch.toml --set ctms --report verify.html
   fspid verify pitch.toml --set ctms --replay again
   fspid simulate again/02-ctms-overshoot-FSPID.toml
   fspid verify pitch.toml --set ctms --interval controller.FSPID.nominal.kp
@@ -108,6 +113,7 @@ Examples:
   fspid verify pitch.toml --set ctms
   fspid verify pitch.toml --set mil-f-9490d --set mil-f-8785c:level=1,category=C --junit out.xml
   fspid verify pitch.toml --requirements ours.toml --format json
+  fspid verify pitch.toml --set ctms --report verify.html
   fspid verify pitch.toml --set ctms --replay again
   fspid simulate again/02-ctms-overshoot-FSPID.toml
 Exit codes: 0 all met; 1 one is not met, or a flight failed by itself; 2 the input is wrong; 4 the output could not be written.";
@@ -135,6 +141,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let replays = replays.as_deref();
     if let Some(path) = &arguments.junit {
         output::write(path, verification.junit(replays))?;
+    }
+    if let Some(path) = &arguments.report {
+        output::write(path, verification.page())?;
+        wrote(path);
     }
     match arguments.format {
         Format::Text => print(&verification.text(replays))?,

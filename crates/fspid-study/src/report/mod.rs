@@ -60,7 +60,8 @@ pub fn of_analysis(study: &Study, analysis: &Analysis) -> Result<String, fspid_s
 }
 
 /// The command that writes a report of this study again, with everything that was set from outside of its file.
-fn command(name: &str, study: &Study, options: &str) -> String {
+#[must_use]
+pub fn command(name: &str, study: &Study, options: &str) -> String {
     let set = |change: &String| format!(" --set {}", shell::word(change));
     let sets: String = study.overrides.iter().map(set).collect();
     format!("fspid {name} FILE{options}{sets} --report OUT.html")

@@ -5,6 +5,7 @@
 pub mod interval;
 mod json;
 mod junit;
+mod page;
 mod replay;
 mod text;
 
@@ -40,6 +41,8 @@ pub struct Verification {
     scenario_text: String,
     /// Changes, as they were given.
     overrides: Vec<String>,
+    /// Ready sets and files of requirements, as they were given.
+    added: Added,
     /// The study.
     study: Study,
     /// Every requirement for every controller that it concerns.
@@ -49,6 +52,13 @@ pub struct Verification {
     pub failed_flights: Vec<FailedFlight>,
     /// What is said of each loop beside its judgements: its gains at rest, loads that it does not remove.
     at_rest: Vec<String>,
+}
+
+/// What is required beside the entries of the scenario.
+#[derive(Clone, Debug, Default)]
+struct Added {
+    sets: Vec<String>,
+    requirement_files: Vec<String>,
 }
 
 /// Why nothing was verified.
@@ -120,7 +130,18 @@ pub fn verify_text(
     failed_flights.retain(|failed| simulation.is_asked(failed));
     let at_rest = simulation.results.iter().flat_map(at_rest).collect();
     let judgements = simulation.judgements;
-    Ok(Verification { path, scenario_text, overrides, study, judgements, failed_flights, at_rest })
+    let requirement_files = requirement_files.iter().map(|(name, _)| name.clone()).collect();
+    let added = Added { sets, requirement_files };
+    Ok(Verification {
+        path,
+        scenario_text,
+        overrides,
+        added,
+        study,
+        judgements,
+        failed_flights,
+        at_rest,
+    })
 }
 
 /// The gains of a controller at rest beside the nominal ones, and what else is to be known of its flight.

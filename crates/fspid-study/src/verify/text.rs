@@ -26,9 +26,7 @@ impl Verification {
         let mut out =
             format!("{} ({})\n\n", visible(&self.study.scenario.name), visible(&self.path));
         out.push_str(&self.table(replays));
-        let failed = self.failed_flights.iter();
-        let failed = failed.map(|it| format!("{}: {}.", it.who(), it.failures.join("; ")));
-        section(&mut out, "Flights that failed, whatever is required", &failed.collect::<Vec<_>>());
+        section(&mut out, FAILED_FLIGHTS, &self.failed_in_words());
         section(&mut out, "What is asked", &self.asked());
         section(&mut out, "Notes", &self.notes());
         if replays.is_none() {
@@ -64,7 +62,7 @@ impl Verification {
     }
 
     /// Each requirement once: what is measured of what, and where it is from.
-    fn asked(&self) -> Vec<String> {
+    pub(super) fn asked(&self) -> Vec<String> {
         let mut told: Vec<&str> = Vec::new();
         let mut lines = Vec::new();
         for requirement in self.judgements.iter().map(|judgement| &judgement.requirement) {
@@ -86,6 +84,22 @@ impl Verification {
 
     /// "7 of 9 requirements met; FAIL".
     fn verdict(&self) -> String {
+        format!("{}; {}", self.counted(), self.word())
+    }
+
+    /// What all lines and flights amount to, in a word.
+    pub(super) fn word(&self) -> &'static str {
+        if self.all_met() { "PASS" } else { "FAIL" }
+    }
+
+    /// Flights that failed by themselves, in a sentence each.
+    pub(super) fn failed_in_words(&self) -> Vec<String> {
+        let failed = self.failed_flights.iter();
+        failed.map(|it| format!("{}: {}.", it.who(), it.failures.join("; "))).collect()
+    }
+
+    /// "7 of 9 requirements met".
+    pub(super) fn counted(&self) -> String {
         let count = self.judgements.len();
         let unevaluated =
             self.judgements.iter().filter(|judgement| judgement.found.is_err()).count();
@@ -98,9 +112,8 @@ impl Verification {
             1 => "; 1 flight failed".to_owned(),
             many => format!("; {many} flights failed"),
         };
-        let word = if self.all_met() { "PASS" } else { "FAIL" };
         let noun = if count == 1 { "requirement" } else { "requirements" };
-        format!("{} of {count} {noun} met{some}{flights}; {word}", count - self.unmet())
+        format!("{} of {count} {noun} met{some}{flights}", count - self.unmet())
     }
 
     /// Which lines were judged on a flight of their own, and what that flight is.
@@ -154,7 +167,7 @@ impl Verification {
     }
 
     /// What should be known about the numbers above.
-    fn notes(&self) -> Vec<String> {
+    pub(super) fn notes(&self) -> Vec<String> {
         let mut notes = self.own_flights();
         notes.extend(self.at_rest.iter().cloned());
         notes.extend(self.study.range_rule.note().map(|note| format!("{}.", capital(note))));
@@ -194,13 +207,16 @@ fn any_tuner(scenario: &Scenario, is_so: impl Fn(&SelfTuner<f64>) -> bool) -> bo
     })
 }
 
-const COLUMNS: usize = 8;
+/// What stands over flights that failed by themselves.
+pub(super) const FAILED_FLIGHTS: &str = "Flights that failed, whatever is required";
+
+pub(super) const COLUMNS: usize = 8;
 const HEAD: [&str; COLUMNS] =
     ["", "requirement", "measure", "clause", "controller", "found", "limit", "worst case"];
 /// The column of numbers; they stand to the right, so that their units stand below each other.
 const FOUND: usize = 5;
 
-fn cells(judgement: &Judgement) -> [String; COLUMNS] {
+pub(super) fn cells(judgement: &Judgement) -> [String; COLUMNS] {
     let requirement = &judgement.requirement;
     let name = requirement.measure.name();
     let verdict = if judgement.met { "PASS" } else { "FAIL" };
@@ -260,7 +276,7 @@ fn push(out: &mut String, text: &str) {
 }
 
 /// Control characters would move the cursor of a terminal.
-fn visible(text: &str) -> String {
+pub(super) fn visible(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
 }
 

@@ -5,7 +5,7 @@ use fspid_study::verify::{Question, VerifyError, verify};
 use crate::requirements::{JUMBO, repository, verified, written};
 
 /// One line that is met, one that is not, one that cannot be evaluated; for each of two controllers.
-const THREE: &str = r#"
+pub(super) const THREE: &str = r#"
 [[requirement]]
 measure = "stable"
 
@@ -117,7 +117,7 @@ fn a_margin_without_an_end_is_a_word_in_json() {
 }
 
 /// Names that would end an attribute, a tag, a comment or the document.
-fn hostile() -> String {
+pub(super) fn hostile() -> String {
     let text = JUMBO
         .replace("name = \"jumbo\"", "name = \"<a b='c'> & \\\"d\\\" ]]> -->\\u0001\\n\\t\\u007f\"")
         .replace("name = \"P\"", "name = \"</testsuite><!-- &amp; 'P' \\\"\"");

@@ -7,6 +7,7 @@ mod frozen;
 mod intervals;
 mod judging;
 mod loops;
+mod page;
 mod replays;
 mod sets;
 mod short_flights;
