@@ -158,7 +158,7 @@ fn elevator_in_words(study: &Study, controller: &Controller, angles: Angles) -> 
         let [least, most] = [least, most].map(|it| to_six_decimals(degrees(it)));
         format!("travel beyond {least} to {most} deg of command is cut there{not_here}")
     });
-    let limited = limited.unwrap_or_else(|| format!("no travel is cut there"));
+    let limited = limited.unwrap_or_else(|| "no travel is cut there".to_owned());
     Some(format!("Designed for an aircraft {turns}; {limited}."))
 }
 
