@@ -95,7 +95,7 @@ fn section(case: &CertifiedCase) -> Chapter {
     let set = change.set.iter().map(|it| format!("--set {}", shell::word(it)));
     let set = set.collect::<Vec<_>>().join(" ");
     let mut items = Vec::new();
-    items.extend((!set.is_empty()).then(|| Item::Code(set)));
+    items.extend((!set.is_empty()).then_some(Item::Code(set)));
     for certified in &certification.results {
         items.push(Item::Heading(certified.name()));
         items.extend(certified.items());
