@@ -383,7 +383,8 @@ mod tests {
         /// The part, the whole, and what both have in common scatters about them.
         const SHARE: f64 = 0.4;
         let mut random = ChaCha8Rng::seed_from_u64(5);
-        let mut normal = || quantile((random.next_u64() >> 11) as f64 / 2_f64.powi(53) + 1e-17);
+        let mut normal =
+            || quantile((random.next_u64() >> 11) as f64 * (0.5 * f64::EPSILON) + 1e-17);
         let (mut below, mut above, mut without) = (0, 0, 0);
         for _ in 0..EXPERIMENTS {
             // The mean of ten is three standard errors from 0.
