@@ -104,6 +104,7 @@ impl Numbers {
             return Err(error::input(py, format_args!("{name}: {told}")));
         }
         if let Ok(interface) = given.getattr("__array_interface__") {
+            unmasked(given, name)?;
             return Self::of_array(given, &interface, name);
         }
         let copied = given.extract::<Vec<f64>>();
@@ -158,6 +159,32 @@ impl Numbers {
     }
 }
 
+/// Refuses arrays of another shape than a column: which of their numbers belong together would be guessed.
+fn one_dimensional(given: &Bound<'_, PyAny>, name: &str) -> PyResult<()> {
+    let Ok(interface) = given.getattr("__array_interface__") else { return Ok(()) };
+    let shape: Vec<usize> = interface.get_item("shape")?.extract()?;
+    if shape.len() == 1 {
+        return Ok(());
+    }
+    let told = format!(
+        "{name} is an array of {} dimensions; allowed is one, such as of `array.ravel()`",
+        shape.len()
+    );
+    Err(error::input(given.py(), told))
+}
+
+/// Refuses arrays of which numbers are masked: they would be read as they lie.
+fn unmasked(given: &Bound<'_, PyAny>, name: &str) -> PyResult<()> {
+    if given.hasattr("filled")? && given.hasattr("mask")? {
+        let masked: bool = given.getattr("mask")?.call_method0("any")?.is_truthy()?;
+        if masked {
+            let told = "numbers of it are masked; fill them, or leave their rows out";
+            return Err(error::input(given.py(), format_args!("{name}: {told}")));
+        }
+    }
+    Ok(())
+}
+
 /// Several columns of one length, each with its name.
 pub(crate) fn same_length(
     py: Python<'_>,
@@ -171,7 +198,7 @@ pub(crate) fn same_length(
     let columns: Vec<Numbers> = names
         .iter()
         .zip(given.iter())
-        .map(|(name, given)| Numbers::of(&given, name))
+        .map(|(name, given)| one_dimensional(&given, name).and_then(|()| Numbers::of(&given, name)))
         .collect::<PyResult<_>>()?;
     let lengths: Vec<usize> = columns.iter().map(|column| column.as_slice().len()).collect();
     if lengths.windows(2).any(|pair| pair[0] != pair[1]) {

@@ -1,6 +1,6 @@
 //! A controller by itself, for loops that are written in Python.
 
-use std::sync::Mutex;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use fspid::core::{Faults, Sample, State, Step};
 use fspid::sim::Controller as Asked;
@@ -15,7 +15,13 @@ use crate::{error, interrupt};
 #[pyclass(frozen, module = "fspid._core")]
 pub(crate) struct Controller {
     controller: Asked,
-    now: Mutex<Now>,
+    memory: Mutex<Memory>,
+}
+
+/// What a controller remembers, and whether many samples are being answered from a copy of it.
+struct Memory {
+    now: Now,
+    lent: bool,
 }
 
 /// The memory, and the last answer.
@@ -26,9 +32,48 @@ struct Now {
 }
 
 impl Controller {
-    fn with<T>(&self, work: impl FnOnce(&mut Now) -> T) -> T {
+    fn memory(&self) -> MutexGuard<'_, Memory> {
         // A panic elsewhere leaves a whole memory: it is written as one.
-        work(&mut self.now.lock().unwrap_or_else(std::sync::PoisonError::into_inner))
+        self.memory.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn with<T>(&self, work: impl FnOnce(&Now) -> T) -> T {
+        work(&self.memory().now)
+    }
+
+    /// Changes the memory, unless it is lent.
+    fn changing<T>(&self, py: Python<'_>, work: impl FnOnce(&mut Now) -> T) -> PyResult<T> {
+        let mut memory = self.memory();
+        let changed = (!memory.lent).then(|| work(&mut memory.now));
+        // Raising runs Python, in which another thread may ask for the memory.
+        drop(memory);
+        changed.ok_or_else(|| error::input(py, LENT))
+    }
+
+    /// Lends the memory until what is answered is dropped: another thread would change what is then overwritten.
+    fn lend(&self, py: Python<'_>) -> PyResult<(Lent<'_>, Now)> {
+        let mut memory = self.memory();
+        let (was_lent, now) = (memory.lent, memory.now);
+        memory.lent = true;
+        drop(memory);
+        if was_lent { Err(error::input(py, LENT)) } else { Ok((Lent(self), now)) }
+    }
+}
+
+const LENT: &str = "step_many answers samples of this controller in another thread; each thread needs a controller of its own";
+
+/// The memory of a controller is lent as long as this lives.
+struct Lent<'c>(&'c Controller);
+
+impl Lent<'_> {
+    fn give_back(self, now: Now) {
+        self.0.memory().now = now;
+    }
+}
+
+impl Drop for Lent<'_> {
+    fn drop(&mut self) {
+        self.0.memory().lent = false;
     }
 }
 
@@ -49,7 +94,10 @@ impl Controller {
                 format_args!("there is no controller `{name}` with equations{}", known()),
             )
         })?;
-        Ok(Self { controller: found.controller, now: Mutex::new(BEGINNING()) })
+        Ok(Self {
+            controller: found.controller,
+            memory: Mutex::new(Memory { now: BEGINNING(), lent: false }),
+        })
     }
 
     /// Its sample period, s.
@@ -85,16 +133,16 @@ impl Controller {
     }
 
     /// Begins anew.
-    fn reset(&self) {
-        self.with(|now| *now = BEGINNING());
+    fn reset(&self, py: Python<'_>) -> PyResult<()> {
+        self.changing(py, |now| *now = BEGINNING())
     }
 
     /// Answers a sample.
     #[pyo3(signature = (setpoint, measurement, rate=0.0))]
-    fn step(&self, setpoint: f64, measurement: f64, rate: f64) -> f64 {
+    fn step(&self, py: Python<'_>, setpoint: f64, measurement: f64, rate: f64) -> PyResult<f64> {
         let sample =
             Sample { setpoint_rad: setpoint, measurement_rad: measurement, rate_rad_s: rate };
-        self.with(|now| {
+        self.changing(py, |now| {
             let step = self.controller.step(&mut now.state, sample);
             now.last = Some(step);
             step.command_rad
@@ -103,10 +151,17 @@ impl Controller {
 
     /// Takes part in a sample that another has commanded.
     #[pyo3(signature = (setpoint, measurement, command, rate=0.0))]
-    fn track(&self, setpoint: f64, measurement: f64, command: f64, rate: f64) -> f64 {
+    fn track(
+        &self,
+        py: Python<'_>,
+        setpoint: f64,
+        measurement: f64,
+        command: f64,
+        rate: f64,
+    ) -> PyResult<f64> {
         let sample =
             Sample { setpoint_rad: setpoint, measurement_rad: measurement, rate_rad_s: rate };
-        self.with(|now| {
+        self.changing(py, |now| {
             let step = self.controller.track(&mut now.state, sample, command);
             now.last = Some(step);
             step.command_rad
@@ -114,8 +169,8 @@ impl Controller {
     }
 
     /// Answers the last command once more, for a sample that is known to be bad.
-    fn hold(&self) -> f64 {
-        self.with(|now| {
+    fn hold(&self, py: Python<'_>) -> PyResult<f64> {
+        self.changing(py, |now| {
             let step = self.controller.hold(&mut now.state, Faults::NOT_FINITE);
             now.last = Some(step);
             step.command_rad
@@ -126,7 +181,8 @@ impl Controller {
     fn step_many(&self, py: Python<'_>, inputs: &Bound<'_, PyTuple>) -> PyResult<Column> {
         let names = ["setpoint", "measurement", "rate"].map(str::to_owned);
         let columns: Vec<Numbers> = same_length(py, &names[..inputs.len().clamp(2, 3)], inputs)?;
-        let (controller, mut now) = (self.controller, self.with(|now| *now));
+        let controller = self.controller;
+        let (lent, mut now) = self.lend(py)?;
         let (now, commands) = interrupt::run(py, move || {
             let all = columns.iter().map(Numbers::as_slice).collect::<Vec<_>>();
             let rate = |k: usize| all.get(2).map_or(0.0, |rate| rate[k]);
@@ -143,7 +199,7 @@ impl Controller {
             let commands: Vec<f64> = commands.collect();
             (now, commands)
         })?;
-        self.with(|mine| *mine = now);
+        lent.give_back(now);
         Ok(Column::new("command_rad".to_owned(), commands))
     }
 }

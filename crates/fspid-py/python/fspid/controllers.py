@@ -22,7 +22,7 @@ _BENCH = {
 class Controller:
     """A controller with its memory: it sees radians and answers radians, nose up positive.
 
-    ``step`` cannot fail: a sample that is not finite or beyond the guard is answered by the last command, and latched
+    A sample cannot make ``step`` fail: one that is not finite or beyond the guard is answered by the last command, and latched
     as a fault.
     """
 
@@ -74,12 +74,18 @@ class Controller:
         Parameters
         ----------
         setpoint, measurement, rate : array or sequence of float
-            Of one length, rad and rad/s.
+            Of one length and one dimension, rad and rad/s.
 
         Returns
         -------
         Column
             The commands, rad.
+
+        Raises
+        ------
+        InputError
+            Where another thread is in ``step_many`` of this controller: a controller has one memory, and its samples one
+            order. Until that call ends, every other that would change the memory is refused too, ``step`` among them.
         """
         return self._native.step_many((setpoint, measurement) if rate is None else (setpoint, measurement, rate))
 

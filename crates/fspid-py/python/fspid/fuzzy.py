@@ -143,12 +143,19 @@ class FuzzySystem:
         Parameters
         ----------
         *inputs : array or sequence of float
-            A column for each input, in their order. Arrays of NumPy of 64 bits are read where they lie.
+            A column for each input, in their order. Arrays of NumPy of 64 bits are read where they lie; arrays of more
+            dimensions than one, and masked numbers, are refused.
 
         Returns
         -------
         dict of str to Column
             ``numpy.asarray`` takes no copy of a column. NaN where no rule has an answer.
+
+        Notes
+        -----
+        Each row is answered by itself, as by a call of the system. Where an output keeps its previous answer
+        (``lock-previous``, ``NC``), or a formula names an output, ``fspid infer --points`` answers otherwise: there a row
+        comes after the one before it.
         """
         return {column.name: column for column in self._native.infer_many(inputs)}
 
@@ -199,7 +206,7 @@ class FuzzySystem:
         rest : mapping of str to float, optional
             Inputs at rest.
         """
-        over = [f"{name}={lower!r}..{upper!r}" for name, (lower, upper) in (spans or {}).items()]
+        over = [f"{name}={float(lower)!r}..{float(upper)!r}" for name, (lower, upper) in (spans or {}).items()]
         return Audit(self._native.audit(over, _pairs(rest)))
 
     def surface(
@@ -308,7 +315,7 @@ class Supervisor:
         Parameters
         ----------
         error, change : array or sequence of float
-            Of one length. Arrays of NumPy of 64 bits are read where they lie.
+            Of one length and one dimension. Arrays of NumPy of 64 bits are read where they lie; masked numbers are refused.
         """
         return {column.name: column for column in self._native.infer_many((error, change))}
 
@@ -321,4 +328,4 @@ class Supervisor:
 
 
 def _pairs(values: Mapping[str, float] | None) -> list[str]:
-    return [f"{name}={value!r}" for name, value in (values or {}).items()]
+    return [f"{name}={float(value)!r}" for name, value in (values or {}).items()]
