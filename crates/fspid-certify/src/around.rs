@@ -12,10 +12,13 @@ use fspid_study::metrics::Absent;
 /// certified one, of which a certificate does not speak; that this is not known counts as well. None where everything holds.
 pub(super) fn not_held_in_words(scenario: &Scenario, controller: &Controller) -> Option<String> {
     let at_rest = AtRest::stability(scenario, controller);
-    let beyond = at_rest.undecided.filter(|it| it.doubt.is_beyond_the_loop());
+    let beyond = at_rest.undecided.map(|it| it.doubt).filter(|doubt| {
+        // What is certified is certified for all gains.
+        doubt.is_beyond_the_loop() && !doubt.is_of_gains_without_rest()
+    });
     match (at_rest.unstable, beyond) {
         (Some(unstable), _) => Some(grows_in_words(scenario, &unstable)),
-        (None, Some(undecided)) => Some(Absent::Undecided(undecided.doubt).to_string()),
+        (None, Some(doubt)) => Some(Absent::Undecided(doubt).to_string()),
         (None, None) => None,
     }
 }

@@ -5,13 +5,15 @@
 //! unstable by itself, or integrates, leaves for good, however stable the loop would be around it.
 
 use fspid_aircraft::ForceModel;
-use fspid_core::{Gains, Limits};
+use fspid_core::{AntiWindup, Gains, Limits};
 
 use crate::closed_loop::simulate;
 use crate::controller::Controller;
 use crate::flown_on;
+use crate::integral_limits::HeldIntegral;
 use crate::plant::LinearPlant;
 use crate::rest::{Doubt, RestPoint, pitches_without_integral};
+use crate::sample_guard::held_by_guard;
 use crate::scenario::{NamedController, Scenario};
 use crate::signal::Entry;
 use crate::trace::Trace;
@@ -66,7 +68,7 @@ fn limits_of_servo(scenario: &Scenario) -> impl Iterator<Item = (f64, f64)> {
 }
 
 /// The linear plant that a flight ends with; none of an aircraft that has no trim then.
-fn last_plant(scenario: &Scenario) -> Option<LinearPlant> {
+pub(crate) fn last_plant(scenario: &Scenario) -> Option<LinearPlant> {
     match scenario.plant.aircraft() {
         Some(aircraft) => aircraft.lasting().ok()?.pop()?.1,
         None => scenario.lasting_plants().last().map(|(_, plant)| (*plant).clone()),
@@ -74,7 +76,7 @@ fn last_plant(scenario: &Scenario) -> Option<LinearPlant> {
 }
 
 /// True for a plant that does not come to rest under a command that stands still: it is unstable, or integrates.
-fn moves_by_itself(plant: &LinearPlant) -> bool {
+pub(crate) fn moves_by_itself(plant: &LinearPlant) -> bool {
     has_pole_from(plant, -AT_REST)
 }
 
@@ -153,20 +155,32 @@ pub(crate) fn pitches_at_the_end(
     gains: Gains<f64>,
 ) -> Vec<f64> {
     let setpoint_rad = scenario.held_at_the_end_rad();
+    let [offset_rad, scale] = errors_of_pitch_sensor(scenario);
+    let pitch_rad = |seen_rad: f64| (seen_rad - offset_rad) / scale;
+    if gains.ki != 0.0 {
+        let config = controller.config_at(gains);
+        let held = HeldIntegral::at_the_end(scenario, plant, gains, &config);
+        let seen_rad = held.and_then(|it| it.seen_at_limit_rad()).unwrap_or(setpoint_rad);
+        return vec![pitch_rad(seen_rad)];
+    }
+    let at = RestPoint { setpoint_rad, load_rad: load_unseen_rad(scenario, plant) };
+    let seen = pitches_without_integral(scenario, plant, controller, gains, at);
+    seen.into_iter().map(pitch_rad).collect()
+}
+
+/// What the command is with nothing seen while loads and errors of the pitch sensor at the last sample are held on, rad.
+pub(crate) fn load_unseen_rad(scenario: &Scenario, plant: &LinearPlant) -> f64 {
+    let [at_servo_rad, at_elevator_rad] = loads_at_the_end_rad(scenario);
+    let [offset_rad, scale] = errors_of_pitch_sensor(scenario);
+    -offset_rad / scale / plant.steady_gain() - at_servo_rad - at_elevator_rad
+}
+
+/// What is added to the pitch at the last sample where it is seen, rad, and by what it is multiplied.
+fn errors_of_pitch_sensor(scenario: &Scenario) -> [f64; 2] {
     let sensor = scenario.surroundings.pitch_sensor;
     let scale = 1.0 + sensor.map_or(0.0, |it| it.model().scale_error);
     let bias_rad = sensor.map_or(0.0, |it| it.bias());
-    let offset_rad = last_load_rad(scenario, Entry::Measurement) + bias_rad;
-    let pitch_rad = |seen_rad: f64| (seen_rad - offset_rad) / scale;
-    if gains.ki != 0.0 {
-        return vec![pitch_rad(setpoint_rad)];
-    }
-    // What the command is with nothing seen.
-    let [at_servo_rad, at_elevator_rad] = loads_at_the_end_rad(scenario);
-    let load_rad = pitch_rad(0.0) / plant.steady_gain() - at_servo_rad - at_elevator_rad;
-    let at = RestPoint { setpoint_rad, load_rad };
-    let seen = pitches_without_integral(scenario, plant, controller, gains, at);
-    seen.into_iter().map(pitch_rad).collect()
+    [last_load_rad(scenario, Entry::Measurement) + bias_rad, scale]
 }
 
 /// What acts at servo and elevator at the last sample, rad.
@@ -176,7 +190,7 @@ fn loads_at_the_end_rad(scenario: &Scenario) -> [f64; 2] {
 }
 
 /// What acts at a place at the last sample, rad; what never stands still counts by its mean, 0.
-fn last_load_rad(scenario: &Scenario, entry: Entry) -> f64 {
+pub(crate) fn last_load_rad(scenario: &Scenario, entry: Entry) -> f64 {
     let timing = scenario.timing;
     let mut values = vec![0.0; timing.rows()];
     let held = scenario.disturbances.iter().filter(|it| it.entry() == entry && it.stands_still());
@@ -200,14 +214,15 @@ pub fn lost_at_a_limit(
     flown_on::is_lost(scenario, controller, trace, moves).then_some(Doubt::SwingAtLimits)
 }
 
-/// What the flight of one of a scenario's controllers shows of [`lost_at_a_limit`], for who has not flown it; none where it cannot
-/// be flown.
+/// What the flight of one of a scenario's controllers shows of [`lost_at_a_limit`] and [`held_by_guard`], for who has not flown
+/// it; none where it cannot be flown.
 #[must_use]
 pub fn lost_when_flown(scenario: &Scenario, named: &NamedController) -> Option<Doubt> {
     let alone =
         Scenario { controllers: vec![named.clone()], externals: Vec::new(), ..scenario.clone() };
     let trace = simulate(&alone).ok()?.traces.pop()?;
-    lost_at_a_limit(&alone, &named.controller, &trace)
+    held_by_guard(&alone, &named.controller, &trace)
+        .or_else(|| lost_at_a_limit(&alone, &named.controller, &trace))
 }
 
 /// True where each sample of the last tenth is at a limit, and further off than the one before.
@@ -234,6 +249,8 @@ pub(crate) struct Ends {
     of_servo: Vec<(f64, f64)>,
     /// Most that a command, and the elevator, move in a sample, rad.
     by_sample: [Option<f64>; 2],
+    /// The integral has limits of its own, of which a command tells nothing.
+    is_clamped: bool,
 }
 
 impl Ends {
@@ -245,12 +262,14 @@ impl Ends {
             own: config.limits.as_ref().map(|it| (it.lower(), it.upper())),
             of_servo: limits_of_servo(scenario).chain(travel_of_airframe(scenario)).collect(),
             by_sample: rates_rad_s.map(|it| it.map(|rate_rad_s| rate_rad_s * dt_s)),
+            is_clamped: matches!(config.anti_windup, AntiWindup::Clamping(_)),
         }
     }
 
     /// True where nothing has a limit.
     pub(crate) fn are_none(&self) -> bool {
-        self.own.is_none() && self.of_servo.is_empty() && self.by_sample == [None; 2]
+        let has_none = self.own.is_none() && self.of_servo.is_empty();
+        has_none && self.by_sample == [None; 2] && !self.is_clamped
     }
 
     /// True where a command, or with what acts at the servo what it is told, is at a limit.

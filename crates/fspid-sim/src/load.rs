@@ -9,9 +9,11 @@ use fspid_lti::{LtiError, Matrix};
 
 use crate::aircraft::AircraftPlant;
 use crate::error::SimError;
+use crate::integral_limits::HeldIntegral;
 use crate::loop_model::{LoopModel, Memory};
 use crate::plant::LinearPlant;
 use crate::scenario::Scenario;
+use crate::stability::holds;
 
 /// Points at which the error of a flight is looked at; in the last tenth it is looked at each sample, for swings that are
 /// faster than the points, and before the first point at ever longer intervals, for answers that are over by then. Its
@@ -47,6 +49,8 @@ pub struct ConstantLoad {
     pub for_good: f64,
     /// True for a loop with an integral.
     pub has_integral: bool,
+    /// True where the integral's own limits leave it less than the load takes, beside what the end of the flight does.
+    pub is_cut: bool,
 }
 
 impl ConstantLoad {
@@ -71,11 +75,11 @@ impl ConstantLoad {
         self.share_left() <= HALF_GONE && !self.stays()
     }
 
-    /// True where, without an integral, something is left for good.
+    /// True where, without an integral or with one whose own limits do not leave it, something is left for good.
     #[must_use]
     pub fn stays(&self) -> bool {
         // Written so that NaN stays.
-        !self.has_integral && !(self.for_good <= FOR_GOOD * self.largest)
+        (!self.has_integral || self.is_cut) && !(self.for_good <= FOR_GOOD * self.largest)
     }
 
     /// True where what is left at the end goes on shrinking to nothing.
@@ -100,12 +104,41 @@ pub fn constant_load(
     let mut worst: Option<ConstantLoad> = None;
     for plant in trimmed.iter().chain(lasting) {
         let load = with_plant(scenario, plant, gains, config)?;
+        let held = HeldIntegral::at_the_end(scenario, plant, gains, config);
+        let room = held.map_or(1.0, |it| it.room_rad().to_degrees());
+        let load = match room < 1.0 {
+            true => cut(scenario, plant, (gains, config), (load, 1.0 - room))?,
+            false => load,
+        };
         // Written so that NaN is the worst.
         if worst.is_none_or(|worst| !(load.share_left() <= worst.share_left())) {
             worst = Some(load);
         }
     }
     Ok(worst)
+}
+
+/// A load of which the integral cannot take a share: that is held without an integral, or not at all.
+fn cut(
+    scenario: &Scenario,
+    plant: &LinearPlant,
+    (gains, config): (Gains<f64>, &PidConfig<f64>),
+    (load, share): (ConstantLoad, f64),
+) -> Result<ConstantLoad, SimError> {
+    let is_cut = true;
+    let gains = Gains { ki: 0.0, ..gains };
+    if !holds(scenario, plant, gains, config) {
+        let largest = load.largest;
+        return Ok(ConstantLoad { at_end: largest, for_good: largest, is_cut, ..load });
+    }
+    let left = with_plant(scenario, plant, gains, config)?;
+    Ok(ConstantLoad {
+        largest: load.largest.max(share * left.largest),
+        at_end: load.at_end.max(share * left.at_end),
+        for_good: load.for_good.max(share * left.for_good),
+        is_cut,
+        ..load
+    })
 }
 
 fn with_plant(
@@ -151,7 +184,7 @@ fn with_plant(
     if !(largest.is_finite() && at_end.is_finite() && for_good.is_finite()) {
         return Err(LtiError::OutOfRange { what: "effect of a constant load" }.into());
     }
-    Ok(ConstantLoad { largest, at_end, for_good, has_integral: memory.integral })
+    Ok(ConstantLoad { largest, at_end, for_good, has_integral: memory.integral, is_cut: false })
 }
 
 /// The size of the error: the pitch angle is the plant's first state, and the set-point stays at zero.

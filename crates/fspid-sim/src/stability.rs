@@ -14,12 +14,14 @@ use crate::around_trim;
 use crate::controller::Controller;
 use crate::error::SimError;
 use crate::held_limits;
+use crate::integral_limits;
 use crate::loop_model::{BreakPoint, LoopModel, Memory, SampledPlant};
 use crate::plant::LinearPlant;
 use crate::rest::{Doubt, Rest, RestPoint, Stand};
 use crate::scenario::Scenario;
 
 pub use crate::held_limits::{lost_at_a_limit, lost_when_flown};
+pub use crate::sample_guard::held_by_guard;
 
 /// A radius this close below 1 cannot be told from 1 after rounding; it counts as unstable.
 const MARGIN: f64 = 1e-9;
@@ -91,6 +93,16 @@ fn radius_at_rest(
         Err(SimError::Linear(error)) => error.undecided_radius().ok_or(error.into()),
         Err(error) => Err(error),
     }
+}
+
+/// True where fixed gains hold a plant for certain.
+pub(crate) fn holds(
+    scenario: &Scenario,
+    plant: &LinearPlant,
+    gains: Gains<f64>,
+    config: &PidConfig<f64>,
+) -> bool {
+    radius_at_rest(scenario, plant, gains, config).is_ok_and(|radius| radius < 1.0 - MARGIN)
 }
 
 /// Norm of a loop's matrix below which no question about its poles leaves the range of 64-bit numbers:
@@ -215,8 +227,8 @@ pub fn growth_at_rest(
             found = found.and(growth_of_plant(scenario, (from_s, plant), controller, gains)?);
         }
     }
-    if held_limits::are_exceeded(scenario, controller, gains) {
-        found.doubt(Undecided::at_trim(Doubt::BeyondLimits));
+    if let Some(doubt) = doubt_of_limits(scenario, controller, gains) {
+        found.doubt(Undecided::at_trim(doubt));
     }
     Ok(found.settled())
 }
@@ -234,8 +246,19 @@ pub fn doubt_beyond(
     if scenario.plant.aircraft().is_some() {
         return Ok(growth_at_rest(scenario, controller, gains)?.undecided);
     }
-    let exceeds = held_limits::are_exceeded(scenario, controller, gains);
-    Ok(exceeds.then(|| Undecided::at_trim(Doubt::BeyondLimits)))
+    Ok(doubt_of_limits(scenario, controller, gains).map(Undecided::at_trim))
+}
+
+/// Whether limits leave what the rest at the end of a flight takes.
+fn doubt_of_limits(
+    scenario: &Scenario,
+    controller: &Controller,
+    gains: Gains<f64>,
+) -> Option<Doubt> {
+    if integral_limits::are_exceeded(scenario, controller, gains) {
+        return Some(Doubt::IntegralLimits);
+    }
+    held_limits::are_exceeded(scenario, controller, gains).then_some(Doubt::BeyondLimits)
 }
 
 /// Asks one plant, which a flight has from a time on, at every rest.

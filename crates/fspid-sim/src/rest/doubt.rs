@@ -32,6 +32,40 @@ pub enum Doubt {
         /// Spectral radius on that side.
         spectral_radius: f64,
     },
+    /// Without the dead zone, as beyond its border, the rest of a self-tuner grows or may; within the zone it holds.
+    #[error(
+        "within the dead zone the gains rest and the loop holds; with the rules as they are beyond its border it grows, or may ({}): what leaves the zone need not come back, and a swing may stay; rules, scales and set-point weight that hold without the dead zone leave none",
+        in_words(*spectral_radius)
+    )]
+    DeadZone {
+        /// Spectral radius there.
+        spectral_radius: f64,
+    },
+    /// The gain of a self-tuner's integral is zero at rest, and elsewhere one with which it need not come to rest.
+    #[error(
+        "the gain of the integral is 0 at rest, and where the rules move it it is negative, which drives the error away, or multiplies the sum of all errors (the literal integral), which grows: a nominal ki above 0, no rules for ki, or gain_limits with ki from 0 on and the bumpless integral leave no doubt"
+    )]
+    IntegralGain,
+    /// An accumulating law without leakage keeps its gains wherever they have come to, or moves them for ever.
+    #[error(
+        "the gains of an accumulating law without leakage stay wherever they have come to, and no gains are those at rest: a leakage above 0 gives them a rest, and with gain_limits certify asks all of them at once"
+    )]
+    KeptGains,
+    /// Such a law moves its gains at rest without end.
+    #[error(
+        "the accumulating law moves the gains at rest without end, so that there is no equilibrium; gain_limits or leakage_per_s bound it"
+    )]
+    DriftingGains,
+    /// What is held at the end of the flight takes more of the integral than its own limits leave, and without it nothing holds.
+    #[error(
+        "at the end of the flight set-point and loads take more of the integral than the limits of its anti-windup leave, and the loop does not hold while the integral stands at one: wider limits leave it room"
+    )]
+    IntegralLimits,
+    /// A flight ended with a sample that the controller does not believe.
+    #[error(
+        "the flight ends with a sample beyond the controller's sample guard, for which the command is held: nobody holds the aircraft until a sample is believed again; a larger sample_guard_deg, or a smaller set-point, leaves the controller at work"
+    )]
+    HeldByGuard,
     /// A sensor shows values of changing age: of the pitch loop, which is stable with one of them and not with another; of a mode
     /// of the autopilot, which is unstable with one.
     #[error(
@@ -156,6 +190,8 @@ impl Doubt {
             Self::Rounding { .. }
             | Self::OneSide { .. }
             | Self::LongWay { .. }
+            | Self::DeadZone { .. }
+            | Self::IntegralGain
             | Self::ChangingAge
             | Self::Commanded { .. } => false,
             Self::LongMode
@@ -169,10 +205,20 @@ impl Doubt {
             | Self::Kink
             | Self::FastMotion
             | Self::OuterGains
+            | Self::KeptGains
+            | Self::DriftingGains
+            | Self::IntegralLimits
+            | Self::HeldByGuard
             | Self::BeyondLimits
             | Self::RunsAway
             | Self::SwingAtLimits => true,
         }
+    }
+
+    /// True where no gains are those at rest: a proof of all gains that there may be speaks of each of them.
+    #[must_use]
+    pub fn is_of_gains_without_rest(self) -> bool {
+        matches!(self, Self::KeptGains | Self::DriftingGains)
     }
 }
 
@@ -188,6 +234,7 @@ mod tests {
             for doubt in [
                 Doubt::OneSide { spectral_radius },
                 Doubt::LongWay { spectral_radius },
+                Doubt::DeadZone { spectral_radius },
                 Doubt::Commanded { spectral_radius },
                 Doubt::Wings { spectral_radius },
                 Doubt::Erection { spectral_radius },

@@ -4,6 +4,8 @@
 //! | file | for |
 //! | --- | --- |
 //! | this one | equilibria of the scenario ([`Rest::all`]), and the loop that is linearised about each ([`Side::model`]) |
+//! | `dead_zone` | rests within a dead zone, and the same with the rules as they are beyond its border |
+//! | `integral` | whether an integral acts, and what one comes to whose gain is zero at rest |
 //! | `slopes` | linearisation of the rules: slopes of the gains in every direction from an equilibrium, where kinks make them several |
 //! | `stand` | stability: poles of the linear loop, and with kinks motions of the piecewise linear one ([`Stand`]) |
 //! | `clocked` | stability where a sensor has a sample period of its own: the loop of a whole period of both |
@@ -43,14 +45,16 @@
 //! a good approximation.
 
 mod clocked;
+mod dead_zone;
 mod doubt;
+mod integral;
 mod outer;
 mod slopes;
 mod stand;
 #[cfg(test)]
 mod tests;
 
-use fspid_core::{ErrorSign, Fspid, GainLimits, Gains, IntegralForm, Law, PidConfig, SecondInput};
+use fspid_core::{ErrorSign, Fspid, Gains, IntegralForm, Law, PidConfig, SecondInput};
 
 use crate::controller::Controller;
 use crate::error::SimError;
@@ -59,9 +63,11 @@ use crate::plant::LinearPlant;
 use crate::scenario::Scenario;
 use crate::sensor::Sensor;
 use crate::steady::Steady;
+use integral::integrates;
 use slopes::{DIRECTIONS, Slopes};
 
 pub use doubt::Doubt;
+pub(crate) use integral::{has_integral, may_not_come_to_rest};
 pub use stand::Stand;
 pub(crate) use stand::{Found, stand_of_sides};
 
@@ -94,6 +100,8 @@ pub struct Rest {
     pub at: RestPoint,
     /// It is a set-point that loops around the pitch loop may command, and the scenario does not.
     pub is_only_commanded: bool,
+    /// It is the rest of a controller without its dead zone: what motions beyond the zone's border are pulled to.
+    pub is_beyond_dead_zone: bool,
     /// The loops there: one, or one for each side of the kinks that the rules have there.
     pub sides: Vec<Side>,
     /// Which of them a motion in each direction is on.
@@ -171,6 +179,7 @@ impl Rest {
         Self {
             at: RestPoint::TRIM,
             is_only_commanded: false,
+            is_beyond_dead_zone: false,
             sides: vec![Side::still(gains)],
             of_direction: [0; DIRECTIONS],
             seen_per_unit: [1.0; 2],
@@ -188,13 +197,13 @@ impl Rest {
         controller: &Controller,
         gains: Gains<f64>,
     ) -> Vec<Self> {
-        let still = vec![Self::still(gains)];
-        let Controller::SelfTuning(fspid) = controller else { return still };
+        let still = Self::still(gains);
+        let Controller::SelfTuning(fspid) = controller else { return vec![still] };
         let steady = scenario.resting();
         let rate_rad_s = rate_bias_rad_s(scenario);
         let leakage_per_s = leakage_per_s(fspid);
-        if leakage_per_s == Some(0.0) || is_the_same_everywhere(fspid, rate_rad_s) {
-            return still;
+        if leakage_per_s == Some(0.0) {
+            return vec![still];
         }
         let held = Holding {
             fspid,
@@ -202,6 +211,9 @@ impl Rest {
             gains,
             leakage_per_s,
         };
+        if is_the_same_everywhere(fspid, rate_rad_s) {
+            return held.still_beside(still);
+        }
         // A seen rate is no load here: it has its own place in the controller.
         let config = PidConfig { rate_gain_s: 0.0, ..*fspid.config() };
         let loads = either_way(steady.load_with_offsets_rad(plant, &config));
@@ -213,7 +225,7 @@ impl Rest {
         for (setpoint_rad, is_only_commanded) in own.chain(commanded) {
             for &load_rad in &loads {
                 for rest in held.at(RestPoint { setpoint_rad, load_rad }, rate_rad_s) {
-                    if !found.iter().any(|known| known.is_the_same_loop_as(&rest)) {
+                    if !found.iter().any(|known| known.says_as_much_as(&rest)) {
                         found.push(Self { is_only_commanded, ..rest });
                     }
                 }
@@ -232,14 +244,16 @@ impl Rest {
         }
     }
 
-    /// Of the same controller.
-    fn is_the_same_loop_as(&self, other: &Self) -> bool {
-        self.sides == other.sides && self.of_direction == other.of_direction
+    /// True for the same loop, of the same controller, whose verdict is no less certain.
+    fn says_as_much_as(&self, other: &Self) -> bool {
+        self.sides == other.sides
+            && self.of_direction == other.of_direction
+            && (!self.is_beyond_dead_zone || other.is_beyond_dead_zone)
     }
 }
 
 /// What a rate sensor shows at rest; a bias is drawn once, with its sign.
-fn rate_bias_rad_s(scenario: &Scenario) -> f64 {
+pub(crate) fn rate_bias_rad_s(scenario: &Scenario) -> f64 {
     scenario.surroundings.rate_sensor.as_ref().map_or(0.0, Sensor::bias)
 }
 
@@ -274,7 +288,7 @@ pub(crate) fn settled(fspid: &Fspid<f64>) -> Option<Gains<f64>> {
 }
 
 /// What the command has to be per rad of seen pitch.
-fn command_per_pitch(scenario: &Scenario, plant: &LinearPlant) -> f64 {
+pub(crate) fn command_per_pitch(scenario: &Scenario, plant: &LinearPlant) -> f64 {
     let sensor = scenario.surroundings.pitch_sensor;
     let scale = sensor.map_or(1.0, |it| 1.0 + it.model().scale_error);
     1.0 / (scale * plant.steady_gain())
@@ -328,22 +342,6 @@ fn is_the_same_everywhere(fspid: &Fspid<f64>, rate_rad_s: f64) -> bool {
     plain && integrates(fspid)
 }
 
-/// True for a controller whose integral acts, at rest or elsewhere.
-pub(crate) fn has_integral(controller: &Controller) -> bool {
-    match controller {
-        Controller::Fixed(pid) => pid.gains().ki != 0.0,
-        Controller::SelfTuning(fspid) => integrates(fspid),
-    }
-}
-
-/// True where the gain of the integral may be other than zero.
-fn integrates(fspid: &Fspid<f64>) -> bool {
-    let settings = fspid.tuner().settings();
-    let asked = fspid.tuner().nominal().ki != 0.0 || settings.output_scale.ki != 0.0;
-    let allowed = |limits: GainLimits<f64>| limits.ki.lower() != 0.0 || limits.ki.upper() != 0.0;
-    asked && settings.gain_limits.is_none_or(allowed)
-}
-
 /// A self-tuning controller that holds a plant.
 struct Holding<'a> {
     fspid: &'a Fspid<f64>,
@@ -382,14 +380,35 @@ impl Holding<'_> {
             true => vec![0.0],
             false => self.errors_at_rest(at, rate_rad_s),
         };
-        errors.into_iter().map(|error_rad| self.with_error(at, rate_rad_s, error_rad)).collect()
+        let rests = errors.into_iter().flat_map(|error_rad| {
+            let held = [error_rad, rate_rad_s];
+            [Some(self.with_error(at, rate_rad_s, error_rad)), self.beyond_dead_zone(at, held)]
+        });
+        rests.flatten().collect()
     }
 
     fn with_error(&self, at: RestPoint, rate_rad_s: f64, error_rad: f64) -> Rest {
-        let RestPoint { setpoint_rad, load_rad } = at;
         let centre = self.seen(error_rad, rate_rad_s);
         let is_zero = centre.iter().all(|seen| *seen == 0.0);
-        let gains = if is_zero { self.gains } else { self.gains_at(centre) };
+        let is_silent = self.is_silent([error_rad, rate_rad_s]);
+        let gains = match is_silent || is_zero {
+            true => self.gains,
+            false => self.gains_at(centre),
+        };
+        self.with_gains(at, [error_rad, rate_rad_s], gains, is_silent)
+    }
+
+    /// Rest with this error and a rate that is seen and not there, with these gains, which small motions move but where the
+    /// supervisor is silent.
+    fn with_gains(
+        &self,
+        at: RestPoint,
+        [error_rad, rate_rad_s]: [f64; 2],
+        gains: Gains<f64>,
+        is_silent: bool,
+    ) -> Rest {
+        let RestPoint { setpoint_rad, load_rad } = at;
+        let centre = self.seen(error_rad, rate_rad_s);
         let config = self.fspid.config_at(gains);
         let gain_coupling = self.fspid.tuner().settings().gain_coupling;
         let pitch_rad = setpoint_rad - error_rad;
@@ -407,7 +426,7 @@ impl Holding<'_> {
             },
             by_kd: -gain_coupling.rate_gain * rate_rad_s,
         };
-        self.around(at, (gains, held), centre, error_rad)
+        self.around(at, (gains, held), centre, is_silent)
     }
 
     /// Rest with these gains and constants where the supervisor sees this.
@@ -416,10 +435,13 @@ impl Holding<'_> {
         at: RestPoint,
         (gains, held): (Gains<f64>, Held),
         centre: [f64; 2],
-        error_rad: f64,
+        is_silent: bool,
     ) -> Rest {
         let (mut sides, mut known): (Vec<Side>, Vec<Slopes>) = (Vec::new(), Vec::new());
-        let around = self.slopes_around(centre, error_rad);
+        let around = match is_silent {
+            true => [Slopes::default(); DIRECTIONS],
+            false => self.slopes_around(centre),
+        };
         let of_direction = around.map(|slopes| {
             let place = known.iter().position(|it| it.is_near(&slopes));
             place.unwrap_or_else(|| {
@@ -428,11 +450,15 @@ impl Holding<'_> {
                 known.len() - 1
             })
         });
-        let second_input = self.fspid.tuner().settings().second_input;
-        let seen_per_unit = self.seen_per_unit();
-        let is_only_commanded = false;
-        let mut rest =
-            Rest { at, is_only_commanded, sides, of_direction, seen_per_unit, second_input };
+        let mut rest = Rest {
+            at,
+            is_only_commanded: false,
+            is_beyond_dead_zone: false,
+            sides,
+            of_direction,
+            seen_per_unit: self.seen_per_unit(),
+            second_input: self.fspid.tuner().settings().second_input,
+        };
         rest.join_equal_sides();
         rest
     }

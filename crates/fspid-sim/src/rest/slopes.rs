@@ -51,14 +51,8 @@ pub(super) fn direction([first, second]: [f64; 2]) -> usize {
 }
 
 impl Holding<'_> {
-    /// Slopes in each direction from a place, in the supervisor's units.
-    pub(super) fn slopes_around(&self, centre: [f64; 2], error_rad: f64) -> [Slopes; DIRECTIONS] {
-        let settings = self.fspid.tuner().settings();
-        // Within a dead zone gains do not move.
-        let zone = settings.dead_zone;
-        if zone.is_some_and(|zone| error_rad.abs() < zone.error_rad && zone.change_rad > 0.0) {
-            return [Slopes::default(); DIRECTIONS];
-        }
+    /// Slopes in each direction from a place, in the supervisor's units, outside of any dead zone.
+    pub(super) fn slopes_around(&self, centre: [f64; 2]) -> [Slopes; DIRECTIONS] {
         let supervisor = self.fspid.tuner().supervisor();
         let away = AROUND * supervisor.range();
         let is_inside = centre.iter().all(|seen| seen.abs() + away < supervisor.range());

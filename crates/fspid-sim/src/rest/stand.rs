@@ -3,7 +3,7 @@
 
 use fspid_core::{Gains, SecondInput};
 
-use super::{Doubt, Rest, Side, slopes};
+use super::{Doubt, Rest, Side, integral, slopes};
 use crate::controller::Controller;
 use crate::error::SimError;
 use crate::loop_model::{Clocks, LoopModel, SampledPlant};
@@ -96,6 +96,19 @@ pub(crate) fn stand_of_sides(
     })
 }
 
+/// What a rest says that does not hold without the dead zone: within the zone it does.
+fn beyond_dead_zone(stand: Stand) -> Stand {
+    match stand {
+        Stand::Grows { spectral_radius }
+        | Stand::Undecided(
+            Doubt::Rounding { spectral_radius }
+            | Doubt::OneSide { spectral_radius }
+            | Doubt::LongWay { spectral_radius },
+        ) => Stand::Undecided(Doubt::DeadZone { spectral_radius }),
+        stand => stand,
+    }
+}
+
 /// What the poles of a loop say.
 pub(super) fn found((model, gains): &Model) -> Result<Found, SimError> {
     match model.unstable_radius(*gains) {
@@ -120,6 +133,13 @@ impl Rest {
         controller: &Controller,
     ) -> Result<Stand, SimError> {
         Ok(match self.stand_as_it_is(scenario, plant, controller)? {
+            Stand::Holds => match self.sides.first() {
+                Some(side) if integral::may_not_come_to_rest(controller, side.gains) => {
+                    Stand::Undecided(Doubt::IntegralGain)
+                }
+                _ => Stand::Holds,
+            },
+            stand if self.is_beyond_dead_zone => beyond_dead_zone(stand),
             Stand::Grows { spectral_radius } if self.is_only_commanded => {
                 Stand::Undecided(Doubt::Commanded { spectral_radius })
             }

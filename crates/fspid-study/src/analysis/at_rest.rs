@@ -58,10 +58,20 @@ impl RestGains {
             Self::Kept | Self::Drifting | Self::Unknown => None,
         }
     }
+
+    /// Why nothing is known of the loop at rest where a self-tuner has no gains there.
+    #[must_use]
+    pub fn doubt(&self) -> Option<Doubt> {
+        match self {
+            Self::Kept => Some(Doubt::KeptGains),
+            Self::Drifting => Some(Doubt::DriftingGains),
+            Self::Fixed(_) | Self::Tuned(_) | Self::Unknown => None,
+        }
+    }
 }
 
 /// True for an accumulating law without leakage that moves a gain in flight and does not move it at rest.
-fn keeps_its_gains(controller: &Controller) -> bool {
+pub(super) fn keeps_its_gains(controller: &Controller) -> bool {
     let Controller::SelfTuning(fspid) = controller else {
         return false;
     };
@@ -106,7 +116,8 @@ impl AtRest {
         }
     }
 
-    /// The same of a flight that is lost at a limit, in itself or flown on, of which small motions at rest say nothing.
+    /// The same of a flight that is lost at a limit, in itself or flown on, or to whose end the controller does not act: small
+    /// motions at rest say nothing of it.
     #[must_use]
     pub(crate) fn lost_at_a_limit(self, doubt: Doubt) -> Self {
         Self { undecided: Some(Undecided::at_trim(doubt)), ..self }
@@ -131,6 +142,7 @@ impl AtRest {
             Err(reason) => (GrowthAtRest::default(), Some(reason)),
         };
         let GrowthAtRest { certain: unstable, undecided } = found;
+        let undecided = undecided.or(gains.doubt().map(Undecided::at_trim));
         Self { nominal, gains, unstable, undecided, load: None, not_asked }
     }
 

@@ -12,6 +12,7 @@ use fspid_sim::{
 
 use super::Question;
 use super::answer::{Margins, poor_in_words};
+use super::at_rest::keeps_its_gains;
 use super::equilibrium::{Equilibrium, equilibrium};
 use super::flights::Flights;
 use super::frozen::{Frozen, FrozenGains, FrozenMap, FrozenPoint, FrozenReach};
@@ -90,7 +91,7 @@ impl AnalysedLoop {
             doubt: None,
         };
         let Some(gains) = equilibrium.gains() else {
-            return Ok(none(Absent::GainsDrift));
+            return Ok(none(Absent::Undecided(Doubt::DriftingGains)));
         };
         if question.point == BreakPoint::Rate && controller.config_at(gains).rate_gain_s == 0.0 {
             return Ok(none(Absent::NoRateLoop));
@@ -99,8 +100,11 @@ impl AnalysedLoop {
         for AskedPlant { from_s, plant, is_reached } in asked_plants(scenario)? {
             let Some(plant) = &plant else { continue };
             let mut found = PlantLoop::of(scenario, plant, controller, gains, question.point)?;
-            if !is_reached {
-                found.doubt_instability();
+            if keeps_its_gains(controller) {
+                found.doubt_where(Doubt::KeptGains, |_| true);
+            } else if !is_reached {
+                let is_unstable = |it: &_| matches!(it, Err(Absent::Unstable { .. }));
+                found.doubt_where(Doubt::ChangedAircraft, is_unstable);
             }
             let frozen = Frozen::of(scenario, plant, controller, gains, question)?;
             plants.push(PlantLoop { from_s, frozen, ..found });
@@ -276,12 +280,13 @@ impl PlantLoop {
         Ok(Self { from_s: 0.0, worst, others, margins, frozen: None })
     }
 
-    /// Of a plant that a flight need not come to nothing is unstable for certain.
-    fn doubt_instability(&mut self) {
+    /// What is said of a plant that a flight need not come to, or of gains that it need not have: nothing is unstable for certain,
+    /// or known at all.
+    fn doubt_where(&mut self, doubt: Doubt, is_doubted: fn(&Result<Margins, Absent>) -> bool) {
         let rests = core::iter::once(&mut self.worst).chain(&mut self.others);
         let margins = rests.map(|rest| &mut rest.margins).chain([&mut self.margins]);
-        for margins in margins.filter(|it| matches!(it, Err(Absent::Unstable { .. }))) {
-            *margins = Err(Absent::Undecided(Doubt::ChangedAircraft));
+        for margins in margins.filter(|it| is_doubted(it)) {
+            *margins = Err(Absent::Undecided(doubt));
         }
     }
 
@@ -344,14 +349,13 @@ impl Held {
 }
 
 /// Whether a controller holds each plant at its gains at rest: what [`AnalysedLoop`] says of it, without margins. None
-/// where there are no gains at rest.
+/// where there are no gains at rest, or any may be.
 pub(crate) fn held_at_rest(
     scenario: &Scenario,
     controller: &Controller,
 ) -> Result<Vec<Held>, SimError> {
-    let Some(gains) = equilibrium(controller).gains() else {
-        return Ok(Vec::new());
-    };
+    let at_rest = equilibrium(controller).gains().filter(|_| !keeps_its_gains(controller));
+    let Some(gains) = at_rest else { return Ok(Vec::new()) };
     let plants = asked_plants(scenario)?.into_iter().filter(|it| it.is_reached);
     let plants = plants.filter_map(|it| Some((it.from_s, it.plant?)));
     let held = plants.map(|(from_s, plant)| {

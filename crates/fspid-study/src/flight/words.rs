@@ -39,10 +39,10 @@ impl AtRest {
             RestGains::Unknown => "a program without equations here: its flight is judged; stability at rest, margins and constant loads are not asked".to_owned(),
             RestGains::Tuned(tuned) => format!("gains nominal {nominal}; at rest {}", gains(tuned)),
             RestGains::Kept => format!(
-                "gains nominal {nominal}; at rest those that they have come to (accumulating law without leakage), so that stability at rest is not asked"
+                "gains nominal {nominal}; at rest those that they have come to (accumulating law without leakage)"
             ),
             RestGains::Drifting => format!(
-                "gains nominal {nominal}; at rest they drift without end, so that stability at rest is not asked"
+                "gains nominal {nominal}; at rest they drift without end"
             ),
         })
     }
@@ -99,6 +99,9 @@ impl AtRest {
 /// What a constant load does that is not removed within the flight.
 fn of_load(load: &ConstantLoad, duration_s: f64) -> String {
     let why = match load.has_integral {
+        true if load.is_cut => {
+            "the limits of the integral leave it less than that beside what the end of the flight takes"
+        }
         false => "no integral at rest (ki = 0)",
         true if load.at_end >= load.largest => {
             "the flight is too short to tell what the integral does"

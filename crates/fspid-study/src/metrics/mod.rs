@@ -87,11 +87,6 @@ pub enum Absent {
     /// The controller has no rate loop that could be broken.
     #[error("the controller has no rate loop to break")]
     NoRateLoop,
-    /// The gains move at rest, and nothing stops them.
-    #[error(
-        "the accumulating law moves the gains at rest without end, so that there is no equilibrium; gain_limits, dead_zone or leakage_per_s bound it"
-    )]
-    GainsDrift,
 }
 
 /// What is added of a response that is in its band at the end of its window.

@@ -43,7 +43,7 @@ fn the_accumulating_law_rests_where_leakage_and_rules_balance_or_nowhere() {
     let accumulating = "controller.C.law=\"accumulating\"";
     let drifting = analysed(TUNED, &[accumulating]);
     assert!(matches!(drifting.loops[0].equilibrium, Equilibrium::Drifts { .. }));
-    assert_eq!(drifting.loops[0].margins(), Err(Absent::GainsDrift));
+    assert_eq!(drifting.loops[0].margins(), Err(Absent::Undecided(Doubt::DriftingGains)));
     assert!(!drifting.all_held());
     let leaking = analysed(TUNED, &[accumulating, "controller.C.leakage_per_s=0.5"]);
     let Equilibrium::AtRest(gains) = leaking.loops[0].equilibrium else { panic!("gains at rest") };

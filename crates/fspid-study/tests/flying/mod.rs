@@ -9,6 +9,7 @@ mod configurations;
 mod control_law;
 mod design_gusts;
 mod flown_on;
+mod gains_at_rest;
 mod gallery;
 mod ground;
 mod limits;
@@ -30,9 +31,28 @@ mod wind_table;
 use fspid_scenario::file::{self, Study};
 use fspid_sim::{AircraftPlant, Doubt, Plant, Trace};
 use fspid_study::simulation::{ControllerResult, Simulation};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
 
 /// A quiet flight of the Navion at its reference speed.
 const NAVION: &str = include_str!("../data/navion.toml");
+
+/// Numbers that are the same each time.
+struct Draw(ChaCha8Rng);
+
+impl Draw {
+    fn seeded(seed: u64) -> Self {
+        Self(ChaCha8Rng::seed_from_u64(seed))
+    }
+
+    fn of<T: Copy>(&mut self, values: &[T]) -> T {
+        values[self.0.next_u32() as usize % values.len()]
+    }
+
+    fn between(&mut self, lower: f64, upper: f64) -> f64 {
+        lower + (upper - lower) * f64::from(self.0.next_u32()) / f64::from(u32::MAX)
+    }
+}
 
 /// A scenario with changes, as `--set` has them.
 fn study(text: &str, set: &[&str]) -> Study {

@@ -5,10 +5,9 @@ use fspid_sim::{Controller, EarlyEnd, EndCause};
 use fspid_study::analysis::{Analysis, AtRest, Question, Stability};
 use fspid_study::metrics::Verdict;
 use fspid_study::simulation::Simulation;
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
+use rand_chacha::rand_core::Rng;
 
-use super::study;
+use super::{Draw, study};
 
 /// A loop without limits, flown for a moment; requirements ask the loop and the flight.
 const LOOP: &str = r#"
@@ -38,17 +37,7 @@ most = 1e9
 /// What nobody can tell from eigenvalues is left to the computed verdict.
 const KNOWN: f64 = 1e-7;
 
-struct Draw(ChaCha8Rng);
-
 impl Draw {
-    fn of<T: Copy>(&mut self, values: &[T]) -> T {
-        values[self.0.next_u32() as usize % values.len()]
-    }
-
-    fn between(&mut self, lower: f64, upper: f64) -> f64 {
-        lower + (upper - lower) * f64::from(self.0.next_u32()) / f64::from(u32::MAX)
-    }
-
     /// A plant, a servo and gains; many of them grow slowly.
     fn free(&mut self) -> Vec<String> {
         let plant = self.of(&[
@@ -139,7 +128,7 @@ fn said(set: &[String]) -> [(&'static str, Stability); 5] {
 #[test]
 fn limits_change_nothing_about_stability_at_rest_but_what_they_make_swing_and_everybody_says_the_same()
  {
-    let mut draw = Draw(ChaCha8Rng::seed_from_u64(22));
+    let mut draw = Draw::seeded(22);
     let (mut seen, mut swings) = ([0; 2], 0);
     for _ in 0..120 {
         let free = draw.free();

@@ -1,6 +1,7 @@
 //! Margins of gains that are frozen: those of the map, of numbers and beyond both.
 
 use fspid_scenario::measure::Measure;
+use fspid_sim::Doubt;
 use fspid_study::analysis::{Analysis, Margins, Question};
 use fspid_study::judgement::{Judgement, NotEvaluated};
 use fspid_study::metrics::Absent;
@@ -36,7 +37,7 @@ fn gains_that_drift_at_rest_have_no_margins_but_a_flight() {
         .replace("table = \"mirrored\"", "table = \"printed\"");
     let of = |requirement: &str| one(&text, &format!("{requirement}\ncontroller = \"FSPID\""), &[]);
     let margin = of("measure = \"phase_margin_deg\"\nleast = 0.0");
-    assert_eq!(margin.found, Err(NotEvaluated::Absent(Absent::GainsDrift)));
+    assert_eq!(margin.found, Err(NotEvaluated::Absent(Absent::Undecided(Doubt::DriftingGains))));
     let frozen = of("measure = \"frozen_disk_margin\"\nleast = 0.0");
     assert!(matches!(frozen.found, Err(NotEvaluated::BeyondMap { .. })), "{frozen:?}");
     assert!(of("measure = \"largest_error_deg\"\nmost = 99.0").met);

@@ -403,6 +403,6 @@ fn warn_of_drift(
     report.warn(if leakage > 0.0 {
         format!("{path}: at rest the accumulating law drives {text} every second, less what leaks; without gain_limits only the leakage bounds it")
     } else {
-        format!("{path}: at rest the accumulating law moves {text} every second, without end; gain_limits, dead_zone or leakage_per_s bound it")
+        format!("{path}: at rest the accumulating law moves {text} every second, without end; gain_limits or leakage_per_s bound it")
     });
 }

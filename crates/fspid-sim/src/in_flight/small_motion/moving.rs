@@ -20,7 +20,7 @@ use super::{Asked, Small};
 use crate::autopilot::{Mode, Target};
 use crate::controller::Controller;
 use crate::error::SimError;
-use crate::rest::{Doubt, Found, Rest, Side, Stand, stand_of_sides};
+use crate::rest::{Doubt, Found, Rest, Side, Stand, may_not_come_to_rest, stand_of_sides};
 use crate::stability::MODE_RADIUS;
 
 /// Most combinations of sides of several loops that are asked.
@@ -103,6 +103,9 @@ fn acting_loop<'a>(
     let Controller::SelfTuning(fspid) = &outer.controller else {
         return Some(Acting { number, controller: &outer.controller, gains, rests: Vec::new() });
     };
+    if may_not_come_to_rest(&outer.controller, gains) {
+        return None;
+    }
     let [here, command] = small.held_by(autopilot, number)?;
     let mut targets = vec![here];
     if !mode.moves_target(autopilot, number) {
@@ -113,9 +116,11 @@ fn acting_loop<'a>(
             }
         }
     }
-    let rests =
-        targets.into_iter().map(|target| Rest::of_outer_loop(fspid, gains, [target, command]));
-    let rests = rests.collect::<Option<Vec<Rest>>>()?;
+    let rests = targets.iter().map(|target| Rest::of_outer_loop(fspid, gains, [*target, command]));
+    let mut rests = rests.collect::<Option<Vec<Rest>>>()?;
+    rests.extend(targets.iter().filter_map(|target| {
+        Rest::of_outer_loop_beyond_dead_zone(fspid, gains, [*target, command])
+    }));
     Some(Acting { number, controller: &outer.controller, gains, rests })
 }
 
@@ -174,6 +179,10 @@ fn reach(
 fn of_one_loop(small: &Small<'_>, acting: &Acting<'_>, reach: &Reach) -> Result<Sides, SimError> {
     let mut found: Option<Sides> = None;
     for rest in &acting.rests {
+        let grows = found.as_ref().is_some_and(|it| matches!(it.stand, Stand::Grows { .. }));
+        if rest.is_beyond_dead_zone && grows {
+            continue;
+        }
         let closed: Vec<Vec<Vec<f64>>> =
             rest.sides.iter().map(|side| closed(small, &[(reach, side, acting.gains)])).collect();
         let asked = closed.iter().map(|rows| radius(rows));
@@ -185,7 +194,11 @@ fn of_one_loop(small: &Small<'_>, acting: &Acting<'_>, reach: &Reach) -> Result<
         };
         let found_of: Vec<Found> = asked.iter().map(|(radius, _)| of_radius(*radius)).collect();
         let seen = seen(small, reach, rest);
-        let stand = stand_of_sides(&found_of, Some(|| rest.growth_through(closed, seen)));
+        let stand = match stand_of_sides(&found_of, Some(|| rest.growth_through(closed, seen))) {
+            // Within the dead zone it holds.
+            Stand::Grows { .. } if rest.is_beyond_dead_zone => Sides::undecided().stand,
+            stand => stand,
+        };
         let here = Sides { stand, eigenvalues, largest };
         found = Some(match found {
             Some(before) => before.and(here),

@@ -65,7 +65,7 @@ pub(super) fn require_stability(
         let plant = several.then_some(PlantAt { index, from_s: held.from_s });
         match held.verdict {
             // Not decided by the loop: the flight tells.
-            Ok(()) | Err(Absent::Undecided(Doubt::OneSide { .. })) => {}
+            Ok(()) | Err(Absent::Undecided(Doubt::OneSide { .. } | Doubt::DeadZone { .. })) => {}
             Err(reason) => {
                 let rest = (held.at != RestPoint::TRIM).then_some(held.at);
                 return Err(with_place(reason, CasePlace { plant, rest, ..CasePlace::default() }));
@@ -115,6 +115,7 @@ pub(super) fn cases(
         }
         // What outer loops hold is no pitch loop by itself, whose throttle stays.
         if has_modes && cases.is_empty() && result.at_rest.unstable.is_none() {
+            refuse_doubt(result, |_| true)?;
             return Ok(vec![Case { value: 1.0, place: CasePlace::default() }]);
         }
     }
@@ -128,7 +129,17 @@ pub(super) fn rest_cases(
     requirement: &Requirement,
 ) -> Result<Vec<Case>, NotEvaluated> {
     let rests = loops.iter().flat_map(PlantEvidence::rests);
-    rests.map(|(rest, place)| of_rest(rest, place, requirement)).collect()
+    let cases = rests.map(|(rest, place)| of_rest(rest, place, requirement));
+    let cases: Vec<Result<Case, NotEvaluated>> = cases.collect();
+    if requirement.measure == Measure::Stable {
+        // What grows at one rest is known, whatever is undecided at another.
+        let grows = |case: &&Case| !(case.value >= 1.0);
+        let growing: Vec<Case> = cases.iter().flatten().filter(grows).cloned().collect();
+        if !growing.is_empty() {
+            return Ok(growing);
+        }
+    }
+    cases.into_iter().collect()
 }
 
 /// A flight that diverged is no flight of a stable loop.
@@ -144,8 +155,22 @@ fn diverged(result: &ControllerResult) -> Option<Case> {
 
 /// Refuses a flight of which it is not known whether what is no loop of a plant holds: an aircraft of later, a long mode.
 pub(super) fn require_decided(result: &ControllerResult) -> Result<(), NotEvaluated> {
-    let beyond = result.at_rest.undecided.filter(|it| it.doubt.is_beyond_the_loop());
-    beyond.map_or(Ok(()), |undecided| Err(NotEvaluated::Absent(Absent::Undecided(undecided.doubt))))
+    refuse_doubt(result, Doubt::is_beyond_the_loop)
+}
+
+/// The same of what is proved of all gains that a controller may have.
+pub(super) fn require_decided_but_for_gains(result: &ControllerResult) -> Result<(), NotEvaluated> {
+    refuse_doubt(result, |it| it.is_beyond_the_loop() && !it.is_of_gains_without_rest())
+}
+
+fn refuse_doubt(
+    result: &ControllerResult,
+    is_refused: impl FnOnce(Doubt) -> bool,
+) -> Result<(), NotEvaluated> {
+    match result.at_rest.undecided.map(|it| it.doubt) {
+        Some(doubt) if is_refused(doubt) => Err(NotEvaluated::Absent(Absent::Undecided(doubt))),
+        _ => Ok(()),
+    }
 }
 
 /// An autopilot's mode that grows is part of no loop with a plant.

@@ -115,7 +115,7 @@ impl<'a> Evidence<'a> {
             }
             Family::Airframe => airframe::cases(self.study, requirement),
             Family::Proof => {
-                linear::require_decided(self.result)?;
+                linear::require_decided_but_for_gains(self.result)?;
                 proof::cases(self.study, self.named()?)
             }
         }

@@ -1,0 +1,29 @@
+//! Whether a flight ends with a command that is held because its last sample is not believed.
+
+use fspid_core::Faults;
+
+use crate::controller::Controller;
+use crate::held_limits::last_load_rad;
+use crate::rest::Doubt;
+use crate::scenario::Scenario;
+use crate::signal::Entry;
+use crate::trace::Trace;
+
+/// [`Doubt::HeldByGuard`] where the last sample of a flight is beyond the controller's sample guard, so that its command is held.
+#[must_use]
+pub fn held_by_guard(scenario: &Scenario, controller: &Controller, trace: &Trace) -> Option<Doubt> {
+    let last = |values: &[f64]| values.last().copied().unwrap_or(0.0);
+    let shown = |name: &str| trace.column(name).map(last);
+    let theta_rad = shown("measured_theta_rad")
+        .unwrap_or_else(|| last(&trace.theta_rad) + last_load_rad(scenario, Entry::Measurement));
+    let rate_rad_s = match controller.uses_rate() {
+        true => shown("measured_q_rad_s").unwrap_or_else(|| last(&trace.q_rad_s)),
+        false => 0.0,
+    };
+    let limit_rad = controller.config().guard.limit_rad();
+    let sample = [last(&trace.setpoint_rad), theta_rad, rate_rad_s];
+    // A fault that was latched before says nothing of the last sample.
+    let is_held = trace.faults.contains(Faults::IMPLAUSIBLE)
+        && sample.iter().any(|value| value.abs() > limit_rad);
+    is_held.then_some(Doubt::HeldByGuard)
+}
