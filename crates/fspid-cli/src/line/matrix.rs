@@ -133,7 +133,13 @@ fn no_output_of_any_command_is_written_over_an_input_or_another_output() {
             |is_kind: fn(&Arg) -> bool| command.get_arguments().filter(move |it| is_kind(it));
         let others: Vec<&Arg> = ours(is_read).chain(ours(is_written)).collect();
         for output in ours(is_written) {
-            for other in others.iter().filter(|other| other.get_id() != output.get_id()) {
+            // Two that no line has together are no two files.
+            let never_beside = command.get_arg_conflicts_with(output);
+            let beside = |other: &&&Arg| {
+                let is_other = |it: &Arg| it.get_id() == other.get_id();
+                !is_other(output) && !never_beside.iter().any(|it| is_other(it))
+            };
+            for other in others.iter().filter(beside) {
                 let told = refused(&command, [output, other]);
                 assert_eq!(told, Ok(()), "{path}: {} over {}", name(output), name(other));
                 asked += 1;
