@@ -146,14 +146,12 @@ impl Scenario {
         })
     }
 
-    /// When disturbances begin to push the loop, jump or bend, s, ascending. Noise pushes nowhere, and neither does what is of
-    /// no size.
+    /// When disturbances begin to push the loop, s, ascending. Noise pushes nowhere, and neither does what is of no size.
     #[must_use]
     pub fn pushes_s(&self) -> Vec<f64> {
         let pushes = |it: &&Disturbance| !it.is_noise() && it.part().0 != 0.0;
         let pushing = self.disturbances.iter().filter(pushes);
-        let mut pushes_s: Vec<f64> =
-            pushing.flat_map(|it| it.part().1.breaks_of_flight(self.timing)).collect();
+        let mut pushes_s: Vec<f64> = pushing.map(Disturbance::starts_s).collect();
         pushes_s.sort_by(f64::total_cmp);
         pushes_s
     }

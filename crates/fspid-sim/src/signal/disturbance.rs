@@ -54,6 +54,12 @@ impl Disturbance {
         self.entry
     }
 
+    /// When it begins, s.
+    #[must_use]
+    pub fn starts_s(&self) -> f64 {
+        self.shape.starts_s()
+    }
+
     /// True for noise, which never stands still.
     #[must_use]
     pub fn is_noise(&self) -> bool {

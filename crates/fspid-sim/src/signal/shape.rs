@@ -89,6 +89,20 @@ impl Shape {
         Ok(self)
     }
 
+    /// Before this there is nothing, s.
+    #[must_use]
+    pub fn starts_s(&self) -> f64 {
+        match *self {
+            Self::Step { at_s }
+            | Self::Pulse { at_s, .. }
+            | Self::Doublet { at_s, .. }
+            | Self::Square { at_s, .. }
+            | Self::Ramp { at_s, .. }
+            | Self::Sine { at_s, .. }
+            | Self::Noise { at_s, .. } => at_s,
+        }
+    }
+
     /// True for what moves for ever: what else there is keeps its value from some time on.
     pub(crate) fn goes_on(&self) -> bool {
         matches!(self, Self::Square { .. } | Self::Sine { .. } | Self::Noise { .. })
@@ -143,18 +157,6 @@ impl Shape {
                 vec![at_s, at_s + width_s]
             }
             Self::Doublet { at_s, width_s } => vec![at_s, at_s + width_s, at_s + 2.0 * width_s],
-        }
-    }
-
-    /// The same within a flight, those of a square all of them.
-    pub(crate) fn breaks_of_flight(&self, timing: Timing) -> Vec<f64> {
-        match *self {
-            // A period below the sample period could not be seen; one change a sample is most.
-            Self::Square { at_s, half_period_s, .. } => (0..timing.rows())
-                .map(|half| at_s + half as f64 * half_period_s)
-                .take_while(|time_s| *time_s <= timing.end_s())
-                .collect(),
-            _ => self.breaks(),
         }
     }
 

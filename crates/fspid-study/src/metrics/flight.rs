@@ -6,12 +6,11 @@ use fspid_sim::signal::Edge;
 use fspid_sim::stability::Unstable;
 use fspid_sim::{EarlyEnd, Exit, Outcome, Timing, Trace};
 
-use super::edge::{EdgeMetrics, edge_metrics};
 use super::{
-    Absent, CommandEffort, ErrorIntegrals, Measured, Metric, StepMetrics, largest_error_rad,
-    left_validity, too_late,
+    Absent, CommandEffort, ErrorIntegrals, Measured, Metric, StepMetrics, StepWindow,
+    largest_error_rad, left_validity,
 };
-use fspid_diagnostics::digits::{to_digits, to_six_decimals};
+use fspid_diagnostics::digits::to_digits;
 use fspid_scenario::measure::Measure;
 
 /// What a flight comes to, in one word.
@@ -25,8 +24,6 @@ pub enum Verdict {
         window_s: f64,
         /// From when on it was in its band after all, too late to be seen to stay there, s after the step.
         since_s: Option<f64>,
-        /// When a disturbance began, s, before which it should have settled: what came after is not the step's own.
-        disturbed_from_s: Option<f64>,
     },
     /// There was no step to settle.
     Flown,
@@ -102,11 +99,7 @@ impl fmt::Display for Verdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Settled => f.write_str("settled"),
-            Self::NotSettled { since_s, disturbed_from_s: Some(from_s), .. } => {
-                let (from_s, late) = (to_six_decimals(*from_s), too_late(*since_s));
-                write!(f, "not settled before the disturbance at {from_s} s{late}")
-            }
-            Self::NotSettled { window_s, since_s, disturbed_from_s: None } => {
+            Self::NotSettled { window_s, since_s } => {
                 Absent::NotSettled { window_s: *window_s, since_s: *since_s }.fmt(f)
             }
             Self::Flown => f.write_str("flown"),
@@ -124,6 +117,23 @@ impl fmt::Display for Verdict {
             Self::LeftRange(exit) => f.write_str(&left_validity(exit)),
         }
     }
+}
+
+/// The measures of one step of the command.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EdgeMetrics {
+    /// Time of the step, s.
+    pub at_s: f64,
+    /// Set-point before, rad.
+    pub from_rad: f64,
+    /// Set-point after, rad.
+    pub to_rad: f64,
+    /// Time from the step to the last sample before the next one, s.
+    pub window_s: f64,
+    /// Measures up to the next step.
+    pub step: StepMetrics,
+    /// When a disturbance first begins within that time or with the step, s: the measures are those of both.
+    pub disturbed_from_s: Option<f64>,
 }
 
 /// The measures of one controller's flight.
@@ -246,9 +256,55 @@ fn moves_away(trace: &Trace, edge: &Edge, lost: bool, quiet: usize) -> bool {
     first.is_some_and(|(sample, way)| way < 0.0 && sample < quiet) && (lost || ends_away)
 }
 
+fn edge_metrics(
+    trace: &Trace,
+    edges: &[Edge],
+    timing: Timing,
+    absence: Option<Absent>,
+    pushes_s: &[f64],
+) -> Vec<EdgeMetrics> {
+    // A step at the very last sample has no response to measure.
+    let edges: Vec<&Edge> = edges.iter().filter(|edge| edge.sample + 1 < timing.rows()).collect();
+    let ends = edges.iter().skip(1).map(|edge| edge.sample).chain([timing.rows()]);
+    edges
+        .iter()
+        .zip(ends)
+        .map(|(edge, end)| {
+            let window = edge.sample..end.min(trace.rows());
+            let last = edge.sample + window.len().saturating_sub(1);
+            let window_s = timing.time_s(last) - timing.time_s(edge.sample);
+            let step =
+                match (absence, trace.time_s.get(window.clone()), trace.theta_rad.get(window)) {
+                    (None, Some(time_s), Some(response)) => {
+                        let (from, to) = (edge.from_rad, edge.to_rad);
+                        StepMetrics::of(StepWindow { time_s, response, from, to })
+                    }
+                    (Some(reason), ..) => StepMetrics::absent(reason),
+                    _ => StepMetrics::absent(Absent::NoStep),
+                };
+            let at_s = timing.time_s(edge.sample);
+            let within = |push_s: &&f64| {
+                let sample = timing.first_sample_at(**push_s);
+                edge.sample <= sample && sample + 1 < end
+            };
+            let disturbed_from_s = pushes_s.iter().find(within).copied();
+            let (from_rad, to_rad) = (edge.from_rad, edge.to_rad);
+            EdgeMetrics { at_s, from_rad, to_rad, window_s, step, disturbed_from_s }
+        })
+        .collect()
+}
+
 fn verdict(edges: &[EdgeMetrics]) -> Verdict {
     if edges.is_empty() {
         return Verdict::Flown;
     }
-    edges.iter().find_map(EdgeMetrics::not_settled).unwrap_or(Verdict::Settled)
+    edges
+        .iter()
+        .find_map(|edge| match edge.step.settling_time_s {
+            Err(Absent::NotSettled { window_s, since_s }) => {
+                Some(Verdict::NotSettled { window_s, since_s })
+            }
+            _ => None,
+        })
+        .unwrap_or(Verdict::Settled)
 }

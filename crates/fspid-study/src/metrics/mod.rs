@@ -1,6 +1,5 @@
 //! What a flight amounts to: measures of a response, each a value or the reason there is none.
 
-mod edge;
 mod effort;
 mod exit;
 mod extreme;
@@ -8,15 +7,14 @@ mod flight;
 mod metric;
 mod step;
 
-pub use edge::EdgeMetrics;
 pub use effort::{CommandEffort, ErrorIntegrals, largest_error_rad};
 pub use exit::{LEFT_RANGE, left_validity};
-pub use flight::{FlightMetrics, Verdict};
+pub use flight::{EdgeMetrics, FlightMetrics, Verdict};
 pub use metric::{Bad, METRICS, Metric};
 pub(crate) use step::{SETTLING_BAND, is_seen_to_stay};
 pub use step::{StepMetrics, StepWindow};
 
-use fspid_diagnostics::digits::{to_digits, to_six_decimals};
+use fspid_diagnostics::digits::to_six_decimals;
 use fspid_sim::{Doubt, EarlyEnd};
 
 /// Why a measure has no value.
@@ -48,18 +46,6 @@ pub enum Absent {
         window_s: f64,
         /// From when on it was in the band after all, s after the step.
         since_s: Option<f64>,
-    },
-    /// A disturbance began before the response was there by itself.
-    #[error("at {} s, when a disturbance begins or changes, the step {}", to_six_decimals(*from_s), how_far(*way_pct, *since_s))]
-    Disturbed {
-        /// When it begins or changes, s.
-        from_s: f64,
-        /// How far the response had come by then, % of the way.
-        way_pct: f64,
-        /// From when on it was in its band by then, too late to be seen to stay there, s after the step.
-        since_s: Option<f64>,
-        /// Length of the window, s.
-        window_s: f64,
     },
     /// Only an external controller itself knows, and might say it wrongly.
     #[error("the limits of an external controller are not known here")]
@@ -97,14 +83,3 @@ fn too_late(since_s: Option<f64>) -> String {
 
 /// A measure, or why there is none.
 pub type Measured = Result<f64, Absent>;
-
-/// Where a step is that has not settled by itself.
-fn how_far(way_pct: f64, since_s: Option<f64>) -> String {
-    match since_s {
-        Some(since_s) => {
-            let since_s = to_digits(since_s, 4);
-            format!("is in its band since {since_s} s after it, too late to see it stay")
-        }
-        None => format!("is {} % of the way", to_digits(way_pct, 3)),
-    }
-}

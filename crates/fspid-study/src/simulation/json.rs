@@ -86,12 +86,12 @@ fn outcome(verdict: Verdict) -> Value {
     let kind = verdict.kind();
     match verdict {
         Verdict::Settled | Verdict::Flown => json!({ "kind": kind }),
-        Verdict::NotSettled { window_s, since_s, disturbed_from_s } => present(json!({
-            "kind": kind,
-            "window_s": finite(window_s),
-            "since_s": since_s.map(finite),
-            "disturbed_from_s": disturbed_from_s.map(finite),
-        })),
+        Verdict::NotSettled { window_s, since_s: None } => {
+            json!({ "kind": kind, "window_s": finite(window_s) })
+        }
+        Verdict::NotSettled { window_s, since_s: Some(since_s) } => {
+            json!({ "kind": kind, "window_s": finite(window_s), "since_s": finite(since_s) })
+        }
         Verdict::EndedEarly(end) => present(json!({
             "kind": kind,
             "at_s": finite(end.at_s),

@@ -2,7 +2,6 @@
 #![allow(clippy::float_cmp, reason = "the same bits are asked for")]
 
 mod answers;
-mod before_a_load;
 mod frozen;
 mod intervals;
 mod judging;

@@ -213,9 +213,7 @@ fn counted(found: Measured) -> Option<f64> {
     match found {
         Ok(value) => Some(value),
         Err(Absent::NoStep) => None,
-        Err(Absent::NotSettled { window_s, .. } | Absent::Disturbed { window_s, .. }) => {
-            Some(window_s)
-        }
+        Err(Absent::NotSettled { window_s, .. }) => Some(window_s),
         Err(_) => Some(f64::INFINITY),
     }
 }

@@ -145,8 +145,6 @@ impl Flown<'_> {
                 // What has not come there has not gone beyond it either.
                 Measure::Overshoot => {
                     edge.step.rise_time_s?;
-                    // Nor has what a disturbance holds back, or pushes on, before it was there by itself.
-                    edge.unsettled.map_or(Ok(()), Err)?;
                     self.peaked(case, edge, requirement.most)
                 }
                 Measure::FinalError => self.left_pct(case, edge, requirement),
