@@ -197,7 +197,7 @@ impl Draws {
 
     /// A part of a whole, as a share, with the interval of a ratio: all shares that the scatter of both does not exclude.
     ///
-    /// $$ \{ \theta : (a - \theta b)^2 \le t^2 (s_{aa} - 2 \theta s_{ab} + \theta^2 s_{bb}) \} $$
+    /// $$ (a - \theta b)^2 \le t^2 (s_{aa} - 2 \theta s_{ab} + \theta^2 s_{bb}) $$
     ///
     /// Where the whole may be 0 these have no end, and there is no interval. What scatters about a share is skewed the more the
     /// smaller the whole is, so that an interval that is as long on both sides is too short on one.
