@@ -177,7 +177,7 @@ pub(super) fn files_chapter(files: &[CertificateFile], subject: Subject<'_>) -> 
     let checks: Vec<String> = files.iter().map(check).collect();
     let written = match subject.folder {
         Some(_) => "They were written beside this page",
-        None => "`--out DIR` in the same command writes them",
+        None => "--out DIR in the same command writes them",
     };
     let sets: String =
         subject.study.overrides.iter().map(|it| format!(" --set {}", shell::word(it))).collect();
