@@ -210,8 +210,9 @@ kd = 0.15
     fn said(export: &Export) -> Vec<(String, String)> {
         let plain = |bytes: &[u8]| {
             let text = String::from_utf8_lossy(bytes).into_owned();
-            let words =
-                text.split_whitespace().filter(|word| !["*", "//", "--", "//!"].contains(word));
+            let words = text
+                .split_whitespace()
+                .filter(|word| !["*", "//", "--", "//!", "(*", "*)"].contains(word));
             words.collect::<Vec<_>>().join(" ")
         };
         export.files.iter().map(|file| (file.name.clone(), plain(&file.bytes))).collect()

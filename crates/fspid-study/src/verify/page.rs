@@ -29,7 +29,7 @@ impl Verification {
     /// The answer of `verify --report`: one HTML file without any outside reference, with the words of the text.
     #[must_use]
     pub fn page(&self) -> String {
-        let name = &self.study.scenario.name;
+        let name = visible(&self.study.scenario.name);
         let mut chapters = vec![self.tables(), self.flights()];
         chapters.push(chapter("asked", "What is asked", self.asked()));
         let notes = self.notes();
@@ -37,10 +37,10 @@ impl Verification {
         chapters.push(self.again());
         AnalysisPage {
             title: format!("{name}: requirements"),
-            heading: name.clone(),
+            heading: name,
             lead: LEAD.to_owned(),
             verdicts: vec![self.card()],
-            warnings: self.study.warnings.clone(),
+            warnings: self.study.warnings.iter().map(|it| visible(it)).collect(),
             chapters,
             provenance: Provenance {
                 command: self.command(),

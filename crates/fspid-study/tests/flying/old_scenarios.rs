@@ -15,6 +15,10 @@ use serde_json::Value;
 const OTHERWISE: [(&str, &str, &str); 2] =
     [("every-key", "fspid isa", "unstable at rest"), ("figure-5", "FSPID", "unstable at rest")];
 
+/// Steps that came into their band less than a tenth of that time before their window ends, and have no time to settle since:
+/// file, controller, and how many numbers that are.
+const TOO_LATE: [(&str, &str, usize); 1] = [("square-literal", "FSPID", 2)];
+
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/of_0_1")
 }
@@ -82,6 +86,17 @@ fn scenarios_of_the_first_version_fly_and_have_the_answers_of_its_program_to_the
             }
             let mut found = Vec::new();
             differences(was, is, &format!("{name}: {}", was["name"]), &mut found);
+            let is_late = |it: &String| {
+                ["settling_time_s: null", "transient_time_s: null"]
+                    .iter()
+                    .any(|end| it.contains(end))
+            };
+            if let Some((.., late)) =
+                TOO_LATE.iter().find(|row| row.0 == name && was["name"] == row.1)
+            {
+                assert_eq!(found.iter().filter(|it| is_late(it)).count(), *late, "{found:?}");
+                found.retain(|it| !is_late(it));
+            }
             assert!(found.is_empty(), "{}", found.join("\n"));
         }
         assert_eq!(old["schema"], new["schema"], "{name}");
