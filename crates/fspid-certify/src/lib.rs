@@ -47,6 +47,7 @@ mod tests;
 mod text;
 mod told;
 
+use fspid_diagnostics::digits::to_six_decimals;
 use fspid_proof::{
     Asked, Certificate, LeftOut, LoopDescription, NotProvable, Outcome, Unbounded, Verdict,
     bound_disturbances, certify, ways_of,
@@ -136,7 +137,7 @@ impl Certified {
 fn later(from_s: f64) -> String {
     match from_s {
         0.0 => String::new(),
-        from_s => format!("-from-{}-s", fspid_diagnostics::digits::to_six_decimals(from_s)),
+        from_s => format!("-from-{}-s", to_six_decimals(from_s)),
     }
 }
 

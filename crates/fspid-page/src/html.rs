@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 
 use minijinja::syntax::SyntaxConfig;
 use minijinja::value::Value;
-use minijinja::{AutoEscape, Environment, UndefinedBehavior};
+use minijinja::{AutoEscape, Environment, UndefinedBehavior, escape_formatter};
 
 /// The values that a template is filled with, by name; anything that can be serialised.
 #[macro_export]
@@ -76,6 +76,15 @@ fn environment(texts: &'static [(&'static str, &'static str)]) -> Environment<'s
     let mut environment = Environment::new();
     environment.set_auto_escape_callback(|_| AutoEscape::Html);
     environment.set_undefined_behavior(UndefinedBehavior::Strict);
+    environment.set_formatter(|out, state, value| match value.as_str() {
+        Some(text) if text.contains(is_unwritable) => {
+            let text = text.replace(is_unwritable, "\u{fffd}");
+            let text =
+                if value.is_safe() { Value::from_safe_string(text) } else { Value::from(text) };
+            escape_formatter(out, state, &text)
+        }
+        _ => escape_formatter(out, state, value),
+    });
     // White space around tags only matters to those who read the source.
     let mut syntax = SyntaxConfig::builder();
     if let Ok(syntax) = syntax.trim_blocks(true).lstrip_blocks(true).build() {
@@ -88,6 +97,11 @@ fn environment(texts: &'static [(&'static str, &'static str)]) -> Environment<'s
         let _ = environment.add_template(name, text);
     }
     environment
+}
+
+/// True for a control character: no page may hold one, whoever named a scenario by it.
+fn is_unwritable(c: char) -> bool {
+    c.is_control() && !matches!(c, '\n' | '\t')
 }
 
 /// A template of every page, filled.
@@ -118,5 +132,13 @@ mod tests {
     #[test]
     fn every_template_can_be_read() {
         assert_eq!(OWN.problems(), Vec::<String>::new());
+    }
+
+    #[test]
+    fn no_text_brings_a_control_character_into_a_page() {
+        const TEXTS: &[(&str, &str)] = &[("own", "{{ text }}|{{ markup|safe }}")];
+        let text = "a\u{1}\u{1b}[31m<b>\u{85}\n\tc";
+        let page = Templates::new(TEXTS).render("own", context! { text, markup => "<i>\u{7}</i>" });
+        assert_eq!(page, "a\u{fffd}\u{fffd}[31m&lt;b&gt;\u{fffd}\n\tc|<i>\u{fffd}</i>");
     }
 }

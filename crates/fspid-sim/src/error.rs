@@ -179,14 +179,6 @@ impl fmt::Display for SimError {
             Self::NotStrictlyProper => f.write_str(
                 "the transfer function has a numerator as long as its denominator, so the pitch angle would jump with the elevator; allowed is a numerator of lower degree",
             ),
-            Self::OrderChanges { before, after } => write!(
-                f,
-                "the plant changes from order {before} to order {after}; allowed is a denominator of the same length"
-            ),
-            Self::RampWithoutEffect { at_s } => write!(
-                f,
-                "the elevator moves the two plants in opposite senses, and nothing in between, at {at_s:.3} s; allowed is a ramp between plants of one sense, or a change at once"
-            ),
             Self::Table { problem, row } => write!(f, "set-point table, row {row}: {problem}"),
             Self::ParameterCount { kind, found, allowed } => {
                 write!(f, "{kind} has {allowed} parameters; {found} were given")
@@ -233,6 +225,14 @@ impl SimError {
     /// every other error.
     fn fmt_of_flights(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::OrderChanges { before, after } => write!(
+                f,
+                "the plant changes from order {before} to order {after}; allowed is a denominator of the same length"
+            ),
+            Self::RampWithoutEffect { at_s } => write!(
+                f,
+                "the elevator moves the two plants in opposite senses, and nothing in between, at {at_s:.3} s; allowed is a ramp between plants of one sense, or a change at once"
+            ),
             Self::LeavesTrim { mode, at_s, how } => write!(
                 f,
                 "begun at its trim in mode {} of the autopilot, in still air, the aircraft {how} at t = {at_s} s: too soon for small motions about the trim, of which the poles would be; allowed is an aircraft that its loops or a shorter sample period hold there",

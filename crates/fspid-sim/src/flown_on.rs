@@ -32,6 +32,8 @@ const GROWN_IN_NOISE: f64 = 2.0;
 const ALIKE: f64 = 1e-3;
 /// So many steps of a sensor's resolution are a swing that it makes by itself: about a place between two of them.
 const UNSEEN: f64 = 2.0;
+/// Under noise an error that moves in the last two fifths by no more than this share of all its movement has come to an end.
+const QUIET: f64 = 0.2;
 /// A flight that has shown so many periods of what swings has shown which limits are met.
 const PERIODS: f64 = 2.0;
 /// A limit of rate is met a thousandth before it, for rounding.
@@ -254,31 +256,28 @@ fn pieces_of<'a>(scenario: &Scenario, ends: &'a Ends, trace: &Trace) -> Pieces<'
     pieces
 }
 
-/// True where the flight itself has come to rest; or where something moves it for ever, it has shown that without limits.
+/// True where the flight itself has come to rest; or where something moves it for ever, what it does, without limits, once its
+/// beginning has died out.
 fn has_come_to_rest(scenario: &Scenario, pieces: &Pieces<'_>) -> bool {
-    let whole = pieces.whole();
-    match Moved::of(scenario) {
-        // Of a few samples nothing is said.
-        Moved::Nothing => pieces.length >= LEAST_FIFTH && pieces.is_at_rest(pieces.tail()),
-        Moved::BySwings => {
-            has_shown_its_swings(scenario)
-                && (!whole.meets || (!pieces.tail().meets && pieces.repeats()))
+    let (whole, tail) = (pieces.whole(), pieces.tail());
+    let has_ended = match Moved::of(scenario) {
+        Moved::Nothing => pieces.is_at_rest(tail),
+        Moved::BySwings => !tail.meets && pieces.repeats() && has_shown_its_swings(scenario),
+        Moved::ByNoise => {
+            let is_quiet = tail.size_rad() <= QUIET * whole.size_rad();
+            !whole.meets && is_quiet && has_shown_its_swings(scenario)
         }
-        Moved::ByNoise => !whole.meets && has_shown_its_swings(scenario),
-    }
+    };
+    // Of a few samples nothing is said.
+    pieces.length >= LEAST_FIFTH && has_ended
 }
 
 /// True where a flight holds some periods of everything that swings.
 fn has_shown_its_swings(scenario: &Scenario) -> bool {
     let end_s = scenario.timing.end_s();
-    let periods = scenario
-        .disturbances
-        .iter()
-        .filter_map(Disturbance::period_s)
-        .chain(scenario.setpoint.period_s());
-    periods
-        .into_iter()
-        .all(|(from_s, period_s)| from_s > end_s || from_s + PERIODS * period_s <= end_s)
+    let of_disturbances = scenario.disturbances.iter().filter_map(Disturbance::period_s);
+    let mut periods = of_disturbances.chain(scenario.setpoint.period_s());
+    periods.all(|(from_s, period_s)| from_s > end_s || from_s + PERIODS * period_s <= end_s)
 }
 
 fn flies_on_and_is_lost(

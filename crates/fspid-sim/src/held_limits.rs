@@ -7,23 +7,16 @@
 use fspid_aircraft::ForceModel;
 use fspid_core::{AntiWindup, Gains, Limits};
 
-use crate::closed_loop::simulate;
 use crate::controller::Controller;
-use crate::flown_on;
 use crate::integral_limits::HeldIntegral;
 use crate::plant::LinearPlant;
-use crate::rest::{Doubt, RestPoint, pitches_without_integral};
-use crate::sample_guard::held_by_guard;
-use crate::scenario::{NamedController, Scenario};
+use crate::rest::{RestPoint, pitches_without_integral};
+use crate::scenario::Scenario;
 use crate::signal::Entry;
-use crate::trace::Trace;
 
 /// A pole this far to the left, as a share of one and its size, comes to rest by itself; one nearer the axis may be on it but
 /// for rounding.
 const AT_REST: f64 = 1e-6;
-/// Fewest samples of a last tenth of which something is said.
-const LEAST_TAIL: usize = 10;
-
 /// True where set-point and loads of the last sample, held on, take more than the limits of controller, servo or elevator of a
 /// plant that does not come to rest by itself and stays to the end; of a nonlinear aircraft its linear model at the last of its
 /// trims, with the travel of its own elevator. Outer loops command another set-point: with them it is asked of plants alone
@@ -98,7 +91,7 @@ pub(crate) enum Moves {
 }
 
 impl Moves {
-    fn of(plant: &LinearPlant) -> Self {
+    pub(crate) fn of(plant: &LinearPlant) -> Self {
         if has_pole_from(plant, AT_REST) {
             Self::Away
         } else if moves_by_itself(plant) {
@@ -196,48 +189,6 @@ pub(crate) fn last_load_rad(scenario: &Scenario, entry: Entry) -> f64 {
     let held = scenario.disturbances.iter().filter(|it| it.entry() == entry && it.stands_still());
     held.for_each(|it| it.add_to(&mut values, timing, 0));
     values.last().copied().unwrap_or(0.0)
-}
-
-/// Why nothing at rest speaks of a flight: [`Doubt::RunsAway`] where that of a plant that does not come to rest by itself ends at
-/// a limit of controller or servo with an error that grows, through the last tenth of it, at every sample; and
-/// [`Doubt::SwingAtLimits`] where that of a linear plant, flown on, meets limits in a swing that does not shrink, or is lost.
-#[must_use]
-pub fn lost_at_a_limit(
-    scenario: &Scenario,
-    controller: &Controller,
-    trace: &Trace,
-) -> Option<Doubt> {
-    let moves = || last_plant(scenario).map(|plant| Moves::of(&plant));
-    if runs_away(scenario, controller, trace) && moves().is_some_and(|it| it != Moves::Back) {
-        return Some(Doubt::RunsAway);
-    }
-    flown_on::is_lost(scenario, controller, trace, moves).then_some(Doubt::SwingAtLimits)
-}
-
-/// What the flight of one of a scenario's controllers shows of [`lost_at_a_limit`] and [`held_by_guard`], for who has not flown
-/// it; none where it cannot be flown.
-#[must_use]
-pub fn lost_when_flown(scenario: &Scenario, named: &NamedController) -> Option<Doubt> {
-    let alone =
-        Scenario { controllers: vec![named.clone()], externals: Vec::new(), ..scenario.clone() };
-    let trace = simulate(&alone).ok()?.traces.pop()?;
-    held_by_guard(&alone, &named.controller, &trace)
-        .or_else(|| lost_at_a_limit(&alone, &named.controller, &trace))
-}
-
-/// True where each sample of the last tenth is at a limit, and further off than the one before.
-fn runs_away(scenario: &Scenario, controller: &Controller, trace: &Trace) -> bool {
-    let rows = trace.rows();
-    let tail = rows / 10;
-    let ends = Ends::of(scenario, controller);
-    let is_cut = |command_rad: &f64| ends.are_met(*command_rad, 0.0);
-    if tail < LEAST_TAIL || !trace.command_rad.last().is_some_and(is_cut) {
-        return false;
-    }
-    let errors: Vec<f64> =
-        trace.setpoint_rad.iter().zip(&trace.theta_rad).map(|(r, y)| (r - y).abs()).collect();
-    let grows = errors.iter().skip(rows - tail).is_sorted_by(|one, next| one < next);
-    grows && trace.command_rad.iter().rev().take(tail).all(is_cut)
 }
 
 /// What limits a command and what moves the elevator.

@@ -28,6 +28,7 @@ pub mod describing;
 mod error;
 pub mod external;
 pub mod external_plant;
+mod flight_doubt;
 pub mod flight_stack;
 pub mod flown;
 mod flown_on;

@@ -4,14 +4,16 @@ use fspid_core::Faults;
 
 use crate::controller::Controller;
 use crate::held_limits::last_load_rad;
-use crate::rest::Doubt;
 use crate::scenario::Scenario;
 use crate::signal::Entry;
 use crate::trace::Trace;
 
-/// [`Doubt::HeldByGuard`] where the last sample of a flight is beyond the controller's sample guard, so that its command is held.
-#[must_use]
-pub fn held_by_guard(scenario: &Scenario, controller: &Controller, trace: &Trace) -> Option<Doubt> {
+/// True where the last sample of a flight is beyond the controller's sample guard, so that its command is held.
+pub(crate) fn holds_the_command(
+    scenario: &Scenario,
+    controller: &Controller,
+    trace: &Trace,
+) -> bool {
     let last = |values: &[f64]| values.last().copied().unwrap_or(0.0);
     let shown = |name: &str| trace.column(name).map(last);
     let theta_rad = shown("measured_theta_rad")
@@ -23,7 +25,5 @@ pub fn held_by_guard(scenario: &Scenario, controller: &Controller, trace: &Trace
     let limit_rad = controller.config().guard.limit_rad();
     let sample = [last(&trace.setpoint_rad), theta_rad, rate_rad_s];
     // A fault that was latched before says nothing of the last sample.
-    let is_held = trace.faults.contains(Faults::IMPLAUSIBLE)
-        && sample.iter().any(|value| value.abs() > limit_rad);
-    is_held.then_some(Doubt::HeldByGuard)
+    trace.faults.contains(Faults::IMPLAUSIBLE) && sample.iter().any(|value| value.abs() > limit_rad)
 }

@@ -20,8 +20,7 @@ use crate::plant::LinearPlant;
 use crate::rest::{Doubt, Rest, RestPoint, Stand};
 use crate::scenario::Scenario;
 
-pub use crate::held_limits::{lost_at_a_limit, lost_when_flown};
-pub use crate::sample_guard::held_by_guard;
+pub use crate::flight_doubt::{doubt_of_flight, doubt_when_flown};
 
 /// A radius this close below 1 cannot be told from 1 after rounding; it counts as unstable.
 const MARGIN: f64 = 1e-9;

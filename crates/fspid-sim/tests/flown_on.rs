@@ -2,7 +2,7 @@
 
 use fspid_core::{ControllerSetting, Gains, Limits, Pid, PidConfig};
 use fspid_sim::signal::{Disturbance, Entry, Profile, Shape};
-use fspid_sim::stability::{growth_at_rest, lost_at_a_limit};
+use fspid_sim::stability::{doubt_of_flight, growth_at_rest};
 use fspid_sim::{
     Actuator, Controller, ElevatorSign, LinearPlant, NamedController, Outcome, PlantChange,
     Scenario, Surroundings, Timing, Trace, simulate,
@@ -48,7 +48,7 @@ fn flown(scenario: &Scenario, duration_s: f64) -> Trace {
 
 fn is_lost(scenario: &Scenario) -> bool {
     let trace = flown(scenario, scenario.timing.end_s());
-    lost_at_a_limit(scenario, &scenario.controllers[0].controller, &trace).is_some()
+    doubt_of_flight(scenario, &scenario.controllers[0].controller, &trace).is_some()
 }
 
 fn holds_at_rest(scenario: &Scenario) -> bool {
@@ -115,7 +115,7 @@ fn of_drawn_loops_whose_short_flight_is_clean_none_diverges_in_300_s() {
             continue;
         }
         let is_lost =
-            lost_at_a_limit(&scenario, &scenario.controllers[0].controller, &trace).is_some();
+            doubt_of_flight(&scenario, &scenario.controllers[0].controller, &trace).is_some();
         let diverges = flown(&scenario, 300.0).outcome != Outcome::Completed;
         assert!(is_lost || !diverges, "{number}: {scenario:?}");
         clean += usize::from(!is_lost);

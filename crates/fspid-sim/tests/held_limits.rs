@@ -7,7 +7,7 @@ use fspid_core::{
 use fspid_fuzzy::{Defuzzifier, OutOfRange, Supervisor};
 use fspid_sim::sensor::{Sensor, SensorModel};
 use fspid_sim::signal::{Disturbance, Entry, Profile, Shape};
-use fspid_sim::stability::{growth_at_rest, lost_at_a_limit};
+use fspid_sim::stability::{doubt_of_flight, growth_at_rest};
 use fspid_sim::{
     Actuator, Controller, Doubt, ElevatorSign, LinearPlant, NamedController, PlantChange, Scenario,
     Surroundings, Timing, Trace, simulate,
@@ -317,7 +317,7 @@ fn lost(change: impl FnOnce(&mut Scenario), samples: impl Fn(usize) -> (f64, f64
         (trace.theta_rad[k], trace.command_rad[k]) = samples(k);
     }
     let controller = &scenario.controllers[0].controller;
-    lost_at_a_limit(&scenario, controller, &trace).is_some()
+    doubt_of_flight(&scenario, controller, &trace).is_some()
 }
 
 #[test]
@@ -360,7 +360,7 @@ fn a_flight_is_lost_that_ends_at_a_limit_with_an_error_that_grows() {
         for k in 0..trace.rows() {
             (trace.theta_rad[k], trace.command_rad[k]) = (grows(k), 1.0);
         }
-        lost_at_a_limit(&scenario, &scenario.controllers[0].controller, &trace).is_some()
+        doubt_of_flight(&scenario, &scenario.controllers[0].controller, &trace).is_some()
     };
     assert!(!short(99) && short(100));
 }

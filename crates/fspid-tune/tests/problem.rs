@@ -306,6 +306,24 @@ fn a_candidate_that_keeps_a_constant_load_is_refused_unless_the_file_ignores_loa
     assert_eq!(asked.scores(std::slice::from_ref(&well)), ignored.scores(&[well]));
 }
 
+/// A design of a quarter of each range, which is read again with the numbers that were found.
+fn design_with_its_numbers(source: &Source) -> String {
+    let problem = TuningProblem::new(source, None).unwrap_or_else(|error| panic!("{error}"));
+    let mut point = problem.space().start();
+    point.iter_mut().for_each(|it| *it = 0.25);
+    let design = problem.design(&point, &["found".to_owned()]);
+    let design = design.unwrap_or_else(|error| panic!("{error}"));
+    let read = file::parse(&design, "design.toml", None, &[]);
+    let read = read.unwrap_or_else(|problems| panic!("{problems}\n{design}"));
+    for (path, value) in problem.space().values(&point) {
+        let found = file::Template::parse(&design, "design.toml", None, &Default::default());
+        let found = found.expect("it was read").number_at(path).map(|it| format!("{it:?}"));
+        assert_eq!(found, Some(value.to_string()), "{}\n{design}", path.text());
+    }
+    assert_eq!(read.tunable_parameters.len(), 1, "that of the other controller\n{design}");
+    design
+}
+
 /// A second list was written, in front: a file that nobody could read, with exit code 0.
 #[test]
 fn a_design_has_its_changes_behind_those_that_its_scenario_lists() {
@@ -328,21 +346,7 @@ fn a_design_has_its_changes_behind_those_that_its_scenario_lists() {
         let own = "ki = { tune = [0.01, 5.0], scale = \"log\", start = 0.5 }";
         let text = format!("{list}{}", SCENARIO.replace(own, plain));
         std::fs::write(&path, text).expect("written");
-        let source = Source { path, overrides };
-        let problem = TuningProblem::new(&source, None).unwrap_or_else(|error| panic!("{error}"));
-        let mut point = problem.space().start();
-        point.iter_mut().for_each(|it| *it = 0.25);
-        let design = problem.design(&point, &["found".to_owned()]);
-        let design = design.unwrap_or_else(|error| panic!("{error}"));
-        let read = file::parse(&design, "design.toml", None, &[]);
-        let read = read.unwrap_or_else(|problems| panic!("{problems}\n{design}"));
-        let free = problem.space().values(&point);
-        for (path, value) in free {
-            let found = file::Template::parse(&design, "design.toml", None, &Default::default());
-            let found = found.expect("it was read").number_at(path).map(|it| format!("{it:?}"));
-            assert_eq!(found, Some(value.to_string()), "{}\n{design}", path.text());
-        }
-        assert_eq!(read.tunable_parameters.len(), 1, "that of the other controller\n{design}");
+        let design = design_with_its_numbers(&Source { path, overrides });
         assert!(!list.contains("duration") || design.contains("# shorter"), "{design}");
     }
 }

@@ -68,19 +68,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let scenario = &study.scenario;
     let (file, timing) = (arguments.file.display(), scenario.timing);
     let certificate = beside(&arguments.file, &template)?;
-    let others = naming(&arguments.file, &scenario.name);
-    if let Some(first) = others.first() {
-        let word = |path: &Path| shell::word(&path.display().to_string());
-        let (count, verb) = match others.len() {
-            1 => ("1 certificate here names this scenario".to_owned(), "is"),
-            many => (format!("{many} certificates here name this scenario"), "are"),
-        };
-        note(format_args!(
-            "{count} and {verb} not checked: fspid certify --check {} --against {}",
-            word(first),
-            word(&arguments.file)
-        ));
-    }
+    tell_unchecked(&arguments.file, &scenario.name);
     let text = || {
         let mut text = format!(
             "{file}: good; {} with {}, {} samples of {} s, digest {}\n",
@@ -118,6 +106,22 @@ fn beside(scenario: &Path, template: &Template) -> Result<Option<(PathBuf, Check
     let mut checked = super::certify::read(&path)?;
     checked.compare_family(template).map_err(Failure::input)?;
     Ok(Some((path, checked)))
+}
+
+/// Tells of certificates that name the scenario and are not checked, with the command that does it.
+fn tell_unchecked(scenario: &Path, name: &str) {
+    let others = naming(scenario, name);
+    let Some(first) = others.first() else { return };
+    let word = |path: &Path| shell::word(&path.display().to_string());
+    let (count, verb) = match others.len() {
+        1 => ("1 certificate here names this scenario".to_owned(), "is"),
+        many => (format!("{many} certificates here name this scenario"), "are"),
+    };
+    note(format_args!(
+        "{count} and {verb} not checked: fspid certify --check {} --against {}",
+        word(first),
+        word(scenario)
+    ));
 }
 
 /// Certificates of the scenario's folder that were made of one of this name, but for the one beside it.

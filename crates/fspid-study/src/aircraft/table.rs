@@ -1,5 +1,6 @@
 //! Columns under headings: words to the left, numbers to the right.
 
+use fspid_diagnostics::lines::wrapped;
 use fspid_page::columns::{Align, Columns};
 
 /// A table for a terminal; the first column is text, and so is any with a word in it.
@@ -22,19 +23,5 @@ const WIDTH: usize = 96;
 
 /// A text in lines that are not too long, broken at spaces.
 pub(super) fn paragraph(text: &str) -> String {
-    let mut out = String::new();
-    let mut width = 0;
-    for word in text.split_whitespace() {
-        let length = word.chars().count();
-        let (gap, start) = match (width, width + 1 + length > WIDTH) {
-            (0, _) => ("", 0),
-            (_, true) => ("\n", 0),
-            (_, false) => (" ", width + 1),
-        };
-        out.push_str(gap);
-        out.push_str(word);
-        width = start + length;
-    }
-    out.push('\n');
-    out
+    wrapped(text, "", WIDTH).join("\n") + "\n"
 }

@@ -116,10 +116,9 @@ impl AtRest {
         }
     }
 
-    /// The same of a flight that is lost at a limit, in itself or flown on, or to whose end the controller does not act: small
-    /// motions at rest say nothing of it.
+    /// The same of a flight that leaves it in doubt, of which small motions at rest say nothing.
     #[must_use]
-    pub(crate) fn lost_at_a_limit(self, doubt: Doubt) -> Self {
+    pub(crate) fn doubted(self, doubt: Doubt) -> Self {
         Self { undecided: Some(Undecided::at_trim(doubt)), ..self }
     }
 

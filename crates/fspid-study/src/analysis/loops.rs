@@ -5,7 +5,7 @@ use fspid_core::Gains;
 use fspid_lti::{Complex, SampledLoop, SampledMargins};
 use fspid_sim::aircraft::AfterBurning;
 use fspid_sim::loop_model::{BreakPoint, SampledPlant};
-use fspid_sim::stability::{doubt_beyond, lost_when_flown};
+use fspid_sim::stability::{doubt_beyond, doubt_when_flown};
 use fspid_sim::{
     Controller, Doubt, LinearPlant, NamedController, Rest, RestPoint, Scenario, Side, SimError,
 };
@@ -117,7 +117,7 @@ impl AnalysedLoop {
     /// Doubts a loop that holds at rest where its flight does not, as the flight's own answer does.
     pub(super) fn doubt_flight(&mut self, scenario: &Scenario, named: &NamedController) {
         if self.stability() == Stability::Stable {
-            self.doubt = lost_when_flown(scenario, named);
+            self.doubt = doubt_when_flown(scenario, named);
         }
     }
 

@@ -1,6 +1,7 @@
 //! The answer of `analyse` for people.
 
 use fspid_core::Gains;
+use fspid_diagnostics::digits::to_six_decimals;
 use fspid_lti::{Complex, Mode, modulus};
 
 use super::answer::{Margins, NO_CROSSOVER, NO_LOWER_LIMIT, NO_UPPER_LIMIT};
@@ -90,10 +91,7 @@ pub(crate) fn held_where_worst(plant: &PlantLoop) -> String {
 fn push_loop(out: &mut String, found: &AnalysedLoop) {
     for plant in &found.plants {
         if found.plants.len() > 1 {
-            out.push_str(&format!(
-                "  plant from {} s on\n",
-                fspid_diagnostics::digits::to_six_decimals(plant.from_s)
-            ));
+            out.push_str(&format!("  plant from {} s on\n", to_six_decimals(plant.from_s)));
         }
         push_plant(out, plant);
         match &plant.frozen {

@@ -8,7 +8,7 @@ pub use ending::{Ending, FAILS_BY_ITSELF, FailedFlight};
 pub use words::WRONG_WAY;
 
 use fspid_sim::signal::Edge;
-use fspid_sim::stability::{Unstable, held_by_guard, lost_at_a_limit};
+use fspid_sim::stability::{Unstable, doubt_of_flight};
 use fspid_sim::{NamedController, Plant, Scenario, Trace};
 
 use crate::analysis::{AtRest, RestGains};
@@ -52,12 +52,9 @@ impl ControllerResult {
         let has_equations = at_rest.gains != RestGains::Unknown;
         let is_open = has_equations && at_rest.unstable.is_none() && at_rest.undecided.is_none();
         let flies_on = named.filter(|_| is_open);
-        let doubt = flies_on.and_then(|NamedController { controller, .. }| {
-            held_by_guard(scenario, controller, &trace)
-                .or_else(|| lost_at_a_limit(scenario, controller, &trace))
-        });
+        let doubt = flies_on.and_then(|it| doubt_of_flight(scenario, &it.controller, &trace));
         let at_rest = match doubt {
-            Some(doubt) => at_rest.lost_at_a_limit(doubt),
+            Some(doubt) => at_rest.doubted(doubt),
             None => at_rest,
         };
         let mut metrics = FlightMetrics::of(&trace, edges, timing, unstable, &pushes_s);

@@ -7,6 +7,7 @@ use crate::analysis::figures::{
 use crate::analysis::{
     AnalysedLoop, Analysis, Equilibrium, FrozenMap, FrozenReach, Margins, PlantLoop, Stability,
 };
+use fspid_diagnostics::digits::to_six_decimals;
 use fspid_page::analysis::{
     AnalysisPage, Chapter, DataTable, Datum, Item, Picture, Provenance, Standing, Verdict,
 };
@@ -166,11 +167,7 @@ fn margins(analysis: &Analysis) -> Chapter {
 fn row(found: &AnalysedLoop, plant: &PlantLoop) -> Vec<Datum> {
     let name = match found.plants.len() {
         0 | 1 => found.name.clone(),
-        _ => format!(
-            "{}, plant from {} s",
-            found.name,
-            fspid_diagnostics::digits::to_six_decimals(plant.from_s)
-        ),
+        _ => format!("{}, plant from {} s", found.name, to_six_decimals(plant.from_s)),
     };
     let gains = match &found.equilibrium {
         Equilibrium::Fixed(gains) | Equilibrium::AtRest(gains) => format!(

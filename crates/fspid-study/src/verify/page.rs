@@ -6,7 +6,7 @@ use fspid_page::analysis::{
 };
 
 use super::Verification;
-use super::text::{FAILED_FLIGHTS, cells, visible};
+use super::text::{FAILED_FLIGHTS, cells};
 use crate::judgement::Judgement;
 use crate::report::command;
 use crate::shell;
@@ -29,7 +29,7 @@ impl Verification {
     /// The answer of `verify --report`: one HTML file without any outside reference, with the words of the text.
     #[must_use]
     pub fn page(&self) -> String {
-        let name = visible(&self.study.scenario.name);
+        let name = self.study.scenario.name.clone();
         let mut chapters = vec![self.tables(), self.flights()];
         chapters.push(chapter("asked", "What is asked", self.asked()));
         let notes = self.notes();
@@ -40,7 +40,7 @@ impl Verification {
             heading: name,
             lead: LEAD.to_owned(),
             verdicts: vec![self.card()],
-            warnings: self.study.warnings.iter().map(|it| visible(it)).collect(),
+            warnings: self.study.warnings.clone(),
             chapters,
             provenance: Provenance {
                 command: self.command(),
@@ -62,7 +62,7 @@ impl Verification {
         detail.extend(named("Not evaluated, and so not met", of(false)));
         let flights: Vec<String> = self.failed_flights.iter().map(|it| it.who()).collect();
         if !flights.is_empty() {
-            detail.push(format!("{FAILED_FLIGHTS}: {}.", visible(&flights.join("; "))));
+            detail.push(format!("{FAILED_FLIGHTS}: {}.", flights.join("; ")));
         }
         if detail.is_empty() {
             detail.push(
@@ -90,7 +90,7 @@ impl Verification {
             let own = self.judgements.iter().filter(|it| it.controller == name);
             let own: Vec<&Judgement> = own.collect();
             let met = own.iter().filter(|it| it.met).count();
-            let caption = format!("{}: {met} of {} met", visible(name), own.len());
+            let caption = format!("{name}: {met} of {} met", own.len());
             let rows = own.into_iter().map(row).collect();
             let head = HEAD.map(str::to_owned).to_vec();
             Item::Table(DataTable { caption, head, rows, cards: true })
@@ -105,7 +105,7 @@ impl Verification {
             true => vec![Item::Text(
                 "None: no flight of which something is required failed by itself.".to_owned(),
             )],
-            false => failed.iter().map(|it| Item::Warning(visible(it))).collect(),
+            false => failed.into_iter().map(Item::Warning).collect(),
         };
         Chapter { id: "flights".to_owned(), title: FAILED_FLIGHTS.to_owned(), items }
     }
@@ -140,7 +140,6 @@ impl Verification {
 const LEAD: &str = "Requirements judged: what was found, its limit, and where the worst case is. A value that equals its limit meets it; what could not be evaluated is not met. Each number is in the unit beside it.";
 
 fn chapter(id: &str, title: &str, sentences: Vec<String>) -> Chapter {
-    let sentences = sentences.iter().map(|it| visible(it)).collect();
     let items = vec![Item::List(sentences)];
     Chapter { id: id.to_owned(), title: title.to_owned(), items }
 }
@@ -154,7 +153,7 @@ fn named<'a>(what: &str, lines: impl Iterator<Item = &'a Judgement>) -> Option<S
         more => format!(" and {more} more"),
     };
     let first: Vec<&str> = all.iter().take(NAMED).map(String::as_str).collect();
-    (!all.is_empty()).then(|| visible(&format!("{what}: {}{more}.", first.join(", "))))
+    (!all.is_empty()).then(|| format!("{what}: {}{more}.", first.join(", ")))
 }
 
 fn row(judgement: &Judgement) -> Vec<Datum> {
@@ -176,7 +175,7 @@ fn row(judgement: &Judgement) -> Vec<Datum> {
         Datum::Text(id),
         verdict,
         Datum::Text(requirement.measure.name().to_owned()),
-        Datum::Text(visible(&from.join(", "))),
+        Datum::Text(from.join(", ")),
         found,
         Datum::Number(limit),
         room(judgement),

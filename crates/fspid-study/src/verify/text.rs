@@ -8,6 +8,7 @@ use crate::analysis::not_in_the_linear_loop;
 use crate::judgement::Judgement;
 use crate::shell;
 use fspid_diagnostics::digits::to_digits;
+use fspid_diagnostics::lines::wrapped;
 use fspid_page::number::capital;
 use fspid_scenario::measure::{Family, Measure};
 use fspid_scenario::requirement::{Origin, set};
@@ -282,22 +283,7 @@ pub(super) fn visible(text: &str) -> String {
 
 /// A text in lines that are not too long, with a mark before it.
 fn paragraph(text: &str) -> String {
-    let mut out = String::from("- ");
-    let mut width = 2;
-    for (index, word) in text.split_whitespace().enumerate() {
-        let length = word.chars().count();
-        if width + 1 + length > WIDTH {
-            out.push_str("\n  ");
-            width = 2;
-        } else if index > 0 {
-            out.push(' ');
-            width += 1;
-        }
-        out.push_str(word);
-        width += length;
-    }
-    out.push('\n');
-    visible_lines(&out)
+    visible_lines(&wrapped(text, "- ", WIDTH).join("\n"))
 }
 
 /// As [`visible`], for a text of several lines.

@@ -71,6 +71,33 @@ fn a_flight_of_few_samples_is_flown_on_as_any_other() {
     assert_eq!(limited(&["setpoint.amplitude_deg=3.0"]), (None, false));
 }
 
+/// Half a second of a step that is lost after half a minute: no limit is met by then, and noise, or a sine that has shown many
+/// periods, was all that moved it.
+#[test]
+fn what_moves_a_flight_for_ever_does_not_hide_a_beginning_that_is_not_over() {
+    let step = [
+        "setpoint.kind=step",
+        "controller.PID.output_limits_deg=[-6.0, 6.0]",
+        "controller.PID.kd=0.0",
+        "controller.PID.kp=0.55",
+        "controller.PID.ki=0.02",
+        "loop.duration_s=0.5",
+    ];
+    let text = SLOW_SINE.replace("frequency_hz = 0.01\n", "");
+    let noise =
+        "kind = \"noise\"\nenters_at = \"measurement\"\nstandard_deviation_deg = 1e-6\nseed = 1\n";
+    let sine =
+        "kind = \"sine\"\nenters_at = \"servo\"\namplitude_deg = 1e-6\nfrequency_hz = 20.0\n";
+    for moves in ["", noise, sine] {
+        let table = if moves.is_empty() { "" } else { "[[disturbance]]\n" };
+        let text = format!("{text}{table}{moves}");
+        let flight = result(&text, &step);
+        assert!(flight.trace.command_rad.iter().all(|it| it.to_degrees().abs() < 6.0), "{moves}");
+        assert_eq!(doubt(&flight), Some(Doubt::SwingAtLimits), "{moves}");
+        assert!(diverges(&text, &[&step[..], &["loop.duration_s=60.0"]].concat()), "{moves}");
+    }
+}
+
 /// A plant that comes to rest by itself behind a slew limit, lightly damped.
 const SLEW: &str = r#"
 schema = 1

@@ -1,6 +1,7 @@
 //! An audit for people.
 
 use super::{Audit, Mark};
+use fspid_diagnostics::lines::wrapped;
 
 /// Longest line, in characters, where words allow it.
 const WIDTH: usize = 110;
@@ -16,7 +17,7 @@ impl Audit<'_> {
             out.push_str(&format!("{gap}{}\n", chapter.title));
             let width = chapter.findings.iter().map(|f| f.about.chars().count()).max().unwrap_or(0);
             for found in &chapter.findings {
-                let lines = wrapped(&found.sentence, WIDTH.saturating_sub(width + 6));
+                let lines = wrapped(&found.sentence, "", WIDTH.saturating_sub(width + 6));
                 let indent = " ".repeat(width + 6);
                 let sentence = lines.join(&format!("\n{indent}"));
                 out.push_str(&format!(
@@ -38,19 +39,4 @@ impl Audit<'_> {
         ));
         out
     }
-}
-
-/// Lines of at most `width` characters where words allow it.
-fn wrapped(text: &str, width: usize) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in text.split(' ') {
-        match lines.last_mut() {
-            Some(line) if line.chars().count() + 1 + word.chars().count() <= width => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            _ => lines.push(word.to_owned()),
-        }
-    }
-    lines
 }
