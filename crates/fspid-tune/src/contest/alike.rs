@@ -1,57 +1,37 @@
-//! Cases that some controllers have flown alike to the last bit: they are evidence once.
+//! Cases that some controllers have flown alike: they are evidence once.
 
-use std::collections::BTreeMap;
-use std::collections::btree_map::Entry;
-
-use super::flight::{Flight, MEASURES};
+use super::flight::Flight;
 use super::judged::{Contestant, Judged};
-
-/// What shows that a flight is another one.
-#[derive(PartialEq, Eq, PartialOrd, Ord)]
-struct Mark<'a> {
-    failed: bool,
-    /// Bits of the measures; none of a lost flight, which has its verdict and its reasons.
-    measures: Option<[Option<u64>; MEASURES.len()]>,
-    verdict: &'a str,
-    reasons: &'a [String],
-}
-
-impl<'a> Mark<'a> {
-    /// None of a flight that came back without a measure: of such nobody knows.
-    fn of(flight: &'a Flight) -> Option<Self> {
-        let failed = flight.failed;
-        if flight.lost {
-            let (verdict, reasons) = (flight.verdict.as_str(), flight.reasons.as_slice());
-            return Some(Self { failed, measures: None, verdict, reasons });
-        }
-        let measures = flight.measures.map(|value| value.map(f64::to_bits));
-        let is_measured = measures.iter().any(Option::is_some);
-        is_measured.then_some(Self { failed, measures: Some(measures), verdict: "", reasons: &[] })
-    }
-}
 
 /// Of each case the first earlier one that all designs of some controllers have flown alike, if there is one. What others
 /// make of it is no matter: a case that only a third controller can tell from another is one case between two.
 pub(super) fn twins(judged: &Judged, contestants: &[&Contestant]) -> Vec<Option<usize>> {
-    let mut firsts = BTreeMap::new();
-    let twin = |case: usize| match firsts.entry(marks(judged, contestants, case)?) {
-        Entry::Occupied(first) => Some(*first.get()),
-        Entry::Vacant(place) => {
-            place.insert(case);
-            None
+    let mut firsts: Vec<(usize, Vec<&Flight>)> = Vec::new();
+    let twin = |case: usize| {
+        let flights = flights(judged, contestants, case)?;
+        let are_copies = |first: &[&Flight]| {
+            first.len() == flights.len()
+                && first.iter().zip(&flights).all(|(one, other)| other.is_copy_of(one))
+        };
+        let first = firsts.iter().find(|(_, first)| are_copies(first)).map(|(place, _)| *place);
+        if first.is_none() {
+            firsts.push((case, flights));
         }
+        first
     };
     judged.all().into_iter().map(twin).collect()
 }
 
-/// The marks of all flights of a case; none where nobody came back, for lost flights alone show too little.
-fn marks<'a>(
+/// All flights of a case; none where one came back without a measure, of which nobody knows, or nobody came back at all, for
+/// lost flights alone show too little.
+fn flights<'a>(
     judged: &Judged,
     contestants: &[&'a Contestant],
     case: usize,
-) -> Option<Vec<Mark<'a>>> {
+) -> Option<Vec<&'a Flight>> {
     let designs = contestants.iter().flat_map(|it| &it.designs);
-    let flights = designs.flat_map(|design| judged.flights(design, case));
-    let marks: Vec<Mark<'_>> = flights.map(Mark::of).collect::<Option<_>>()?;
-    marks.iter().any(|mark| mark.measures.is_some()).then_some(marks)
+    let flights: Vec<&Flight> = designs.flat_map(|design| judged.flights(design, case)).collect();
+    let is_measured = |it: &&Flight| it.measures.iter().any(Option::is_some);
+    let are_told = flights.iter().all(|it| it.lost || is_measured(it));
+    (are_told && flights.iter().any(|it| !it.lost)).then_some(flights)
 }

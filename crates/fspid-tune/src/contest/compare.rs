@@ -73,7 +73,7 @@ pub struct Ratio {
 pub struct Comparison {
     /// Place of the controller.
     pub contestant: usize,
-    /// Cases that are evidence between both: those that they do not fly to the last bit as another, or as one of the tuning.
+    /// Cases that are evidence between both: those that they do not fly to a millionth as another, or as one of the tuning.
     pub evidence: usize,
     /// Ratio of the means over all cases and designs; infinite where it lost a flight, none where both did.
     pub ratio_of_means: Option<f64>,

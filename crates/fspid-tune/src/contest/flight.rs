@@ -41,6 +41,19 @@ const fn place(measure: Measure) -> usize {
     place
 }
 
+/// Measures that differ by no more than this share of their size are those of one flight: more than what a ninth digit of a
+/// number makes of it, and less than anything that is to count as another case.
+const ALIKE: f64 = 1e-6;
+
+fn are_alike(one: Option<f64>, other: Option<f64>) -> bool {
+    match (one, other) {
+        (Some(one), Some(other)) => {
+            (one - other).abs() <= ALIKE * one.abs().max(other.abs()).max(ALIKE)
+        }
+        (one, other) => one.is_none() && other.is_none(),
+    }
+}
+
 /// Largest error beyond which a flight is lost, deg. A loop with limits oscillates instead of diverging; beyond a
 /// right angle there is no pitch hold left whose error could be compared.
 const LOST_DEG: f64 = 90.0;
@@ -90,11 +103,21 @@ pub struct Flight {
 }
 
 impl Flight {
-    /// True for a flight with the same measures to the last bit; of what is lost nobody knows.
+    /// True for a flight whose measures are alike; of what is lost nobody knows.
     pub(crate) fn has_measures_of(&self, other: &Self) -> bool {
-        let bits = |flight: &Self| flight.measures.map(|value| value.map(f64::to_bits));
         let is_flown = !self.lost && self.measures.iter().any(Option::is_some);
-        is_flown && !other.lost && bits(self) == bits(other)
+        let mut pairs = self.measures.into_iter().zip(other.measures);
+        is_flown && !other.lost && pairs.all(|(one, other)| are_alike(one, other))
+    }
+
+    /// True for a flight that shows nothing that the other does not: lost as it is, or with measures that are alike.
+    pub(super) fn is_copy_of(&self, other: &Self) -> bool {
+        let is_lost_alike = || {
+            self.lost
+                && other.lost
+                && (&self.verdict, &self.reasons) == (&other.verdict, &other.reasons)
+        };
+        self.failed == other.failed && (is_lost_alike() || self.has_measures_of(other))
     }
 
     pub(crate) fn refused(reason: String) -> Self {

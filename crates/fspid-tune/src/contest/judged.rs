@@ -54,10 +54,10 @@ pub struct Judged {
     pub cases: Vec<Case>,
     /// Place of the controller that the others are compared with.
     pub against: usize,
-    /// Of each case the place of an earlier one that everybody has flown alike to the last bit, if there is one: it is no evidence
+    /// Of each case the place of an earlier one that everybody has flown alike, if there is one: it is no evidence
     /// of its own, such as one that moves a limit which never acts. Two controllers may fly more cases alike.
     pub twin_of: Vec<Option<usize>>,
-    /// Of each controller and case the name of one of the tuning that it flies alike to the last bit, if there is one; empty
+    /// Of each controller and case the name of one of the tuning that it flies alike, if there is one; empty
     /// of a controller that was not tuned.
     pub trained_as: Vec<Vec<Option<String>>>,
 }

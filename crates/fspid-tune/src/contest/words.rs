@@ -402,7 +402,7 @@ fn no_evidence(judged: &Judged) -> Option<String> {
     };
     (!all.is_empty()).then(|| {
         format!(
-            "{} flown to the last bit like another, and no evidence: {}{more}. They count in means and not in tests.",
+            "{} flown to a millionth like another, and no evidence: {}{more}. They count in means and not in tests.",
             match all.len() {
                 1 => "One case is".to_owned(),
                 count => format!("{count} cases are"),
@@ -425,7 +425,7 @@ fn between(outcome: &Outcome) -> Vec<String> {
     few.map(|(one, it)| {
         let is_too_few = least_p(it.evidence) * others as f64 > 1.0 - CONFIDENCE;
         format!(
-            "Between {} and {} {} of {all} cases {} evidence: both fly the others to the last bit like these{}.",
+            "Between {} and {} {} of {all} cases {} evidence: both fly the others to a millionth like these{}.",
             cut(name(outcome, it.contestant), 60),
             cut(name(outcome, one), 60),
             it.evidence,

@@ -54,7 +54,7 @@ pub struct Cases {
     pub lost: usize,
     /// Those without a common range of travel, or in which the ladder changes no travel.
     pub apart: usize,
-    /// Those that are no evidence between both, and are in none of the others: at some effort they fly them to the last bit
+    /// Those that are no evidence between both, and are in none of the others: at some effort they fly them to a millionth
     /// as another case, or as one of the tuning.
     pub alike: usize,
 }

@@ -70,7 +70,7 @@ pub(super) fn whole(band: &Band) -> String {
     }
     if band.cases.alike > 0 {
         told.push_str(&format!(
-            "; {} more {} no evidence, for both fly {} to the last bit as others, or as the tuning's",
+            "; {} more {} no evidence, for both fly {} to a millionth as others, or as the tuning's",
             counted(band.cases.alike, "case"),
             if band.cases.alike == 1 { "is" } else { "are" },
             if band.cases.alike == 1 { "it" } else { "them" },

@@ -43,6 +43,26 @@ fn cases_that_are_flown_alike_are_evidence_once_and_those_of_the_tuning_never() 
     assert_eq!(ratio(&held), ratio(&alone));
 }
 
+/// Twelve cases that differ in the ninth digit of a gain of the plant made a winner: no bit of their flights is the same.
+#[test]
+fn cases_that_differ_in_a_ninth_digit_are_evidence_once() {
+    let digit = |place: usize| {
+        format!(
+            "\n[[contest.case]]\nname = \"digit {place}\"\nset = [\"setpoint.amplitude_deg=1.0000000{place:02}\"]\n"
+        )
+    };
+    let digits: String = (0..12).map(digit).collect();
+    let text = format!(
+        "{LOOP}{}{}\n[contest]\nagainst = \"slack\"\n{digits}",
+        pid("slack", "kp = 0.2\nki = 0.1\nkd = 0.05"),
+        pid("good", "kp = 0.8\nki = 0.4\nkd = 0.16"),
+    );
+    let outcome = place(&text).held();
+    let found = outcome.comparison(1).expect("a comparison");
+    assert_eq!((found.evidence, found.is_sure), (1, false));
+    assert!(outcome.json()["verdict"]["winner"].is_null(), "{}", outcome.text());
+}
+
 /// Five seeds of one candidate each are the start, five times.
 #[test]
 fn seeds_that_find_the_same_are_one_tuning_and_nobody_wins() {

@@ -165,7 +165,7 @@ impl<F: Fn(usize, usize, usize, usize, usize) -> Flight> Ladder<F> {
             let flights = (0..self.cases).flat_map(|case| {
                 (0..self.runs).map(move |run| {
                     let mut flight = (self.flight)(who, rung, seed, case, run);
-                    // Cases that are flown alike to the last bit are one: something tells them apart.
+                    // Cases that are flown alike are one: something tells them apart.
                     let last = flight.measures.iter_mut().last().filter(|_| !flight.lost);
                     last.into_iter().for_each(|it| *it = Some(case as f64));
                     flight
