@@ -1,5 +1,6 @@
 //! An aircraft as its source describes it, in SI units, before anything is made of it.
 
+mod doubtful;
 mod linear;
 mod loading;
 mod variations;

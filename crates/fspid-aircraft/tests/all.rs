@@ -3,6 +3,7 @@
 mod atmosphere;
 mod classes;
 mod derivation;
+mod doubts;
 mod enclosure;
 mod envelope;
 mod flight;

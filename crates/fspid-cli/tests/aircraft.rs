@@ -467,3 +467,62 @@ fn an_import_that_fails_says_where_and_writes_nothing() {
     let output = fspid(&["aircraft", "import", TOY, "--out", "missing/out.toml"], folder.path());
     assert_eq!(output.status.code(), Some(4));
 }
+
+/// An aircraft file in a folder of its own, with a change, and what `check` says of it.
+fn checked(change: (&str, &str), arguments: &[&str]) -> Output {
+    let folder = tempfile::tempdir().expect("a folder");
+    let begun = fspid(&["init", "--template", "aircraft", "-"], folder.path());
+    let text = stdout(&begun).replace(change.0, change.1);
+    std::fs::write(folder.path().join("mine.toml"), text).expect("written");
+    fspid(&[&["check", "mine.toml"], arguments].concat(), folder.path())
+}
+
+#[test]
+fn check_tells_the_motions_of_an_aircraft_and_what_in_its_numbers_is_hardly_meant() {
+    let good = checked(("", ""), &[]);
+    assert_eq!((good.status.code(), stderr(&good).as_str()), (Some(0), ""));
+    let motions = "mine.toml: good; My aircraft, 17 m/s, 100 m\nshort period 14.8 rad/s, damping 0.78; phugoid 0.582 rad/s, damping 0.124; ";
+    assert!(stdout(&good).starts_with(motions), "{}", stdout(&good));
+
+    let turned = checked(("elevator = -0.8488", "elevator = 0.8488"), &["--format", "json"]);
+    let answer: Value = serde_json::from_slice(&turned.stdout).expect("JSON");
+    let warning = answer["warnings"][0].as_str().expect("a warning");
+    assert!(warning.starts_with("pitch by elevator is 0.8488: its trailing edge down does not"));
+    assert!(stderr(&turned).contains(warning));
+    near(&answer["modes"]["longitudinal"][0]["damping_ratio"], 0.78, 0.005);
+
+    let slow = checked(("airspeed_m_s = 17.0", "airspeed_m_s = 11.0"), &[]);
+    assert_eq!(slow.status.code(), Some(0));
+    assert!(stdout(&slow).ends_with("cannot be trimmed at the flight condition of its data\n"));
+    let why = "warning: at the flight condition of its data: ";
+    assert!(stderr(&slow).contains(why), "{}", stderr(&slow));
+
+    let wrong = checked(("iy_kg_m2", "iyy_kg_m2"), &[]);
+    assert_eq!((wrong.status.code(), stdout(&wrong).as_str()), (Some(2), ""));
+    assert!(stderr(&wrong).contains("mass.iyy_kg_m2: unknown key"), "{}", stderr(&wrong));
+}
+
+/// A scenario with such an aircraft was flown without a word.
+#[test]
+fn a_scenario_says_what_is_hardly_meant_in_its_aircraft() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path();
+    let template = ["init", "--template"];
+    fspid(&[&template[..], &["aircraft", "mine.toml"]].concat(), path);
+    let scenario =
+        stdout(&fspid(&[&template[..], &["aircraft-in-turbulence", "-"]].concat(), path));
+    let scenario = scenario.replace("name = \"navion\"", "file = \"mine.toml\"").replace(
+        "airspeed_ft_s = 176.0\naltitude_ft = 5000.0",
+        "airspeed_m_s = 17.0\naltitude_m = 100.0",
+    );
+    std::fs::write(path.join("pitch.toml"), scenario).expect("written");
+    let set = "aircraft.file.longitudinal.pitch.alpha=0.1";
+    let output = fspid(&["check", "pitch.toml"], path);
+    assert_eq!((output.status.code(), stderr(&output).as_str()), (Some(0), ""));
+    let output = fspid(&["check", "pitch.toml", "--set", set], path);
+    assert!(
+        stderr(&output).contains("warning: the aircraft's pitch by alpha is 0.1: "),
+        "{}",
+        stderr(&output)
+    );
+}

@@ -30,7 +30,7 @@ fn commands(folder: &Path) -> Vec<Vec<String>> {
 }
 
 /// A command that answers, the exit codes that are well, and a key of its answer. They run in this order in one folder.
-const ANSWERS: [(&str, &[i32], &str); 51] = [
+const ANSWERS: [(&str, &[i32], &str); 53] = [
     ("init pitch.toml", &[0], "file"),
     ("init --list", &[0], "templates"),
     ("init --template tuning tuning.toml", &[0], "next"),
@@ -38,6 +38,8 @@ const ANSWERS: [(&str, &[i32], &str); 51] = [
     ("init --template campaign campaign.toml", &[0], "file"),
     ("init --template fuzzy-system tip.toml", &[0], "file"),
     ("init --template rule-table rules.toml", &[0], "file"),
+    ("init --template aircraft mine.toml", &[0], "file"),
+    ("check mine.toml", &[0], "modes"),
     ("check pitch.toml", &[0], "digest"),
     ("check pitch.toml --paths", &[0], "paths"),
     ("check rules.toml", &[0], "rules"),
@@ -172,9 +174,10 @@ fn the_problems_of_a_file_have_their_places_in_json() {
 }
 
 /// Every template with a command that runs it.
-const TEMPLATES: [(&str, &str); 8] = [
+const TEMPLATES: [(&str, &str); 9] = [
     ("pitch-hold", "simulate FILE --report report.html"),
     ("aircraft-in-turbulence", "simulate FILE --set loop.duration_s=5 --report report.html"),
+    ("aircraft", "aircraft modes FILE"),
     ("requirements", "verify FILE"),
     ("campaign", "campaign run FILE --runs 16 --quiet --out robust"),
     ("tuning", "tune FILE --budget 40 --quiet --out design.toml"),

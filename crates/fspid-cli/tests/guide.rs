@@ -68,9 +68,12 @@ fn blocks(page: &str) -> Vec<(&str, Vec<&str>)> {
     found
 }
 
-/// The file that a block of C is, if its first line says so.
+/// The file that a block is, if its first line says so: of C, or a scenario.
 fn named_source(line: &str) -> Option<&str> {
-    line.strip_prefix("/* ")?.strip_suffix(" */").filter(|name| name.ends_with(".c"))
+    let of_c = line.strip_prefix("/* ").and_then(|it| it.strip_suffix(" */"));
+    let name = of_c.or_else(|| line.strip_prefix("# "))?;
+    let is_name = name.ends_with(if of_c.is_some() { ".c" } else { ".toml" });
+    (is_name && !name.contains(' ')).then_some(name)
 }
 
 /// Builds as a line says.

@@ -357,7 +357,7 @@ fn a_file_that_is_no_scenario_is_called_what_it_is() {
         ("requirements/rvsm.toml", "a set of requirements"),
     ] {
         let path = data.join(file).display().to_string();
-        for command in ["check", "simulate"] {
+        for command in ["analyse", "simulate"] {
             let output = fspid(&[command, &path], folder);
             let told = text(&output.stderr);
             assert!(code(&output) == 2 && told.lines().count() < 4, "{command} {file}: {told}");

@@ -12,19 +12,22 @@ use fspid_certify::CheckedFile;
 use fspid_diagnostics::digits::counted;
 use fspid_scenario::file::{self, LoadError, Template};
 use fspid_scenario::fuzzy_system;
+use fspid_study::aircraft;
 use fspid_study::json::with_null_reasons;
 use fspid_study::shell;
 use fspid_tune::Written;
 
-/// Check a scenario or a fuzzy system and tell every problem in it.
+/// Check a scenario, an aircraft or a fuzzy system and tell every problem in it.
 ///
 /// Of a scenario the cases that it is tuned on and judged by are checked as well, each with its own changes.
 ///
 /// Where a certificate lies beside a scenario (`pitch.certificate.json` beside `pitch.toml`), it is verified, and compared
 /// with what the scenario flies; others in the folder that name the scenario are told.
+///
+/// Of an aircraft its motions are told, and what in its numbers is hardly meant: a unit, a sign, a digit.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// The file: a scenario, a fuzzy system (.toml, .fis, .t2fis, .fcl, .fll, .xml), or a rule table.
+    /// The file: a scenario, an aircraft, a fuzzy system (.toml, .fis, .t2fis, .fcl, .fll, .xml), or a rule table.
     file: InFile,
     /// Set a value of a scenario before checking, e.g. `--set controller.FSPID.nominal.kp=2.5`.
     #[arg(long = "set", value_name = "PATH=VALUE")]
@@ -47,6 +50,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     if arguments.overrides.is_empty() && fuzzy_system::is_system(&arguments.file) {
         return system(&arguments.file, arguments.format);
+    }
+    if arguments.overrides.is_empty() && file::is_aircraft_file(&arguments.file) {
+        return aircraft(&arguments.file, arguments.format);
     }
     let text = file::read_text(&arguments.file).map_err(Failure::load)?;
     let written = Written {
@@ -164,6 +170,14 @@ fn rule_table(path: &Path, format: Format) -> Result<(), Failure> {
         || format!("{name}: good; a rule table of three grids of 49 rules\n"),
         || json!({ "schema": 1, "file": name, "kind": "rule-table", "good": true, "rules": 3 * 49 }),
     )
+}
+
+fn aircraft(path: &Path, format: Format) -> Result<(), Failure> {
+    let checked = aircraft::check(&path.display().to_string()).map_err(Failure::input)?;
+    for warning in &checked.warnings {
+        note(format_args!("warning: {warning}"));
+    }
+    format.print(|| checked.text(), || checked.json())
 }
 
 fn system(path: &Path, format: Format) -> Result<(), Failure> {

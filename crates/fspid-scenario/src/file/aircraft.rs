@@ -148,6 +148,9 @@ fn derivatives(report: &mut Report, section: &Section, given: Given) -> Option<D
         validity: validity(part(keys::VALIDITY)?)?,
         travel: travel(part(keys::TRAVEL)?)?,
     };
+    for doubt in data.doubts() {
+        report.warn(format!("the aircraft's {doubt}"));
+    }
     match data.mass_properties().validate() {
         Ok(()) => Some(data),
         Err(error) => {

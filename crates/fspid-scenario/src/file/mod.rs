@@ -64,6 +64,7 @@ pub use changed_text::{changed_text, with_listed};
 pub use extra::Extra;
 pub use free_places::TunedIn;
 pub use fspid_diagnostics::{Problem, Problems, known_words};
+pub use kind::is_aircraft_file;
 pub use paths::{PathRow, paths, paths_json, paths_of, paths_text, row_at};
 pub use preset::{Condition, PlantFile, load_rule_table, parse_plant, preset, rule_table};
 pub use rewrite::{Replay, replay};

@@ -14,7 +14,7 @@ pub struct Starter {
 }
 
 /// Every file to begin with; the first one where none is named.
-pub const STARTERS: [Starter; 8] = [
+pub const STARTERS: [Starter; 9] = [
     Starter {
         name: "pitch-hold",
         about: "a pitch command flown by a PID and a self-tuning PID",
@@ -26,6 +26,12 @@ pub const STARTERS: [Starter; 8] = [
         about: "an aircraft with six degrees of freedom holds its pitch in gusts",
         text: include_str!("templates/aircraft-in-turbulence.toml"),
         command: "fspid simulate FILE --report report.html",
+    },
+    Starter {
+        name: "aircraft",
+        about: "an aircraft of your own, from its derivatives",
+        text: include_str!("templates/aircraft.toml"),
+        command: "fspid check FILE",
     },
     Starter {
         name: "requirements",

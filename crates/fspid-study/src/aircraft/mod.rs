@@ -3,8 +3,8 @@
 //! One function per verb; each answers in text and JSON. The mathematics is `fspid-aircraft`'s; here are names, files,
 //! units and words. Without a unit, a number is in the chosen [`Units`](fspid_scenario::aircraft::Units).
 
+mod check;
 mod condition;
-
 mod derive;
 mod envelope;
 mod facts;
@@ -30,6 +30,7 @@ mod trim;
 pub use fspid_aircraft::VelocityForm;
 pub use fspid_aircraft::qualities::{Category, Class};
 
+pub use check::{CheckedAircraft, check};
 pub use condition::{AirChoice, DragChoice, Flight, Question, ThrustChoice, flight};
 
 pub use derive::{Derivation, derive};

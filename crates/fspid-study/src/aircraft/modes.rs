@@ -10,6 +10,7 @@ use super::condition::Question;
 use super::table::table;
 use super::trim::{Trimmed, trim};
 use crate::json::with_null_reasons;
+use fspid_diagnostics::digits::to_digits;
 use fspid_scenario::aircraft::AircraftFailure;
 use fspid_scenario::aircraft::number::significant;
 use fspid_scenario::aircraft::units::Units;
@@ -139,6 +140,25 @@ impl Motion {
         ]
     }
 
+    /// Its name, and how fast and damped it is, or how soon it halves or doubles.
+    fn in_words(&self) -> String {
+        let name = self.name;
+        match (self.period_s.and(self.mode()), self.growth) {
+            (Some(mode), _) => format!(
+                "{name} {} rad/s, damping {}",
+                to_digits(mode.natural_frequency_rad_s, 3),
+                to_digits(mode.damping_ratio, 3)
+            ),
+            (None, Growth::Halves(time_s)) => {
+                format!("{name} halves in {} s", to_digits(time_s, 3))
+            }
+            (None, Growth::Doubles(time_s)) => {
+                format!("{name} doubles in {} s", to_digits(time_s, 3))
+            }
+            (None, Growth::Stays) => format!("{name} neutral"),
+        }
+    }
+
     /// Times to half and to double size.
     const fn times(&self) -> (Option<f64>, Option<f64>) {
         match self.growth {
@@ -193,6 +213,12 @@ impl Modes {
             Some(trimmed) => trimmed.condition(),
             None => "as its source has it, at that condition alone".to_owned(),
         }
+    }
+
+    /// The modes in a line: `short period 2.6 rad/s, damping 0.69; …; spiral doubles in 93 s`.
+    pub(super) fn in_words(&self) -> String {
+        let motions = self.longitudinal.iter().chain(&self.lateral);
+        motions.map(Motion::in_words).collect::<Vec<_>>().join("; ")
     }
 
     /// The modes for people.

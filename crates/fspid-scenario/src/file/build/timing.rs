@@ -37,7 +37,9 @@ pub(super) fn timing(report: &mut Report, section: &Section) -> Option<Timing> {
             None
         }
         Err(SimError::Number { .. }) if duration_s < dt_s => {
-            let allowed = format!("at least one sample period of {dt_s:?} s");
+            let allowed = format!(
+                "at least one sample period of {dt_s:?} s, or a sample period of at most {duration_s:?} s"
+            );
             section.wrong(report, keys::DURATION_S, "shorter than a sample", allowed);
             None
         }
