@@ -45,15 +45,20 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         let rows = file::paths(&arguments.file, &arguments.overrides).map_err(Failure::load)?;
         return arguments.format.print(|| file::paths_text(&rows), || file::paths_json(&rows));
     }
-    if arguments.overrides.is_empty() && fuzzy_system::is_rule_table_file(&arguments.file) {
-        return rule_table(&arguments.file, arguments.format);
+    // What is to be changed by --set is a scenario, or told to be none.
+    if arguments.overrides.is_empty() {
+        let (path, format): (&Path, _) = (&arguments.file, arguments.format);
+        match path {
+            table if fuzzy_system::is_rule_table_file(table) => return rule_table(table, format),
+            fuzzy if fuzzy_system::is_system(fuzzy) => return system(fuzzy, format),
+            own if file::is_aircraft_file(own) => return aircraft(own, format),
+            _ => {}
+        }
     }
-    if arguments.overrides.is_empty() && fuzzy_system::is_system(&arguments.file) {
-        return system(&arguments.file, arguments.format);
-    }
-    if arguments.overrides.is_empty() && file::is_aircraft_file(&arguments.file) {
-        return aircraft(&arguments.file, arguments.format);
-    }
+    scenario(arguments)
+}
+
+fn scenario(arguments: &Arguments) -> Result<(), Failure> {
     let text = file::read_text(&arguments.file).map_err(Failure::load)?;
     let written = Written {
         text: &text,
