@@ -30,7 +30,7 @@ fn commands(folder: &Path) -> Vec<Vec<String>> {
 }
 
 /// A command that answers, the exit codes that are well, and a key of its answer. They run in this order in one folder.
-const ANSWERS: [(&str, &[i32], &str); 53] = [
+const ANSWERS: [(&str, &[i32], &str); 54] = [
     ("init pitch.toml", &[0], "file"),
     ("init --list", &[0], "templates"),
     ("init --template tuning tuning.toml", &[0], "next"),
@@ -89,6 +89,7 @@ const ANSWERS: [(&str, &[i32], &str); 53] = [
     ("aircraft qualities navion", &[0], "category"),
     ("aircraft derive navion", &[0], "derivatives"),
     ("schema", &[0], "properties"),
+    ("schema aircraft", &[0], "oneOf"),
     ("completions bash", &[0], "script"),
     ("manual --out man", &[0], "files"),
     ("reproduce --out paper", &[0], "claims"),

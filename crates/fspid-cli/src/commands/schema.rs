@@ -6,7 +6,7 @@ use super::Format;
 use crate::exit::{Failure, print};
 use fspid_scenario::{file, fuzzy_system};
 
-/// Print the JSON Schema of a scenario file or of a fuzzy system's file, for editors.
+/// Print the JSON Schema of a scenario's, an aircraft's or a fuzzy system's file, for editors.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     /// Which file.
@@ -22,6 +22,8 @@ pub(crate) struct Arguments {
 enum Kind {
     /// What `simulate` flies.
     Scenario,
+    /// What a scenario names as `aircraft = { file = "…", … }`.
+    Aircraft,
     /// What `infer` asks.
     FuzzySystem,
 }
@@ -30,6 +32,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (Format::Text | Format::Json) = arguments.format;
     let schema = match arguments.kind {
         Kind::Scenario => file::schema(),
+        Kind::Aircraft => file::aircraft_schema(),
         Kind::FuzzySystem => fuzzy_system::schema(),
     };
     print(&format!("{schema:#}\n"))

@@ -68,7 +68,7 @@ pub use kind::is_aircraft_file;
 pub use paths::{PathRow, paths, paths_json, paths_of, paths_text, row_at};
 pub use preset::{Condition, PlantFile, load_rule_table, parse_plant, preset, rule_table};
 pub use rewrite::{Replay, replay};
-pub use schema::schema;
+pub use schema::{aircraft_schema, schema};
 pub use setting::Setting;
 pub use spec::scenario_keys;
 pub use tables::read_model;

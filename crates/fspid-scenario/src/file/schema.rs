@@ -1,8 +1,8 @@
-//! The JSON Schema of scenario files, from the same specification as the check.
+//! The JSON Schemas of scenario files and of aircraft files, from the same specification as the check.
 
 use serde_json::{Map, Value, json};
 
-use crate::file::spec::SCENARIO;
+use crate::file::spec::{AIRCRAFT_FILE, SCENARIO};
 use crate::file::tunable;
 use crate::keyed::check::FIXED;
 use crate::keyed::schema::{GRID_WORD, NUMBERS_WORD, schema_of};
@@ -19,6 +19,27 @@ pub fn schema() -> Value {
     }
     schema["$defs"] = tunable::schemas();
     schema
+}
+
+/// The JSON Schema (draft 2020-12) of aircraft files, in which nothing is marked free.
+#[must_use]
+pub fn aircraft_schema() -> Value {
+    let mut schema = schema_of(&AIRCRAFT_FILE, "fspid aircraft");
+    forget_marks(&mut schema);
+    schema
+}
+
+/// Takes out what tells where a mark may stand.
+fn forget_marks(schema: &mut Value) {
+    match schema {
+        Value::Object(words) => {
+            words.remove(GRID_WORD);
+            words.remove(NUMBERS_WORD);
+            words.values_mut().for_each(forget_marks);
+        }
+        Value::Array(items) => items.iter_mut().for_each(forget_marks),
+        _ => {}
+    }
 }
 
 /// Lets a mark stand in place of every number and every grid of rules.

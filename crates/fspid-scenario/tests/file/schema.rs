@@ -108,6 +108,20 @@ fn every_shipped_scenario_and_the_starter_are_valid_by_the_schema() {
 }
 
 #[test]
+fn every_carried_aircraft_and_the_template_of_one_are_valid_by_the_schema_of_aircraft() {
+    let schema = file::aircraft_schema();
+    let template = ("template", file::starter_named("aircraft").expect("a template").text);
+    for (name, text) in fspid_data::AIRCRAFT.into_iter().chain([template]) {
+        assert_eq!(fault(&schema, &as_json(text), ""), None, "{name}");
+        for (from, to) in [("kind = ", "sort = "), ("title = ", "called = ")] {
+            let wrong = text.replacen(from, to, 1);
+            assert!(file::parse_aircraft(&wrong, name, None).is_err(), "{name}: {to}");
+            assert!(fault(&schema, &as_json(&wrong), "").is_some(), "{name}: {to}");
+        }
+    }
+}
+
+#[test]
 fn what_the_check_refuses_of_form_the_schema_refuses_too() {
     let schema = file::schema();
     let changes = [
