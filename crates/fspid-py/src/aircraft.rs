@@ -1,7 +1,7 @@
 //! Aircraft: trimmed, linearised, their modes.
 
 use fspid::scenario::aircraft::Units;
-use fspid::study::aircraft::{Question, VelocityForm, linearise, list, modes, show, trim};
+use fspid::study::aircraft::{Question, VelocityForm, check, linearise, list, modes, show, trim};
 use pyo3::prelude::*;
 
 use crate::answer::Answer;
@@ -27,6 +27,7 @@ pub(crate) fn aircraft(
     let question = Question { aircraft: name, speed, altitude, climb_angle, ..Question::default() };
     let answer = py.detach(|| match what {
         "show" => show(name, Units::Si).map(|it| Answer::new(it.text(), &it.json(), true)),
+        "check" => check(name).map(|it| Answer::new(it.text(), &it.json(), true)),
         "trim" => trim(&question).map(|it| Answer::new(it.text(), &it.json(), true)),
         "modes" => modes(&question).map(|it| Answer::new(it.text(), &it.json(), true)),
         "components" | "speed-and-angle" => {

@@ -104,3 +104,12 @@ def test_aircraft_answer_as_the_program(cli):
         assert ours.to_dict() == json.loads(cli("aircraft", what, name, "--speed", "60m/s", "--format", "json"))
     told = json.loads(cli("aircraft", "linearise", name, "--format", "json"))
     assert aircraft.linearise(name).to_dict() == told
+
+
+def test_an_aircraft_of_one_s_own_is_checked_as_by_the_program(cli, tmp_path):
+    mine = tmp_path / "mine.toml"
+    cli("init", "--template", "aircraft", str(mine))
+    mine.write_text(mine.read_text().replace("elevator = -0.8488", "elevator = 0.8488"))
+    checked = aircraft.check(mine)
+    assert checked.to_dict() == json.loads(cli("check", str(mine), "--format", "json"))
+    assert checked["warnings"][0].startswith("pitch by elevator is 0.8488: ")

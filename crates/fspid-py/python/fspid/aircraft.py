@@ -58,6 +58,11 @@ def show(name: str | PathLike[str]) -> Answer:
     return Answer(_asked("show", name, None, None, None))
 
 
+def check(name: str | PathLike[str]) -> Answer:
+    """Check the file of an aircraft: its motions, and in ``warnings`` what in its numbers is hardly meant."""
+    return Answer(_asked("check", name, None, None, None))
+
+
 def trim(
     name: str | PathLike[str],
     *,
