@@ -15,10 +15,10 @@ const LEAST_TAIL: usize = 10;
 
 /// Why nothing at rest speaks of a flight that was flown.
 ///
-/// [`Doubt::HeldByGuard`] where its last sample is beyond the controller's sample guard; [`Doubt::RunsAway`] where that of a plant
-/// that does not come to rest by itself ends at a limit of controller or servo with an error that grows, through the last tenth of
-/// it, at every sample; and [`Doubt::SwingAtLimits`] where that of a linear plant, flown on, meets limits in a swing that does not
-/// shrink, or is lost.
+/// [`Doubt::HeldByGuard`] where its last sample, or that of the flight as it goes on, is beyond the controller's sample guard;
+/// [`Doubt::RunsAway`] where that of a plant that does not come to rest by itself ends at a limit of controller or servo with an
+/// error that grows, through the last tenth of it, at every sample; and [`Doubt::SwingAtLimits`] where that of a linear plant is lost, or flown on meets limits in a swing that
+/// does not shrink, and where that of another plant ends in such a swing.
 #[must_use]
 pub fn doubt_of_flight(
     scenario: &Scenario,
@@ -32,7 +32,7 @@ pub fn doubt_of_flight(
     if runs_away(scenario, controller, trace) && moves().is_some_and(|it| it != Moves::Back) {
         return Some(Doubt::RunsAway);
     }
-    flown_on::is_lost(scenario, controller, trace, moves).then_some(Doubt::SwingAtLimits)
+    flown_on::doubt(scenario, controller, trace, moves)
 }
 
 /// The same of one of a scenario's controllers, for who has not flown it; none where it cannot be flown.

@@ -29,11 +29,11 @@ impl Surroundings {
         models.any(|it| it.noise_density > 0.0 || it.drift > 0.0)
     }
 
-    /// The same with sensors whose bias and scale stay.
-    pub(crate) fn without_noise(&self) -> Self {
+    /// The same with sensors that show neither noise nor drift from some time on; their bias and scale stay.
+    pub(crate) fn silent_from(&self, at_s: f64) -> Self {
         let mut own = self.clone();
         let sensors = own.pitch_sensor.iter_mut().chain(&mut own.rate_sensor);
-        sensors.for_each(|sensor| *sensor = sensor.without_noise());
+        sensors.for_each(|sensor| *sensor = sensor.silent_from(at_s));
         own
     }
 }

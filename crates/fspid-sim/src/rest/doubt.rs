@@ -63,7 +63,7 @@ pub enum Doubt {
     IntegralLimits,
     /// A flight ended with a sample that the controller does not believe.
     #[error(
-        "the flight ends with a sample beyond the controller's sample guard, for which the command is held: nobody holds the aircraft until a sample is believed again; a larger sample_guard_deg, or a smaller set-point, leaves the controller at work"
+        "the flight ends, as it is or flown on, with a sample beyond the controller's sample guard, for which the command is held: nobody holds the aircraft until a sample is believed again; a larger sample_guard_deg, or a smaller set-point, leaves the controller at work"
     )]
     HeldByGuard,
     /// A sensor shows values of changing age: of the pitch loop, which is stable with one of them and not with another; of a mode
@@ -169,7 +169,7 @@ pub enum Doubt {
     RunsAway,
     /// A flight, flown on, is lost, or meets limits in a swing that does not shrink.
     #[error(
-        "limits are met, and flown on for ten times as long the flight does not settle: it swings on between them or is lost, as a longer flight shows; wider limits, smaller or slower commands, or lower gains may hold it"
+        "limits are met, and the flight does not settle, nor when it is flown on (linear plants are, for ten times as long): it swings on between them or is lost, as a longer flight shows; wider limits, smaller or slower commands, or lower gains may hold it"
     )]
     SwingAtLimits,
 }
@@ -183,6 +183,19 @@ fn in_words(spectral_radius: f64) -> String {
 }
 
 impl Doubt {
+    /// True for what a limit makes of a flight: small motions, and their margins, say nothing of it.
+    #[must_use]
+    pub const fn is_of_limits(self) -> bool {
+        matches!(
+            self,
+            Self::IntegralLimits
+                | Self::HeldByGuard
+                | Self::BeyondLimits
+                | Self::RunsAway
+                | Self::SwingAtLimits
+        )
+    }
+
     /// True for what is no loop of a plant at rest: a set-point that is held says nothing of it.
     #[must_use]
     pub fn is_beyond_the_loop(self) -> bool {

@@ -228,10 +228,12 @@ impl SensorState {
         let [kept, added] = self.drift_step;
         let (sensor, number) = (self.sensor, usize::try_from(j).unwrap_or(usize::MAX));
         let normal = |source: u64| standard_normal(sensor.seed, sensor.stream(source), number);
+        let is_drawn = j as f64 * self.period_s < sensor.silent_from_s;
         if j > 0 && added > 0.0 {
-            self.drift = kept * self.drift + added * normal(2);
+            self.drift = kept * self.drift + if is_drawn { added * normal(2) } else { 0.0 };
         }
-        let noise = if show && self.noise > 0.0 { self.noise * normal(0) } else { 0.0 };
+        let is_noisy = is_drawn && show && self.noise > 0.0;
+        let noise = if is_noisy { self.noise * normal(0) } else { 0.0 };
         let (newer, older, part) = self.places(k, j);
         View { newer, older, part, added: [self.bias, self.drift, noise] }
     }

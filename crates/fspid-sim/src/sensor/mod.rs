@@ -81,6 +81,8 @@ pub struct Sensor {
     model: SensorModel,
     seed: u64,
     channel: u32,
+    /// From here on nothing is drawn any more.
+    silent_from_s: f64,
 }
 
 impl Sensor {
@@ -106,7 +108,7 @@ impl Sensor {
         if model.drift > 0.0 {
             positive("drift time, s", model.drift_time_s)?;
         }
-        Ok(Self { model, seed, channel })
+        Ok(Self { model, seed, channel, silent_from_s: f64::INFINITY })
     }
 
     /// What it does.
@@ -115,9 +117,9 @@ impl Sensor {
         &self.model
     }
 
-    /// The same without noise and drift, with its bias.
-    pub(crate) fn without_noise(self) -> Self {
-        Self { model: SensorModel { noise_density: 0.0, drift: 0.0, ..self.model }, ..self }
+    /// The same without noise from some time on, and with a drift that dies out from there on.
+    pub(crate) fn silent_from(self, silent_from_s: f64) -> Self {
+        Self { silent_from_s, ..self }
     }
 
     /// What small motions around rest see of it: scale and age.

@@ -76,6 +76,11 @@ impl Disturbance {
         self.shape.goes_on()
     }
 
+    /// True for one of some size that has begun by then.
+    pub(crate) fn acts_by(&self, at_s: f64) -> bool {
+        self.amplitude_rad != 0.0 && self.shape.starts_s() <= at_s
+    }
+
     /// As [`Shape::period_s`].
     pub(crate) fn period_s(&self) -> Option<(f64, f64)> {
         self.shape.period_s()

@@ -118,6 +118,8 @@ pub(super) fn cases(
             refuse_doubt(result, |_| true)?;
             return Ok(vec![Case { value: 1.0, place: CasePlace::default() }]);
         }
+    } else {
+        refuse_doubt(result, Doubt::is_of_limits)?;
     }
     cases.extend(rest_cases(loops, requirement)?);
     Ok(cases)

@@ -1,0 +1,168 @@
+//! Extended simulation of a linear plant behind limits whose flight has not come to rest, or ends in a limit cycle: does it
+//! settle when the simulation continues past the end of the flight?
+//!
+//! Around a rest that limits leave, small motions decay; a swing that meets limits may grow from there on, or stay. Of such a
+//! flight nothing at rest speaks, so that it is flown on: with what is held at its end, and with what swings, and once without
+//! what moves it, which would hide a swing that stays. A sample guard is a limit too: beyond it a command is held for good.
+
+mod moved;
+mod pieces;
+
+use core::ops::ControlFlow;
+
+use crate::closed_loop::fly;
+use crate::controller::Controller;
+use crate::held_limits::{Ends, Moves};
+use crate::rest::Doubt;
+use crate::sample_guard;
+use crate::scenario::Scenario;
+use crate::signal::{Disturbance, Entry};
+use crate::trace::{Outcome, Trace};
+use moved::{Afterwards, Moved, changes_late, has_swings, held_on, is_noisy};
+use pieces::Pieces;
+
+/// So many times as long a flight is flown on.
+const TIMES: usize = 10;
+/// Samples of it, at least and at most.
+const SAMPLES: [usize; 2] = [10_000, 100_000];
+/// It comes to rest in two of so many pieces of it, or in longer ones.
+const PIECES: usize = 50;
+/// Fewest samples of a fifth of which something is said.
+const LEAST_FIFTH: usize = 10;
+/// A flight that has shown so many periods of what swings has shown which limits are met.
+const PERIODS: f64 = 2.0;
+
+/// Why a flight behind limits is in doubt: it is lost, or it has not come to rest, and flown on is lost, or still meets limits in
+/// a swing that does not shrink, or is held by its sample guard.
+///
+/// Of plants that are not linear, and in moving air, which is that of a way that ends with the flight, the flight itself is asked
+/// for a swing that stays at limits, and not flown on.
+pub(crate) fn doubt(
+    scenario: &Scenario,
+    controller: &Controller,
+    trace: &Trace,
+    moves: impl FnOnce() -> Option<Moves>,
+) -> Option<Doubt> {
+    let rows = scenario.timing.rows();
+    let ends = Ends::of(scenario, controller);
+    if ends.are_none() && !sample_guard::is_set(controller) {
+        return None;
+    }
+    let is_linear = scenario.plant.linear().is_some();
+    if trace.rows() < rows {
+        // Without limits a loop that holds at rest holds; what ends another plant's flight is told by its verdict.
+        return is_linear.then_some(Doubt::SwingAtLimits);
+    }
+    let pieces = pieces_of(scenario, &ends, trace);
+    let flies_on = is_linear && scenario.surroundings.weather.is_none();
+    if has_come_to_rest(scenario, &pieces, trace) {
+        return None;
+    }
+    let moves = moves()?;
+    let moved = moved_in_flight(scenario);
+    if !flies_on {
+        let ends_as_it_flies = !changes_late(scenario, &trace.setpoint_rad);
+        let swings_on = ends_as_it_flies && pieces.swings_on(moved, moves);
+        return swings_on.then_some(Doubt::SwingAtLimits);
+    }
+    // One that is as long as that is its own answer.
+    if rows > SAMPLES[1] {
+        return pieces.goes_on(moved, moves).then_some(Doubt::SwingAtLimits);
+    }
+    // At a limit that it has met once, noise may carry a plant that runs away over the edge; any other that still meets them.
+    let meets = if moves == Moves::Away { pieces.whole().meets } else { pieces.tail().meets };
+    let ways = [
+        (Afterwards::Swings, true),
+        (Afterwards::Quiet, has_swings(scenario)),
+        (Afterwards::Noise, is_noisy(scenario) && meets),
+    ];
+    let mut asked = ways.into_iter().filter(|(_, is_asked)| *is_asked);
+    asked.find_map(|(afterwards, _)| {
+        doubt_flown_on(scenario, controller, &ends, (afterwards, moves))
+    })
+}
+
+/// What moves the flight itself; moving air does as noise.
+fn moved_in_flight(scenario: &Scenario) -> Moved {
+    match scenario.has_moving_air() {
+        true => Moved::ByNoise,
+        false => Moved::of(scenario, Afterwards::Noise),
+    }
+}
+
+/// The flight itself in five pieces, and what is left.
+fn pieces_of<'a>(scenario: &Scenario, ends: &'a Ends, trace: &Trace) -> Pieces<'a> {
+    let at_servo = scenario.loads_rad(Entry::Servo);
+    let mut pieces = Pieces::new(scenario, ends, (trace.rows() / 5).max(1));
+    for k in 0..trace.rows() {
+        let load_rad = at_servo.as_ref().and_then(|it| it.get(k)).copied().unwrap_or(0.0);
+        let error_rad = trace.setpoint_rad[k] - trace.theta_rad[k];
+        pieces.push(error_rad, trace.command_rad[k], load_rad, trace.elevator_rad[k]);
+    }
+    pieces
+}
+
+/// True where the flight itself has come to rest; or where something moves it for ever, what it does, without limits, once its
+/// beginning has died out.
+fn has_come_to_rest(scenario: &Scenario, pieces: &Pieces<'_>, trace: &Trace) -> bool {
+    let has_ended = || match moved_in_flight(scenario) {
+        Moved::Nothing => pieces.rests(),
+        Moved::BySwings => {
+            !pieces.tail().meets && pieces.repeats() && has_shown_its_swings(scenario)
+        }
+        Moved::ByNoise => {
+            !pieces.whole().meets && pieces.is_quiet() && has_shown_its_swings(scenario)
+        }
+    };
+    // Of a few samples nothing is said.
+    pieces.length >= LEAST_FIFTH && has_ended() && !changes_late(scenario, &trace.setpoint_rad)
+}
+
+/// True where a flight holds some periods of everything that swings.
+fn has_shown_its_swings(scenario: &Scenario) -> bool {
+    let end_s = scenario.timing.end_s();
+    let of_disturbances = scenario.disturbances.iter().filter_map(Disturbance::period_s);
+    let mut periods = of_disturbances.chain(scenario.setpoint.period_s());
+    periods.all(|(from_s, period_s)| from_s > end_s || from_s + PERIODS * period_s <= end_s)
+}
+
+/// Why the flight is in doubt as it goes on; what cannot be flown on says nothing.
+fn doubt_flown_on(
+    scenario: &Scenario,
+    controller: &Controller,
+    ends: &Ends,
+    (afterwards, moves): (Afterwards, Moves),
+) -> Option<Doubt> {
+    let rows = scenario.timing.rows();
+    let horizon = (TIMES * rows).clamp(SAMPLES[0], SAMPLES[1]);
+    let prepared = held_on(scenario, horizon, afterwards)?;
+    let mut pieces = Pieces::new(scenario, ends, (rows / 5).max(horizon / PIECES));
+    let moved = Moved::of(scenario, afterwards);
+    let (mut rested, mut is_held, mut own) = (false, false, None);
+    let outcome = fly(&prepared, controller, |instant| {
+        let load_rad =
+            prepared.at_servo.as_ref().and_then(|it| it.get(instant.k)).copied().unwrap_or(0.0);
+        let error_rad = instant.setpoint_rad - instant.theta_rad;
+        pieces.push(error_rad, instant.step.command_rad, load_rad, instant.elevator_rad);
+        if instant.k + 1 == rows {
+            own = Some(pieces.whole());
+        }
+        let [theta_rad, rate_rad_s] = instant.measured;
+        is_held =
+            sample_guard::is_beyond(controller, [instant.setpoint_rad, theta_rad, rate_rad_s]);
+        let is_seen = instant.k > rows + 2 * pieces.length && pieces.is_whole();
+        rested = moved == Moved::Nothing && is_seen && pieces.rests();
+        if rested { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    let is_lost = !matches!(outcome.ok()?, Outcome::Completed);
+    match (is_held, rested) {
+        (true, _) => Some(Doubt::HeldByGuard),
+        (false, true) => None,
+        (false, false) => {
+            let has_grown =
+                || moved == Moved::ByNoise && own.is_some_and(|own| pieces.has_doubled_since(own));
+            let goes_on = is_lost || pieces.goes_on(moved, moves) || has_grown();
+            goes_on.then_some(Doubt::SwingAtLimits)
+        }
+    }
+}

@@ -1,0 +1,213 @@
+//! A flight in pieces: how far error and command move in each, and which of them meet a limit.
+
+use super::moved::Moved;
+use crate::held_limits::{Ends, Moves};
+use crate::scenario::Scenario;
+
+/// What moves within a part of the flight by no more than this share of all its movement has come to rest.
+const RESTS: f64 = 1e-3;
+/// With nothing that moves it, a swing that does not shrink by a hundredth stays.
+const STAYS: f64 = 0.99;
+/// What has moved so many times as much has grown.
+const GROWN: f64 = 1.05;
+/// Under noise two parts of a flight differ by chance: what has doubled has grown.
+const GROWN_IN_NOISE: f64 = 2.0;
+/// Swings whose extremes differ by no more than this share of their size repeat.
+const ALIKE: f64 = 1e-3;
+/// So many steps of a sensor's resolution are a swing that it makes by itself: about a place between two of them.
+const UNSEEN: f64 = 2.0;
+/// Under noise an error that moves in the last two fifths by no more than this share of all its movement has come to an end.
+const QUIET: f64 = 0.2;
+/// A limit of rate is met a thousandth before it, for rounding.
+const AT_RATE: f64 = 0.999;
+
+/// Least and largest of a quantity, rad.
+#[derive(Clone, Copy, Debug)]
+struct Reach {
+    least_rad: f64,
+    most_rad: f64,
+}
+
+impl Reach {
+    const NONE: Self = Self { least_rad: f64::INFINITY, most_rad: f64::NEG_INFINITY };
+
+    const fn at(value_rad: f64) -> Self {
+        Self { least_rad: value_rad, most_rad: value_rad }
+    }
+
+    fn and(self, other: Self) -> Self {
+        Self {
+            least_rad: self.least_rad.min(other.least_rad),
+            most_rad: self.most_rad.max(other.most_rad),
+        }
+    }
+
+    fn size_rad(self) -> f64 {
+        (self.most_rad - self.least_rad).max(0.0)
+    }
+
+    /// True for swings of the same extremes, but for so much.
+    fn is_like(self, other: Self, but_rad: f64) -> bool {
+        let apart_rad =
+            (self.least_rad - other.least_rad).abs().max((self.most_rad - other.most_rad).abs());
+        apart_rad <= ALIKE * self.size_rad() + but_rad
+    }
+}
+
+/// What error and command do over some samples, and whether a limit was met in them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Span {
+    error: Reach,
+    command: Reach,
+    pub(super) meets: bool,
+}
+
+impl Span {
+    const NONE: Self = Self { error: Reach::NONE, command: Reach::NONE, meets: false };
+
+    fn and(self, other: Self) -> Self {
+        Self {
+            error: self.error.and(other.error),
+            command: self.command.and(other.command),
+            meets: self.meets || other.meets,
+        }
+    }
+
+    fn of(spans: &[Self]) -> Self {
+        spans.iter().fold(Self::NONE, |all, one| all.and(*one))
+    }
+}
+
+/// A flight in pieces of one length; the last may be shorter.
+pub(super) struct Pieces<'a> {
+    ends: &'a Ends,
+    pub(super) length: usize,
+    /// An error that moves by no more has not moved for a sensor of such a resolution.
+    unseen_rad: f64,
+    samples: usize,
+    all: Vec<Span>,
+    before: Option<[f64; 2]>,
+}
+
+impl<'a> Pieces<'a> {
+    pub(super) fn new(scenario: &Scenario, ends: &'a Ends, length: usize) -> Self {
+        let resolution_rad =
+            scenario.surroundings.pitch_sensor.map_or(0.0, |it| it.model().resolution);
+        let unseen_rad = UNSEEN * resolution_rad;
+        Self { ends, length, unseen_rad, samples: 0, all: Vec::new(), before: None }
+    }
+
+    /// Takes a sample: its error, its command, what acts beside it at the servo, and the elevator.
+    pub(super) fn push(
+        &mut self,
+        error_rad: f64,
+        command_rad: f64,
+        at_servo_rad: f64,
+        elevator_rad: f64,
+    ) {
+        let [by_command, by_elevator] = self.before.map_or([0.0; 2], |[command, elevator]| {
+            [command_rad - command, elevator_rad - elevator]
+        });
+        self.before = Some([command_rad, elevator_rad]);
+        let meets = self.ends.are_met(command_rad, at_servo_rad)
+            || self.ends.are_met_by_moving(AT_RATE, by_command, by_elevator);
+        let sample = Span { error: Reach::at(error_rad), command: Reach::at(command_rad), meets };
+        if self.samples.is_multiple_of(self.length) {
+            self.all.push(Span::NONE);
+        }
+        self.samples += 1;
+        if let Some(last) = self.all.last_mut() {
+            *last = last.and(sample);
+        }
+    }
+
+    pub(super) fn whole(&self) -> Span {
+        Span::of(&self.all)
+    }
+
+    /// The last two pieces, one of them whole.
+    pub(super) fn tail(&self) -> Span {
+        Span::of(&self.all[self.all.len().saturating_sub(2)..])
+    }
+
+    /// True where the last two pieces have come to rest: within the limits with a command that stands, for an error alone stands
+    /// too where it turns, and before a response has begun; or as well as the sensor sees.
+    pub(super) fn rests(&self) -> bool {
+        let (whole, tail) = (self.whole(), self.tail());
+        let stands = |of: fn(Span) -> Reach| of(tail).size_rad() <= RESTS * of(whole).size_rad();
+        tail.error.size_rad() <= self.unseen_rad
+            || (!tail.meets && stands(|it| it.error) && stands(|it| it.command))
+    }
+
+    /// True where the last piece is whole.
+    pub(super) fn is_whole(&self) -> bool {
+        self.samples.is_multiple_of(self.length)
+    }
+
+    /// True where the last two pieces are whole and alike.
+    pub(super) fn repeats(&self) -> bool {
+        match self.all.last_chunk() {
+            Some([one, other]) if self.is_whole() => one.error.is_like(other.error, 0.0),
+            _ => false,
+        }
+    }
+
+    /// True where little is left of a beginning, under noise.
+    pub(super) fn is_quiet(&self) -> bool {
+        self.tail().error.size_rad() <= QUIET * self.whole().error.size_rad()
+    }
+
+    /// The flight in five parts.
+    fn fifths(&self) -> [Span; 5] {
+        let pieces = self.all.len();
+        std::array::from_fn(|part| Span::of(&self.all[part * pieces / 5..(part + 1) * pieces / 5]))
+    }
+
+    /// True where limits are still met near the end of a flight that was flown on, and the error moves there as one does that
+    /// will not settle: a last fifth beside the one before it; or of a swing that is longer, the last two beside the first two.
+    ///
+    /// With nothing that moves it, what still meets limits then has not settled. Moved by swings it grows; and the error of a
+    /// plant that runs away has to repeat what it did, for at a limit such a plant may be held by luck. Under noise it doubles.
+    pub(super) fn goes_on(&self, moved: Moved, moves: Moves) -> bool {
+        let [.., fourth, fifth] = self.fifths();
+        let end = fourth.and(fifth);
+        end.meets
+            && match (moved, moves) {
+                // What a limit keeps short of its set-point stands still there.
+                (_, Moves::Back) if self.stands(end) => false,
+                (Moved::Nothing, _) => true,
+                (Moved::BySwings, Moves::Away) => {
+                    !fifth.error.is_like(fourth.error, self.unseen_rad)
+                }
+                (Moved::BySwings, Moves::On | Moves::Back) => self.grows(GROWN),
+                (Moved::ByNoise, _) => self.grows(GROWN_IN_NOISE),
+            }
+    }
+
+    /// True for a flight that is not flown on, at the end of which limits are met again and again in an error that does not
+    /// shrink.
+    pub(super) fn swings_on(&self, moved: Moved, moves: Moves) -> bool {
+        let [.., fourth, fifth] = self.fifths();
+        let stands = moves == Moves::Back && self.stands(fourth.and(fifth));
+        let times = if moved == Moved::Nothing { STAYS } else { GROWN_IN_NOISE };
+        fourth.meets && fifth.meets && !stands && self.grows(times)
+    }
+
+    /// True where the error moves in the last two fifths, under noise at limits, twice as much as in an earlier part.
+    pub(super) fn has_doubled_since(&self, earlier: Span) -> bool {
+        let [.., fourth, fifth] = self.fifths();
+        let end = fourth.and(fifth);
+        end.meets && end.error.size_rad() >= GROWN_IN_NOISE * earlier.error.size_rad()
+    }
+
+    fn stands(&self, part: Span) -> bool {
+        part.error.size_rad() <= RESTS * self.whole().error.size_rad()
+    }
+
+    fn grows(&self, times: f64) -> bool {
+        let [first, second, _, fourth, fifth] = self.fifths();
+        let (start, end) = (first.and(second).error, fourth.and(fifth).error);
+        fifth.error.size_rad() >= times * fourth.error.size_rad()
+            || end.size_rad() >= times.max(GROWN) * start.size_rad()
+    }
+}
