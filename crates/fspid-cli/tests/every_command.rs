@@ -118,7 +118,7 @@ fn every_command_answers_with_one_json_object() {
         let answer = json(&output);
         assert!(!answer[key].is_null(), "{words} has no {key}: {answer}");
         // A schema itself is the only answer without the version of its shape.
-        assert!(answer["schema"].is_u64() || words == "schema", "{words}: {answer}");
+        assert!(answer["schema"].is_u64() || words.starts_with("schema"), "{words}: {answer}");
     }
 }
 

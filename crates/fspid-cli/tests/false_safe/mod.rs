@@ -146,7 +146,13 @@ mod tests {
     #[test]
     fn held_commands_within_the_limit_of_the_closed_form_are_stable() {
         for number in 0..40 {
-            let within = bad::held_command_within(&mut Drawn(number));
+            let mut within = bad::held_command_within(&mut Drawn(number));
+            // A step of that size swings on at the limit of the rate, whatever small motions do.
+            within.text = within
+                .text
+                .lines()
+                .filter(|it| !it.starts_with("slew_"))
+                .fold(String::new(), |text, line| text + line + "\n");
             let study = file::parse(&within.text, "good.toml", None, &[]).expect("allowed");
             let flown = Simulation::of(&study).expect("it flies");
             let at_rest = &flown.results[0].at_rest;
