@@ -29,7 +29,7 @@ impl CheckedFile {
         if let Ok(rechecked) = &self.result {
             push_lines(&mut out, [rechecked_line(rechecked)]);
             push_lines(&mut out, kept(certificate, rechecked));
-            push_lines(&mut out, [gains_line(rechecked.bounds)]);
+            push_lines(&mut out, [gains_line(rechecked.bounds, Some(rechecked))]);
             push_lines(&mut out, self.told(rechecked).sentences());
         }
         push_seal(&mut out, &self.seal);

@@ -176,7 +176,7 @@ pub(super) fn sentence(certificate: &Certificate) -> String {
 fn outcome_lines(outcome: &Outcome) -> Vec<Line> {
     let mut lines = Vec::new();
     lines.extend(outcome.open_because.as_ref().map(|it| ("open because", it.to_string())));
-    lines.push(gains_line(outcome.bounds));
+    lines.push(gains_line(outcome.bounds, found(outcome).map(|(_, rechecked)| rechecked)));
     if let Some((certificate, rechecked)) = found(outcome) {
         lines.extend(claim_lines(certificate, Some(rechecked)));
         lines.push(rechecked_line(rechecked));
@@ -188,10 +188,17 @@ fn outcome_lines(outcome: &Outcome) -> Vec<Line> {
     lines
 }
 
-/// Between which values each gain lies.
-pub(super) fn gains_line(bounds: [Interval; 3]) -> Line {
+/// What is said of bounds of gains within which the law does not reach every combination.
+pub(super) const GAINS_REACHED: &str = "not every combination of these: those that the law reaches";
+
+/// Between which values each gain lies, with what the re-check of a claim found of them.
+pub(super) fn gains_line(bounds: [Interval; 3], rechecked: Option<&Rechecked>) -> Line {
     let [kp, ki, kd] = bounds.map(range);
-    ("gains", format!("kp {kp}, ki {ki}, kd {kd}"))
+    let reached = match rechecked.is_some_and(|rechecked| rechecked.gains_are_reached) {
+        true => format!(" ({GAINS_REACHED})"),
+        false => String::new(),
+    };
+    ("gains", format!("kp {kp}, ki {ki}, kd {kd}{reached}"))
 }
 
 /// How fast each gain may move; half the width of its box or more in a sample is as it likes.
