@@ -185,11 +185,12 @@ fn kept(rechecked: &Rechecked) -> Option<&'static str> {
 }
 
 fn comparison(against: &Comparison) -> Value {
-    json!({
+    let told = json!({
         "scenario": against.scenario,
         "same": against.is_same(),
         "differences": against.differences,
         "partly": against.partly,
         "digests": against.other_text,
-    })
+    });
+    merged([told, present(json!({ "members": against.members }))])
 }

@@ -7,9 +7,9 @@ use fspid_numeric::scalar::Interval;
 use fspid_proof::{Bearing, BoundedRate, Certificate, Claim, Outcome, Rechecked, Verdict};
 use fspid_sim::Controller;
 
-use super::scope::{Told, asked_in_words};
+use super::scope::{NOT_IN_CLAIM, Told, asked_in_words};
 use super::told::at_most;
-use super::{Certification, Certified, DisturbanceAnswer};
+use super::{Certification, Certified, DisturbanceAnswer, FamilyAnswer};
 
 impl Certification {
     /// The answer of `certify --format text`.
@@ -72,9 +72,16 @@ impl Certified {
     pub(super) fn lines(&self) -> Vec<Line> {
         let Ok(outcome) = &self.outcome else { return Vec::new() };
         let mut lines = outcome_lines(outcome);
-        // A proved one is among what the certificate says.
-        let family = self.family.as_ref().filter(|it| !it.is_proved());
-        lines.extend(family.map(|it| ("family", it.text())));
+        // A proved one is among what the certificate says, whose last sentences are of what is not in its claim.
+        match self.family.as_ref().and_then(FamilyAnswer::beside_the_claim) {
+            Some((NOT_IN_CLAIM, it)) if lines.iter().any(|(about, _)| *about == NOT_IN_CLAIM) => {
+                lines.push(("", it));
+            }
+            Some(line) if self.family.as_ref().is_some_and(|it| it.not_held().is_some()) => {
+                lines.insert(0, line);
+            }
+            line => lines.extend(line),
+        }
         let trouble = self.disturbances.as_ref().and_then(DisturbanceAnswer::trouble);
         lines.extend(trouble.map(|reason| ("disturbances", format!("NOT BOUNDED: {reason}"))));
         let nonlinear = self.nonlinear.as_ref().filter(|it| !it.is_proved());
