@@ -60,6 +60,7 @@ impl CheckedFile {
             scenario: study.scenario.name.clone(),
             differences,
             partly,
+            members: None,
             other_text: (digests[0] != digests[1]).then_some(digests),
         });
         Ok(())
@@ -88,19 +89,24 @@ impl CheckedFile {
             let described = LoopDescription::of(scenario, plant, &named?.controller).ok()?;
             (described == *own).then_some(plant)
         });
-        let differs = |plant| family::differs(family, template, (own, plant));
-        let flown = loops.map(differs).next();
+        let compared = |plant| family::compared(family, template, (own, plant));
+        let flown = loops.map(compared).next();
         // What the family is about is left out of nothing.
         against.differences.retain(|it| it.flown != quoted(LeftOut::Dispersions));
         if cases::has_choices(study) && !of_one_choice {
             against.differences.push(not_left_out(LeftOut::OtherChoices));
         }
-        let Some(flown) = flown.unwrap_or_else(|| Some("another loop".to_owned())) else {
-            return Ok(());
+        let another_loop = || {
+            let certified = family::box_in_words(&family.parameters);
+            Err(family::Differs { path: "family", certified, flown: "another loop".to_owned() })
         };
-        let path = "family".to_owned();
-        let certified = family::box_in_words(&family.parameters);
-        against.differences.push(Difference { path, certified, flown });
+        match flown.unwrap_or_else(another_loop) {
+            Ok(as_flown) => against.members = as_flown.not_proved_between(),
+            Err(family::Differs { path, certified, flown }) => {
+                let path = path.to_owned();
+                against.differences.push(Difference { path, certified, flown });
+            }
+        }
         Ok(())
     }
 

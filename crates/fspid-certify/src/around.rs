@@ -5,8 +5,17 @@ use fspid_diagnostics::digits::{to_digits, to_six_decimals};
 use fspid_sim::stability::Unstable;
 use fspid_sim::{Controller, Scenario};
 
-use fspid_study::analysis::{AtRest, held_in_words};
+use fspid_study::analysis::{Around, AtRest, held_in_words};
 use fspid_study::metrics::Absent;
+
+/// Why a flight may not hold: outer loops around the pitch loop, or anything else of it; that it has no linear model as well.
+pub(super) fn trouble_in_words(scenario: &Scenario, controller: &Controller) -> Option<String> {
+    let of_modes = match Around::of(scenario, controller) {
+        Ok(around) => around.as_ref().and_then(Around::trouble),
+        Err(error) => Some(error.to_string()),
+    };
+    of_modes.or_else(|| not_held_in_words(scenario, controller))
+}
 
 /// That a flight grows at rest, with a plant or an aircraft of later, by what is no pitching or with the outer loops around the
 /// certified one, of which a certificate does not speak; that this is not known counts as well. None where everything holds.

@@ -29,7 +29,7 @@ impl CheckedFile {
         if let Ok(rechecked) = &self.result {
             push_lines(&mut out, [rechecked_line(rechecked)]);
             push_lines(&mut out, kept(certificate, rechecked));
-            push_lines(&mut out, [gains_line(rechecked.bounds)]);
+            push_lines(&mut out, [gains_line(rechecked.bounds, Some(rechecked))]);
             push_lines(&mut out, self.told(rechecked).sentences());
         }
         push_seal(&mut out, &self.seal);
@@ -96,7 +96,7 @@ fn push_seal(out: &mut String, seal: &Seal) {
 }
 
 fn push_against(out: &mut String, against: &Comparison) {
-    let Comparison { scenario, differences, partly, other_text } = against;
+    let Comparison { scenario, differences, partly, members, other_text } = against;
     match differences.len() {
         0 => out.push_str(&format!(
             "  against \"{scenario}\": every field of the loop is what flies\n"
@@ -107,8 +107,8 @@ fn push_against(out: &mut String, against: &Comparison) {
     for it in differences {
         out.push_str(&format!("    {}: certified {}, flown {}\n", it.path, it.certified, it.flown));
     }
-    if let Some(partly) = partly {
-        out.push_str(&format!("  {partly}\n"));
+    for told in partly.iter().chain(members) {
+        out.push_str(&format!("  {told}\n"));
     }
     if let Some([certified, now]) = other_text {
         out.push_str(&format!(

@@ -11,6 +11,8 @@ pub struct Comparison {
     pub differences: Vec<Difference>,
     /// What flies of what is certified up to a smaller size only; none where all of it is covered.
     pub partly: Option<String>,
+    /// What was asked of members of a certified family as they fly, and is not proved between them; none where nothing was.
+    pub members: Option<String>,
     /// Digests of the scenario's text, certified and now, where they differ. The text may have changed where
     /// nothing of the loop stands.
     pub other_text: Option<[String; 2]>,

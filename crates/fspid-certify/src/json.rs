@@ -106,6 +106,7 @@ fn outcome(outcome: &Outcome, is_held: bool) -> Value {
             "decay_per_sample": certificate.claim.rate(),
             "inequalities": rechecked.inequalities,
             "boxes_of_gains": rechecked.cells,
+            "every_combination_of_gains": !rechecked.gains_are_reached,
             "law_keeps_to_the_rate": kept(rechecked),
             "bearing": bearing.name(),
             "bearing_in_words": bearing.to_string(),
@@ -162,6 +163,7 @@ impl CheckedFile {
                 Ok(rechecked) => json!({
                     "inequalities": rechecked.inequalities,
                     "boxes_of_gains": rechecked.cells,
+                    "every_combination_of_gains": !rechecked.gains_are_reached,
                     "law_keeps_to_the_rate": kept(rechecked),
                     "scope": self.told(rechecked).json(),
                     "gains": gains(rechecked.bounds),
@@ -183,11 +185,12 @@ fn kept(rechecked: &Rechecked) -> Option<&'static str> {
 }
 
 fn comparison(against: &Comparison) -> Value {
-    json!({
+    let told = json!({
         "scenario": against.scenario,
         "same": against.is_same(),
         "differences": against.differences,
         "partly": against.partly,
         "digests": against.other_text,
-    })
+    });
+    merged([told, present(json!({ "members": against.members }))])
 }

@@ -67,7 +67,7 @@ pub use checked::{Answer, CheckedFile, check_text, check_text_until};
 pub use comparison::{Comparison, Difference};
 pub use coverage::{COVERAGE, KeyCoverage, Treatment, coverage_table};
 pub use disturbances::DisturbanceAnswer;
-pub use family::{FamilyAnswer, NoFamily};
+pub use family::{AsFlown, FamilyAnswer, NoFamily};
 pub use file::{Origin, SCHEMA, Seal, from_text, to_text};
 pub use fspid_study::analysis::Around;
 pub use no_certificate::NoCertificate;

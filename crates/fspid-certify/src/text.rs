@@ -7,9 +7,9 @@ use fspid_numeric::scalar::Interval;
 use fspid_proof::{Bearing, BoundedRate, Certificate, Claim, Outcome, Rechecked, Verdict};
 use fspid_sim::Controller;
 
-use super::scope::{Told, asked_in_words};
+use super::scope::{NOT_IN_CLAIM, Told, asked_in_words};
 use super::told::at_most;
-use super::{Certification, Certified, DisturbanceAnswer};
+use super::{Certification, Certified, DisturbanceAnswer, FamilyAnswer};
 
 impl Certification {
     /// The answer of `certify --format text`.
@@ -72,9 +72,16 @@ impl Certified {
     pub(super) fn lines(&self) -> Vec<Line> {
         let Ok(outcome) = &self.outcome else { return Vec::new() };
         let mut lines = outcome_lines(outcome);
-        // A proved one is among what the certificate says.
-        let family = self.family.as_ref().filter(|it| !it.is_proved());
-        lines.extend(family.map(|it| ("family", it.text())));
+        // A proved one is among what the certificate says, whose last sentences are of what is not in its claim.
+        match self.family.as_ref().and_then(FamilyAnswer::beside_the_claim) {
+            Some((NOT_IN_CLAIM, it)) if lines.iter().any(|(about, _)| *about == NOT_IN_CLAIM) => {
+                lines.push(("", it));
+            }
+            Some(line) if self.family.as_ref().is_some_and(|it| it.not_held().is_some()) => {
+                lines.insert(0, line);
+            }
+            line => lines.extend(line),
+        }
         let trouble = self.disturbances.as_ref().and_then(DisturbanceAnswer::trouble);
         lines.extend(trouble.map(|reason| ("disturbances", format!("NOT BOUNDED: {reason}"))));
         let nonlinear = self.nonlinear.as_ref().filter(|it| !it.is_proved());
@@ -176,7 +183,7 @@ pub(super) fn sentence(certificate: &Certificate) -> String {
 fn outcome_lines(outcome: &Outcome) -> Vec<Line> {
     let mut lines = Vec::new();
     lines.extend(outcome.open_because.as_ref().map(|it| ("open because", it.to_string())));
-    lines.push(gains_line(outcome.bounds));
+    lines.push(gains_line(outcome.bounds, found(outcome).map(|(_, rechecked)| rechecked)));
     if let Some((certificate, rechecked)) = found(outcome) {
         lines.extend(claim_lines(certificate, Some(rechecked)));
         lines.push(rechecked_line(rechecked));
@@ -188,10 +195,17 @@ fn outcome_lines(outcome: &Outcome) -> Vec<Line> {
     lines
 }
 
-/// Between which values each gain lies.
-pub(super) fn gains_line(bounds: [Interval; 3]) -> Line {
+/// What is said of bounds of gains within which the law does not reach every combination.
+pub(super) const GAINS_REACHED: &str = "not every combination of these: those that the law reaches";
+
+/// Between which values each gain lies, with what the re-check of a claim found of them.
+pub(super) fn gains_line(bounds: [Interval; 3], rechecked: Option<&Rechecked>) -> Line {
     let [kp, ki, kd] = bounds.map(range);
-    ("gains", format!("kp {kp}, ki {ki}, kd {kd}"))
+    let reached = match rechecked.is_some_and(|rechecked| rechecked.gains_are_reached) {
+        true => format!(" ({GAINS_REACHED})"),
+        false => String::new(),
+    };
+    ("gains", format!("kp {kp}, ki {ki}, kd {kd}{reached}"))
 }
 
 /// How fast each gain may move; half the width of its box or more in a sample is as it likes.

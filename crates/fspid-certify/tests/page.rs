@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use fspid_certify::{Cases, Certification, CertifiedCases, Effort, Question, Subject};
+use fspid_certify::{Cases, Certification, CertifiedCases, Effort, Question, Subject, check_text};
 use fspid_scenario::file::Template;
 use serde_json::Value;
 
@@ -120,6 +120,30 @@ fn a_family_has_its_box_in_a_table_and_what_it_lacks_on_the_card() {
     assert_says_all(&page, &found.text());
     assert!(page.contains("The box of the family") && page.contains("actuator.time_constant_s"));
     assert_eq!(page.contains("verdict good"), found.all_proved());
+}
+
+/// They stood there as if every combination of them were meant, of which the law reaches a part.
+#[test]
+fn gains_of_which_the_law_does_not_reach_every_combination_are_told_so() {
+    const TOLD: &str = "(not every combination of these: those that the law reaches)";
+    let set = ["aircraft.name=navion", "aircraft.airspeed_ft_s=120", "setpoint.amplitude_deg=0"];
+    let effort = effort();
+    for (path, set, only, is_told) in [
+        ("data/designs/learned/light-six.toml", &set[..], "FSPID", true),
+        ("scenarios/747-pitch-step.toml", &[][..], "CPID", false),
+    ] {
+        let template = template(path, set);
+        let asked = Question { only: Some(only), ..question(&effort) };
+        let (found, page) = answered(&template, asked);
+        let (text, answer) = (found.text(), found.json());
+        assert_eq!(answer["controllers"][0]["every_combination_of_gains"], !is_told, "{text}");
+        let checked = check_text(&found.certificate_files().expect("written")[0].text);
+        let checked = checked.expect("a certificate");
+        assert_eq!(checked.json()["every_combination_of_gains"], !is_told);
+        for said in [text, as_read(&page), checked.text()] {
+            assert_eq!(said.contains(TOLD), is_told, "{said}");
+        }
+    }
 }
 
 #[test]

@@ -1,9 +1,9 @@
 //! Loops that are proved, of flights that do not hold.
 
-use fspid_scenario::file::parse;
+use fspid_scenario::file::{Extra, Template, parse};
 use serde_json::json;
 
-use crate::{Certification, Effort};
+use crate::{Certification, CheckedFile, Effort, Question, Subject, check_text};
 
 /// A Navion at 40 m/s that is told to go down by 6 deg, which it does at 53 m/s, where the elevator goes from stop to stop.
 const DIVE: &str = r#"
@@ -53,5 +53,140 @@ fn a_loop_is_not_called_proved_where_its_flight_does_not_hold() {
         assert_eq!(answer["controllers"][0]["not_held"].is_null(), holds);
         let bearing = if holds { "flown-loop-stable" } else { "pitch-loop-stable" };
         assert_eq!(answer["controllers"][0]["bearing"], json!(bearing));
+    }
+}
+
+/// All airspeeds of a box at which a Navion flies on, with gains that hold its pitch loop at each.
+const SPEEDS: &str = r#"
+[[dispersion]]
+name = "speed"
+path = "aircraft.airspeed_m_s"
+distribution = "uniform"
+lower = 42.0
+upper = 62.0
+"#;
+
+/// Holds at 52 m/s, and at 56 m/s no longer.
+const OUTER_LOOP: &str = r#"
+[[outer_loop]]
+name = "vertical speed"
+kind = "pid"
+holds = "vertical-speed"
+moves = "pitch"
+kp = 3.2
+ki = 0.5
+least = -10.0
+most = 10.0
+[[mode]]
+name = "level"
+engage = ["vertical speed"]
+"#;
+
+/// That airspeeds are few enough that what flies beside the pitch loop holds at all of them.
+const SLOW: &str = "dispersion[0].upper=47.0";
+/// Wings that grow from some 47 m/s on.
+const WINGS: &str = "aircraft.name.lateral.yaw.beta=-0.016";
+/// A linear plant, as far as what flies goes.
+const LINEAR: &str = "aircraft.model=linear";
+
+fn family_of_speeds(beside: &str, set: &[&str]) -> Template {
+    let text = DIVE.to_owned() + SPEEDS + beside;
+    let calm = [
+        "aircraft.airspeed_m_s=46.0",
+        "setpoint.amplitude_deg=0.0",
+        "controller.PID.kp=1.0",
+        "controller.PID.ki=0.4",
+        "controller.PID.kd=0.2",
+    ];
+    let overrides: Vec<String> = calm.iter().chain(set).map(|&it| it.to_owned()).collect();
+    let extra = Extra { overrides: &overrides, ..Extra::default() };
+    Template::parse(&text, "speeds.toml", None, &extra).unwrap_or_else(|it| panic!("{it}"))
+}
+
+fn asked(template: &Template) -> (Certification, String) {
+    let effort = Effort::default();
+    let question = Question {
+        only: None,
+        disturbances: false,
+        family: true,
+        nonlinear: false,
+        effort: &effort,
+    };
+    let found = Certification::answering(template, question, &mut |_| {}).expect("certified");
+    let page = found.page(Subject { study: template.study(), question, folder: None });
+    (found, page.expect("certificates can be written"))
+}
+
+/// The written family, held against what it is of.
+fn against(found: &Certification, template: &Template) -> CheckedFile {
+    let file = &found.certificate_files().expect("written")[0];
+    let mut checked = check_text(&file.text).expect("a certificate");
+    checked.compare_family(template).expect("compared");
+    checked
+}
+
+/// Whether outer loops and wings hold was asked at the scenario's own airspeed alone: PROVED, "HOLDS, AND IS WHAT FLIES" and exit
+/// code 0, of a box with airspeeds at which `certify` says that they do not.
+#[test]
+fn a_family_is_not_called_proved_where_a_member_does_not_hold_as_it_flies() {
+    for (beside, set, reason) in [
+        (
+            OUTER_LOOP,
+            &[][..],
+            "UNSTABLE with the outer loops of mode level (spectral radius 1.0063",
+        ),
+        ("", &[WINGS][..], "undecided: about the trim something grows that is no pitching"),
+    ] {
+        let template = family_of_speeds(beside, set);
+        let (found, page) = asked(&template);
+        let (text, answer) = (found.text(), found.json());
+        let told = format!("NOT PROVED as it flies: at speed (aircraft.airspeed_m_s) 62: {reason}");
+        assert!(text.contains(&told) && !found.all_proved(), "{text}");
+        let family = &answer["controllers"][0]["family"];
+        assert_eq!(family["verdict"], "not proved as it flies");
+        assert_eq!(family["at"][0]["at"], 62.0);
+        assert!(family["not_held"].as_str().expect("a reason").starts_with(reason), "{family}");
+        assert!(family["in_words"].as_str().expect("words").starts_with(&told), "{family}");
+        assert!(
+            page.contains("NOT PROVED as it flies: at speed") && !page.contains("verdict good")
+        );
+        let checked = against(&found, &template);
+        let text = checked.text();
+        let differs = format!(
+            "    family.at_rest: certified stable, flown at speed (aircraft.airspeed_m_s) 62: {reason}"
+        );
+        assert!(!checked.holds() && text.contains(&differs), "{text}");
+    }
+}
+
+/// What is proved of every member are pitch loops, and of a linear plant there is nothing else.
+#[test]
+fn a_family_says_of_how_many_members_it_was_asked_whether_they_hold_as_they_fly() {
+    for (beside, set, what) in [
+        (OUTER_LOOP, &[SLOW][..], Some("outer loops, roll and yaw")),
+        ("", &[SLOW][..], Some("roll and yaw")),
+        ("", &[LINEAR, WINGS][..], None),
+    ] {
+        let template = family_of_speeds(beside, set);
+        let (found, page) = asked(&template);
+        let (text, answer) = (found.text(), found.json());
+        assert!(found.all_proved() && !text.contains("NOT PROVED"), "{text}");
+        let family = &answer["controllers"][0]["family"];
+        assert_eq!(family["verdict"], "proved");
+        assert_eq!(family["members_asked"], json!(what.map(|_| 3)));
+        let time_s = family["numbers_may_cross_in_s"].as_f64().expect("a time");
+        let row = "time in which a number may go through its range, at least</th>";
+        let (_, rest) = page.split_once(row).expect("a row of the time");
+        assert!(rest.split_once("</tr>").expect("a row").0.contains(&format!(">{time_s}</td>")));
+        assert!(page.contains("scales of sensors may change from sample to sample</th>"));
+        let checked = against(&found, &template);
+        assert!(checked.holds(), "{}", checked.text());
+        let told = what.map(|what| format!("that {what} hold at rest in the family was asked of 3 members, at corners of the box and in its middle, and is not proved between them"));
+        for text in [&text, &page, &checked.text()] {
+            assert!(told.as_ref().is_none_or(|it| text.contains(it)), "{text}");
+            assert_eq!(text.contains("hold at rest in the family"), told.is_some());
+        }
+        let without = format!("                     {}", told.unwrap_or_default());
+        assert!(text.contains(&without), "among what is not in the claim: {text}");
     }
 }

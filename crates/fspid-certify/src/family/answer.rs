@@ -4,7 +4,10 @@ use fspid_diagnostics::digits::to_six_decimals;
 use fspid_proof::{Family, FamilyVerdict, Pace, Parameter};
 use serde_json::{Value, json};
 
-use super::FamilyAnswer;
+use super::{AsFlown, FamilyAnswer};
+use crate::scope::NOT_IN_CLAIM;
+use crate::text::Line;
+use fspid_study::json::{merged, present};
 
 /// A number between two ends, in the words of the scenario.
 fn between(parameter: &Parameter, [from, to]: [f64; 2]) -> String {
@@ -61,6 +64,30 @@ pub(in super::super) fn sentences(family: &Family) -> Vec<String> {
 }
 
 impl FamilyAnswer {
+    /// That a member does not hold as it flies, and what is proved then.
+    fn trouble(&self) -> Option<String> {
+        let Self::Verdict { parameters, .. } = self else { return None };
+        let (at, because) = self.not_held()?;
+        let member = member_in_words(parameters, at);
+        Some(format!(
+            "NOT PROVED as it flies: at {member}: {because}; proved are the pitch loops alone"
+        ))
+    }
+
+    /// What stands beside the sentences of a certificate, in which a proved family is: that it is not proved, or of what that is
+    /// not a proof.
+    pub(in super::super) fn beside_the_claim(&self) -> Option<Line> {
+        match self {
+            Self::Verdict { as_flown: AsFlown::NotHeld { .. }, .. } => {
+                self.trouble().map(|it| ("family", it))
+            }
+            Self::Verdict { as_flown, .. } if self.is_proved() => {
+                as_flown.not_proved_between().map(|it| (NOT_IN_CLAIM, it))
+            }
+            _ => Some(("family", self.text())),
+        }
+    }
+
     /// The answer in capitals, and why.
     pub(in super::super) fn text(&self) -> String {
         match self {
@@ -68,15 +95,19 @@ impl FamilyAnswer {
                 "OPEN: the loop as it is is not proved, so nothing is said of others".to_owned()
             }
             Self::None(reason) => format!("OPEN: {reason}"),
-            Self::Verdict { parameters, verdict } => match &**verdict {
+            Self::Verdict { parameters, verdict, as_flown } => match &**verdict {
                 FamilyVerdict::Proved(family) => {
-                    format!("PROVED: {}", proved(family).join("; "))
+                    let claim = proved(family).join("; ");
+                    match (self.trouble(), as_flown.not_proved_between()) {
+                        (Some(trouble), _) => format!("{trouble}: {claim}"),
+                        (None, Some(between)) => format!("PROVED: {claim}; {between}"),
+                        (None, None) => format!("PROVED: {claim}"),
+                    }
                 }
                 FamilyVerdict::Refuted { at, .. } => {
-                    let set = at.iter().zip(parameters).map(|(at, one)| setting(one, *at));
                     format!(
                         "REFUTED: with gains that the controller has, standing still, the loop grows at {}",
-                        set.collect::<Vec<_>>().join("; ")
+                        member_in_words(parameters, at)
                     )
                 }
                 FamilyVerdict::Open { ends, because } => format!(
@@ -91,6 +122,12 @@ impl FamilyAnswer {
 /// The answer in capitals, and why.
 pub(in super::super) fn in_words(answer: &FamilyAnswer) -> String {
     answer.text()
+}
+
+/// A member by its numbers.
+pub(in super::super) fn member_in_words(parameters: &[Parameter], at: &[f64]) -> String {
+    let set = at.iter().zip(parameters).map(|(at, one)| setting(one, *at));
+    set.collect::<Vec<_>>().join("; ")
 }
 
 /// A member's number.
@@ -109,16 +146,21 @@ pub(in super::super) fn in_json(answer: &FamilyAnswer) -> Value {
     };
     let (verdict, at, parts) = match answer {
         FamilyAnswer::NominalNotProved | FamilyAnswer::None(_) => ("open", Value::Null, None),
-        FamilyAnswer::Verdict { parameters, verdict } => match &**verdict {
-            FamilyVerdict::Proved(family) => {
+        FamilyAnswer::Verdict { parameters, verdict, as_flown } => match (&**verdict, as_flown) {
+            (FamilyVerdict::Proved(family), AsFlown::NotHeld { at, .. }) => {
+                let mut at = at.iter().map(|at| json!(at));
+                let verdict = "not proved as it flies";
+                (verdict, places(parameters, &mut at), Some(family.parts.len()))
+            }
+            (FamilyVerdict::Proved(family), _) => {
                 let mut ends = parameters.iter().map(|one| json!(one.ends));
                 ("proved", places(parameters, &mut ends), Some(family.parts.len()))
             }
-            FamilyVerdict::Refuted { at, .. } => {
+            (FamilyVerdict::Refuted { at, .. }, _) => {
                 let mut at = at.iter().map(|at| json!(at));
                 ("refuted", places(parameters, &mut at), None)
             }
-            FamilyVerdict::Open { ends, .. } => {
+            (FamilyVerdict::Open { ends, .. }, _) => {
                 let mut ends = ends.iter().map(|ends| json!(ends));
                 ("open", places(parameters, &mut ends), None)
             }
@@ -127,12 +169,18 @@ pub(in super::super) fn in_json(answer: &FamilyAnswer) -> Value {
     let scales_may_change = answer.proved().map(Family::scales_may_change);
     let crosses_in_s =
         answer.proved().and_then(|family| family.pace.as_ref()).map(|it| it.crosses_in_s);
-    json!({
+    let members_asked = match answer {
+        FamilyAnswer::Verdict { as_flown: AsFlown::Held { members, .. }, .. } => Some(*members),
+        _ => None,
+    };
+    let told = json!({
         "verdict": verdict,
         "at": at,
         "parts": parts,
         "scales_may_change": scales_may_change,
         "numbers_may_cross_in_s": crosses_in_s,
         "in_words": answer.text(),
-    })
+    });
+    let not_held = answer.not_held().map(|(_, because)| because);
+    merged([told, present(json!({ "not_held": not_held, "members_asked": members_asked }))])
 }

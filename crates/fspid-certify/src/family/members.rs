@@ -100,6 +100,11 @@ impl Members {
         &self.parameters
     }
 
+    /// What the numbers of a member set in the scenario.
+    pub(super) fn values(&self, at: &[f64]) -> Vec<(&SettingPath, NewValue)> {
+        self.drawn.iter().zip(at).flat_map(|(one, &at)| one.values(at)).collect()
+    }
+
     /// The plant of parameters that are no sensor's, as [`fspid_proof::numbers`] has them.
     pub(super) fn plant(&self, at: &[Sloped]) -> Result<ContinuousPlant<Sloped>, NotProved> {
         let mut source = self.source.clone();
@@ -266,8 +271,7 @@ impl Asking<'_> {
         };
         let study: Study =
             self.template.with(values).map_err(|problems| no_member(problems.first_in_a_line()))?;
-        let known = self.template.study().scenario.controllers.iter();
-        let place = known.clone().position(|it| it.controller == self.description.controller);
+        let place = place_of(self.template.study(), self.description);
         let plants =
             lasting_plants(&study.scenario).map_err(|error| no_member(error.to_string()))?;
         let ours = lasting_plants(&self.template.study().scenario)
@@ -280,6 +284,12 @@ impl Asking<'_> {
         LoopDescription::of(&study.scenario, plant, &named.controller)
             .map_err(|refused: NotProvable| no_member(refused.to_string()))
     }
+}
+
+/// The place of a loop's controller among those of its scenario, which no number of a family changes.
+pub(super) fn place_of(study: &Study, description: &LoopDescription) -> Option<usize> {
+    let mut known = study.scenario.controllers.iter();
+    known.position(|it| it.controller == description.controller)
 }
 
 /// True for a dispersion that no loop depends on.

@@ -2,11 +2,13 @@
 //! what they lie.
 
 mod answer;
+mod as_flown;
 mod loop_number;
 mod members;
 mod source;
 
-pub(super) use answer::{box_in_words, in_json, in_words, sentences};
+pub(super) use answer::{box_in_words, in_json, in_words, member_in_words, sentences};
+pub use as_flown::AsFlown;
 pub use members::NoFamily;
 pub(super) use members::{is_in_a_box, is_outside_of_the_loop, reaches_outside_of_the_loop};
 
@@ -29,6 +31,8 @@ pub enum FamilyAnswer {
         parameters: Vec<fspid_proof::Parameter>,
         /// The answer.
         verdict: Box<FamilyVerdict>,
+        /// What came of members as they fly, where the answer is that all are proved.
+        as_flown: AsFlown,
     },
     /// No question can be asked.
     None(NoFamily),
@@ -37,13 +41,22 @@ pub enum FamilyAnswer {
 }
 
 impl FamilyAnswer {
-    /// True if every member is proved stable.
+    /// True if every member is proved stable, and no member that was asked does not hold as it flies.
     #[must_use]
     pub fn is_proved(&self) -> bool {
-        self.proved().is_some()
+        self.proved().is_some() && self.not_held().is_none()
     }
 
-    /// The family, if every member is proved stable.
+    /// A member that does not hold as it flies, and why not.
+    #[must_use]
+    pub fn not_held(&self) -> Option<(&[f64], &str)> {
+        match self {
+            Self::Verdict { as_flown: AsFlown::NotHeld { at, because }, .. } => Some((at, because)),
+            _ => None,
+        }
+    }
+
+    /// The family, if every member is proved stable, as far as pitch loops go.
     #[must_use]
     pub fn proved(&self) -> Option<&Family> {
         match self {
@@ -90,7 +103,9 @@ pub(super) fn certified(
     let plant = |at: &[Sloped]| members.plant(at);
     let parameters = members.parameters().to_vec();
     let verdict = prove_family(description, &parameters, effort, &plant)?;
+    let mut as_flown = AsFlown::LoopAlone;
     if let FamilyVerdict::Proved(family) = &verdict {
+        as_flown = AsFlown::of(&members, template, description, effort.stops)?;
         let mut whole = Certificate { family: Some(family.clone()), ..certificate.clone() };
         match chosen {
             Chosen::AsABox => whole.left_out.retain(|one| *one != LeftOut::Dispersions),
@@ -99,7 +114,7 @@ pub(super) fn certified(
         let rechecked = Rechecked { family: Some(family.checked()), ..rechecked.clone() };
         outcome.verdict = Verdict::Proved(whole, rechecked);
     }
-    Ok(Some(FamilyAnswer::Verdict { parameters, verdict: Box::new(verdict) }))
+    Ok(Some(FamilyAnswer::Verdict { parameters, verdict: Box::new(verdict), as_flown }))
 }
 
 /// A certificate that leaves out other choices in place of all that differs.
@@ -111,23 +126,41 @@ fn is_about_one_choice(certificate: &mut Certificate) {
     }
 }
 
-/// What of a certified family is not what a scenario's dispersions draw of a loop, in words; none where it is.
-pub(super) fn differs(
+/// What of a certified family is not what a scenario's dispersions draw of a loop, or does not hold as it flies: at which path
+/// of an answer, what was certified, and what flies.
+pub(super) struct Differs {
+    pub(super) path: &'static str,
+    pub(super) certified: String,
+    pub(super) flown: String,
+}
+
+/// What of a certified family is not what a scenario flies of a loop; where it is, what came of members as they fly.
+pub(super) fn compared(
     family: &Family,
     template: &Template,
     of: (&LoopDescription, &LinearPlant),
-) -> Option<String> {
-    let members = match Members::of((template, Chosen::Apart), of) {
-        Ok(members) => members,
-        Err(none) => return Some(none.to_string()),
-    };
+) -> Result<AsFlown, Differs> {
+    let certified = || box_in_words(&family.parameters);
+    let differs = |flown: String| Differs { path: "family", certified: certified(), flown };
+    let members = Members::of((template, Chosen::Apart), of);
+    let members = members.map_err(|none| differs(none.to_string()))?;
     if members.parameters() != family.parameters {
-        return Some(box_in_words(members.parameters()));
+        return Err(differs(box_in_words(members.parameters())));
     }
     let encloses = |part: &fspid_proof::FamilyPart| {
         let numbers = numbers(&family.parameters, &part.ends);
         PlantSet::of(&numbers, &|at| members.plant(at)).is_ok_and(|it| part.plants.encloses(&it))
     };
-    let place = family.parts.iter().position(|part| !encloses(part))?;
-    Some(format!("other plants in part {place}"))
+    if let Some(place) = family.parts.iter().position(|part| !encloses(part)) {
+        return Err(differs(format!("other plants in part {place}")));
+    }
+    match AsFlown::of(&members, template, of.0, || false) {
+        Ok(AsFlown::NotHeld { at, because }) => Err(Differs {
+            path: "family.at_rest",
+            certified: "stable".to_owned(),
+            flown: format!("at {}: {because}", member_in_words(&family.parameters, &at)),
+        }),
+        Ok(as_flown) => Ok(as_flown),
+        Err(stopped) => Err(differs(stopped.to_string())),
+    }
 }

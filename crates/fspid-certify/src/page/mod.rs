@@ -104,7 +104,8 @@ impl Certified {
             _ if self.is_proved() => Standing::Good,
             Ok(outcome) if matches!(outcome.verdict, Verdict::Refuted(..)) => Standing::Bad,
             Ok(outcome) if matches!(outcome.verdict, Verdict::Proved(..)) => {
-                match is_refuted || self.trouble().is_some() {
+                let is_flown_apart = self.family.as_ref().is_some_and(|it| it.not_held().is_some());
+                match is_refuted || is_flown_apart || self.trouble().is_some() {
                     true => Standing::Bad,
                     false => Standing::Fair,
                 }
@@ -146,7 +147,9 @@ impl Certified {
 /// True of what stands in the text below the headline where something that was asked beside stability is not proved.
 fn is_beside((about, sentence): &Line) -> bool {
     matches!(*about, "family" | "disturbances" | "nonlinear")
-        && ["OPEN", "REFUTED", "NOT BOUNDED"].iter().any(|word| sentence.starts_with(word))
+        && ["OPEN", "REFUTED", "NOT BOUNDED", "NOT PROVED"]
+            .iter()
+            .any(|word| sentence.starts_with(word))
 }
 
 fn sentences(told: Vec<Line>) -> DataTable {

@@ -3,10 +3,10 @@
 use fspid_diagnostics::digits::to_six_decimals;
 use fspid_page::analysis::{DataTable, Datum};
 use fspid_page::number::significant;
-use fspid_proof::{Certificate, Parameter, Rechecked, Scope};
+use fspid_proof::{Certificate, Family, Parameter, Rechecked, Scope};
 use fspid_scenario::units::degrees;
 
-use crate::text::{found, time_constant_s};
+use crate::text::{GAINS_REACHED, found, time_constant_s};
 use crate::told::{at_least, at_most};
 use crate::{Certified, FamilyAnswer, disturbances};
 
@@ -22,8 +22,10 @@ pub(super) fn of(certified: &Certified) -> Vec<DataTable> {
     if let Some(FamilyAnswer::Verdict { parameters, .. }) = &certified.family {
         tables.push(family(parameters));
     }
+    tables.extend(certified.family.as_ref().and_then(FamilyAnswer::proved).map(moving));
     let bounds = outcome.bounds.map(|it| [it.lower(), it.upper()]);
-    tables.push(gains(bounds));
+    let is_reached = found(outcome).is_some_and(|(_, rechecked)| rechecked.gains_are_reached);
+    tables.push(gains(bounds, is_reached));
     tables
 }
 
@@ -137,12 +139,34 @@ fn family(parameters: &[Parameter]) -> DataTable {
     table("The box of the family, of which it is asked.", &head, rows)
 }
 
-fn gains(bounds: [[f64; 2]; 3]) -> DataTable {
+/// How the numbers of a proved family may move.
+fn moving(family: &Family) -> DataTable {
+    let (time, unit) = match family.pace.as_ref().map(|it| it.crosses_in_s) {
+        Some(time_s) if time_s > 0.0 => (number(time_s.to_string()), "s"),
+        Some(_) => (Datum::Absent("any".to_owned()), ""),
+        None => (Datum::Absent("none is proved".to_owned()), ""),
+    };
+    let scales = if family.scales_may_change() { "yes" } else { "no" };
+    let rows = vec![
+        row("time in which a number may go through its range, at least", time, unit),
+        row(
+            "scales of sensors may change from sample to sample",
+            Datum::Text(scales.to_owned()),
+            "",
+        ),
+    ];
+    table("How the numbers of the family may move in flight.", &["what", "value", "unit"], rows)
+}
+
+fn gains(bounds: [[f64; 2]; 3], is_reached: bool) -> DataTable {
     let names = [("kp", ""), ("ki", "1/s"), ("kd", "s")];
     let rows = names.into_iter().zip(bounds).map(|((name, unit), ends)| {
         let [from, to] = ends.map(|end| number(significant(end, 6)));
         vec![Datum::Text(name.to_owned()), from, to, Datum::Text(unit.to_owned())]
     });
-    let caption = "Gains that the controller can have, enclosed.";
-    table(caption, &["gain", "from", "to", "unit"], rows.collect())
+    let caption = match is_reached {
+        true => format!("Gains that the controller can have, enclosed ({GAINS_REACHED})."),
+        false => "Gains that the controller can have, enclosed.".to_owned(),
+    };
+    table(&caption, &["gain", "from", "to", "unit"], rows.collect())
 }

@@ -42,6 +42,8 @@ pub struct Rechecked {
     pub inequalities: usize,
     /// Bounds of each gain.
     pub bounds: [Interval; 3],
+    /// The gains are those that the law reaches, which are not every combination within the bounds.
+    pub gains_are_reached: bool,
     /// Whether the law was proved to keep to the rate that is claimed, in every flight; false for claims that are not about
     /// a rate.
     pub keeps_to_the_rate: bool,
@@ -281,6 +283,7 @@ impl<'a> Recheck<'a> {
             cells: self.set.cells.len(),
             inequalities,
             bounds,
+            gains_are_reached: self.set.reached.is_some(),
             keeps_to_the_rate,
             pitch_within_rad,
             any_setpoint: self.rest.any_setpoint,
