@@ -54,21 +54,24 @@ impl Reach {
     }
 }
 
-/// What error and command do over some samples, and whether a limit was met in them.
+/// What error, command and elevator do over some samples, and whether a limit was met in them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Span {
     error: Reach,
     command: Reach,
+    elevator: Reach,
     pub(super) meets: bool,
 }
 
 impl Span {
-    const NONE: Self = Self { error: Reach::NONE, command: Reach::NONE, meets: false };
+    const NONE: Self =
+        Self { error: Reach::NONE, command: Reach::NONE, elevator: Reach::NONE, meets: false };
 
     fn and(self, other: Self) -> Self {
         Self {
             error: self.error.and(other.error),
             command: self.command.and(other.command),
+            elevator: self.elevator.and(other.elevator),
             meets: self.meets || other.meets,
         }
     }
@@ -111,7 +114,12 @@ impl<'a> Pieces<'a> {
         self.before = Some([command_rad, elevator_rad]);
         let meets = self.ends.are_met(command_rad, at_servo_rad)
             || self.ends.are_met_by_moving(AT_RATE, by_command, by_elevator);
-        let sample = Span { error: Reach::at(error_rad), command: Reach::at(command_rad), meets };
+        let sample = Span {
+            error: Reach::at(error_rad),
+            command: Reach::at(command_rad),
+            elevator: Reach::at(elevator_rad),
+            meets,
+        };
         if self.samples.is_multiple_of(self.length) {
             self.all.push(Span::NONE);
         }
@@ -133,8 +141,8 @@ impl<'a> Pieces<'a> {
     /// True where the last two pieces have come to rest: within the limits with a command that stands, for an error alone stands
     /// too where it turns, and before a response has begun; or as well as the sensor sees.
     pub(super) fn rests(&self) -> bool {
-        let (whole, tail) = (self.whole(), self.tail());
-        let stands = |of: fn(Span) -> Reach| of(tail).size_rad() <= RESTS * of(whole).size_rad();
+        let tail = self.tail();
+        let stands = |of: fn(Span) -> Reach| self.stands(tail, of);
         tail.error.size_rad() <= self.unseen_rad
             || (!tail.meets && stands(|it| it.error) && stands(|it| it.command))
     }
@@ -173,8 +181,7 @@ impl<'a> Pieces<'a> {
         let end = fourth.and(fifth);
         end.meets
             && match (moved, moves) {
-                // What a limit keeps short of its set-point stands still there.
-                (_, Moves::Back) if self.stands(end) => false,
+                (_, Moves::Back) if self.stands_at_a_limit(end) => false,
                 (Moved::Nothing, _) => true,
                 (Moved::BySwings, Moves::Away) => {
                     !fifth.error.is_like(fourth.error, self.unseen_rad)
@@ -188,7 +195,7 @@ impl<'a> Pieces<'a> {
     /// shrink.
     pub(super) fn swings_on(&self, moved: Moved, moves: Moves) -> bool {
         let [.., fourth, fifth] = self.fifths();
-        let stands = moves == Moves::Back && self.stands(fourth.and(fifth));
+        let stands = moves == Moves::Back && self.stands_at_a_limit(fourth.and(fifth));
         let times = if moved == Moved::Nothing { STAYS } else { GROWN_IN_NOISE };
         fourth.meets && fifth.meets && !stands && self.grows(times)
     }
@@ -200,8 +207,14 @@ impl<'a> Pieces<'a> {
         end.meets && end.error.size_rad() >= GROWN_IN_NOISE * earlier.error.size_rad()
     }
 
-    fn stands(&self, part: Span) -> bool {
-        part.error.size_rad() <= RESTS * self.whole().error.size_rad()
+    /// True for a part that a limit keeps short of its set-point, where a plant that comes to rest by itself is left to do so.
+    fn stands_at_a_limit(&self, part: Span) -> bool {
+        self.stands(part, |it| it.error) || self.stands(part, |it| it.elevator)
+    }
+
+    /// True where a quantity stands still in a part.
+    fn stands(&self, part: Span, of: fn(Span) -> Reach) -> bool {
+        of(part).size_rad() <= RESTS * of(self.whole()).size_rad()
     }
 
     fn grows(&self, times: f64) -> bool {

@@ -193,9 +193,10 @@ fn a_flight_that_is_lost_meets_nothing_though_its_loop_is_stable_at_rest() {
     let stable = of_step("stable", "", &[]);
     assert_eq!((stable.met, stable.value_in_words()), (false, "unstable".to_owned()));
     assert!(stable.place().at_s.is_some() && of_step("stable", "", &small).met, "{stable:?}");
-    // A margin is one of the loop at rest, of the only plant that there is.
-    let disk = of_step("disk_margin", "least = 0.0", &[]);
+    // A margin is one of the loop at rest, of the only plant that there is, and none of a flight that limits take from it.
+    let disk = of_step("disk_margin", "least = 0.0", &small);
     assert!(disk.met && disk.place().plant.is_none(), "{disk:?}");
+    assert!(!of_step("disk_margin", "least = 0.0", &[]).met);
 }
 
 /// A flight of 20 s at a gain of 5 looks wild, one of half a second does not: the loop is unstable in both.
