@@ -70,7 +70,7 @@ pub(crate) fn doubt(
         return pieces.goes_on(moved, moves).then_some(Doubt::SwingAtLimits);
     }
     // At a limit that it has met once, noise may carry a plant that runs away over the edge; any other that still meets them.
-    let meets = if moves == Moves::Away { pieces.whole().meets } else { pieces.tail().meets };
+    let meets = if moves == Moves::Away { pieces.whole().meets() } else { pieces.tail().meets() };
     let ways = [
         (Afterwards::Swings, true),
         (Afterwards::Quiet, has_swings(scenario)),
@@ -108,10 +108,10 @@ fn has_come_to_rest(scenario: &Scenario, pieces: &Pieces<'_>, trace: &Trace) -> 
     let has_ended = || match moved_in_flight(scenario) {
         Moved::Nothing => pieces.rests(),
         Moved::BySwings => {
-            !pieces.tail().meets && pieces.repeats() && has_shown_its_swings(scenario)
+            !pieces.tail().meets() && pieces.repeats() && has_shown_its_swings(scenario)
         }
         Moved::ByNoise => {
-            !pieces.whole().meets && pieces.is_quiet() && has_shown_its_swings(scenario)
+            !pieces.whole().meets() && pieces.is_quiet() && has_shown_its_swings(scenario)
         }
     };
     // Of a few samples nothing is said.

@@ -18,6 +18,8 @@ const ALIKE: f64 = 1e-3;
 const UNSEEN: f64 = 2.0;
 /// Under noise an error that moves in the last two fifths by no more than this share of all its movement has come to an end.
 const QUIET: f64 = 0.2;
+/// A swing at limits of a flight that is not flown on meets them at one of so many samples at least.
+const AT_LIMITS: usize = 4;
 /// A limit of rate is met a thousandth before it, for rounding.
 const AT_RATE: f64 = 0.999;
 
@@ -60,20 +62,38 @@ pub(super) struct Span {
     error: Reach,
     command: Reach,
     elevator: Reach,
-    pub(super) meets: bool,
+    samples: usize,
+    /// At how many of them a limit was met.
+    met: usize,
 }
 
 impl Span {
-    const NONE: Self =
-        Self { error: Reach::NONE, command: Reach::NONE, elevator: Reach::NONE, meets: false };
+    const NONE: Self = Self {
+        error: Reach::NONE,
+        command: Reach::NONE,
+        elevator: Reach::NONE,
+        samples: 0,
+        met: 0,
+    };
 
     fn and(self, other: Self) -> Self {
         Self {
             error: self.error.and(other.error),
             command: self.command.and(other.command),
             elevator: self.elevator.and(other.elevator),
-            meets: self.meets || other.meets,
+            samples: self.samples + other.samples,
+            met: self.met + other.met,
         }
+    }
+
+    /// True where a limit was met.
+    pub(super) const fn meets(self) -> bool {
+        self.met > 0
+    }
+
+    /// True where a limit was met for so long that what moves is a swing at it.
+    const fn is_at_limits(self) -> bool {
+        self.met * AT_LIMITS >= self.samples
     }
 
     fn of(spans: &[Self]) -> Self {
@@ -118,7 +138,8 @@ impl<'a> Pieces<'a> {
             error: Reach::at(error_rad),
             command: Reach::at(command_rad),
             elevator: Reach::at(elevator_rad),
-            meets,
+            samples: 1,
+            met: usize::from(meets),
         };
         if self.samples.is_multiple_of(self.length) {
             self.all.push(Span::NONE);
@@ -144,7 +165,7 @@ impl<'a> Pieces<'a> {
         let tail = self.tail();
         let stands = |of: fn(Span) -> Reach| self.stands(tail, of);
         tail.error.size_rad() <= self.unseen_rad
-            || (!tail.meets && stands(|it| it.error) && stands(|it| it.command))
+            || (!tail.meets() && stands(|it| it.error) && stands(|it| it.command))
     }
 
     /// True where the last piece is whole.
@@ -179,7 +200,7 @@ impl<'a> Pieces<'a> {
     pub(super) fn goes_on(&self, moved: Moved, moves: Moves) -> bool {
         let [.., fourth, fifth] = self.fifths();
         let end = fourth.and(fifth);
-        end.meets
+        end.meets()
             && match (moved, moves) {
                 (_, Moves::Back) if self.stands_at_a_limit(end) => false,
                 (Moved::Nothing, _) => true,
@@ -197,14 +218,14 @@ impl<'a> Pieces<'a> {
         let [.., fourth, fifth] = self.fifths();
         let stands = moves == Moves::Back && self.stands_at_a_limit(fourth.and(fifth));
         let times = if moved == Moved::Nothing { STAYS } else { GROWN_IN_NOISE };
-        fourth.meets && fifth.meets && !stands && self.grows(times)
+        fourth.is_at_limits() && fifth.is_at_limits() && !stands && self.grows(times)
     }
 
     /// True where the error moves in the last two fifths, under noise at limits, twice as much as in an earlier part.
     pub(super) fn has_doubled_since(&self, earlier: Span) -> bool {
         let [.., fourth, fifth] = self.fifths();
         let end = fourth.and(fifth);
-        end.meets && end.error.size_rad() >= GROWN_IN_NOISE * earlier.error.size_rad()
+        end.meets() && end.error.size_rad() >= GROWN_IN_NOISE * earlier.error.size_rad()
     }
 
     /// True for a part that a limit keeps short of its set-point, where a plant that comes to rest by itself is left to do so.
