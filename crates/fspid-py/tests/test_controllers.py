@@ -106,6 +106,11 @@ def test_aircraft_answer_as_the_program(cli):
     assert aircraft.linearise(name).to_dict() == told
 
 
+def test_other_states_of_a_linear_model_are_refused():
+    with pytest.raises(fspid.InputError, match="allowed are 'components' and 'speed-and-angle'"):
+        aircraft.linearise("navion", states="speed_and_angle")
+
+
 def test_an_aircraft_of_one_s_own_is_checked_as_by_the_program(cli, tmp_path):
     mine = tmp_path / "mine.toml"
     cli("init", "--template", "aircraft", str(mine))

@@ -58,6 +58,7 @@ def test_margins_are_those_of_the_program(broken_at, cli, tmp_path):
 def test_verdicts_of_requirements_are_those_of_the_program(cli, tmp_path):
     scenario = fspid.Scenario.preset("requirements")
     path = written(scenario, tmp_path)
+    assert scenario.verify("ctms").to_dict() == scenario.verify(["ctms"]).to_dict()
     ours, theirs = scenario.verify(["ctms"]).to_dict(), json.loads(cli("verify", path, "--set", "ctms", "--format", "json"))
     # Where the scenario lies is all that may differ.
     assert json.dumps(ours).replace(str(Path(ours["file"])), "") == json.dumps(theirs).replace(str(path), "")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import enum
 import json
 import math
 import pickle
@@ -115,6 +116,20 @@ def test_every_value_is_written_as_toml_reads_it(value):
     except UnicodeEncodeError:
         return
     assert read == value
+
+
+class Size(float, enum.Enum):
+    """A number that has a name."""
+
+    LARGE = 1.5
+
+
+def test_numbers_that_have_words_of_their_own_are_written_as_numbers():
+    numpy = pytest.importorskip("numpy")
+    for value in [numpy.float64(1.5), numpy.float32(1.5), Size.LARGE]:
+        assert value_of(value) == "1.5"
+        assert value_of([value]) == "[1.5]"
+    assert value_of(numpy.linspace(0.0, 1.0, 3)[1]) == "0.5"
 
 
 @pytest.mark.parametrize("wrong", [None, object(), {1: 2}, {"plant": None}, {"plant": {1, 2}}, b"bytes"])

@@ -28,17 +28,18 @@ def value_of(value: object) -> str:
         return "true" if value else "false"
     if isinstance(value, str):
         return _text(value)
+    # Their own words: those of a float of NumPy, or of a member of an enum, are no TOML.
     if isinstance(value, int):
-        return str(value)
+        return int.__repr__(value)
     if isinstance(value, float):
-        return repr(value)
+        return float.__repr__(value)
     if isinstance(value, Mapping):
         return "{ " + ", ".join(f"{_key(key)} = {value_of(each)}" for key, each in value.items()) + " }"
     # Numbers and arrays of NumPy say what they are in Python.
     plain = getattr(value, "tolist", None)
     if plain is not None:
         return value_of(plain())
-    if isinstance(value, Sequence):
+    if isinstance(value, Sequence) and not isinstance(value, bytes):
         return "[" + ", ".join(value_of(each) for each in value) + "]"
     raise InputError(f"{value!r} is no value of a setting; allowed are numbers, texts, lists and dictionaries")
 

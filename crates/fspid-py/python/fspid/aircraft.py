@@ -11,8 +11,11 @@ from typing import Any
 
 from . import _core
 from .answers import Answer
+from .errors import InputError
 
 Quantity = float | str
+# Velocity by its components, or by speed and angle of attack.
+_STATES = ("components", "speed-and-angle")
 
 
 class Linear(Answer):
@@ -91,6 +94,8 @@ def linearise(
     states: str = "components",
 ) -> Linear:
     """The linear model about a trim; ``states`` is ``components`` or ``speed-and-angle``."""
+    if states not in _STATES:
+        raise InputError(f"states={states!r}; allowed are {' and '.join(map(repr, _STATES))}")
     return Linear(_asked(states, name, speed, altitude, climb_angle))
 
 

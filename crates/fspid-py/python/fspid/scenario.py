@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +14,6 @@ from .campaign import Campaign
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from os import PathLike
 
     from .controllers import Controller
     from .engines import SearchProgress
@@ -224,21 +224,23 @@ class Scenario:
 
     def verify(
         self,
-        sets: Iterable[str] = (),
-        requirements: Iterable[str | PathLike[str]] = (),
+        sets: str | Iterable[str] = (),
+        requirements: str | PathLike[str] | Iterable[str | PathLike[str]] = (),
         replays: str | PathLike[str] = ".",
     ) -> Verification:
         """Judge requirements: those of the scenario, of ready sets, and of files.
 
         Parameters
         ----------
-        sets : iterable of str
+        sets : str or iterable of str
             Ready sets, such as ``"ctms"`` or ``"mil-f-8785c:level=1,category=C"``.
-        requirements : iterable of path-like
+        requirements : path-like or iterable of path-like
             Files of requirements.
         replays : path-like
             The folder in which replays will be written, from which they name files.
         """
+        sets = [sets] if isinstance(sets, str) else sets
+        requirements = [requirements] if isinstance(requirements, str | PathLike) else requirements
         files = [Path(file) for file in requirements]
         return Verification(self._core.verify(list(sets), files, Path(replays)))
 
