@@ -117,4 +117,4 @@ def test_an_aircraft_of_one_s_own_is_checked_as_by_the_program(cli, tmp_path):
     mine.write_text(mine.read_text().replace("elevator = -0.8488", "elevator = 0.8488"))
     checked = aircraft.check(mine)
     assert checked.to_dict() == json.loads(cli("check", str(mine), "--format", "json"))
-    assert checked["warnings"][0].startswith("pitch by elevator is 0.8488: ")
+    assert checked.to_dict()["warnings"][0].startswith("pitch by elevator is 0.8488: ")
