@@ -102,12 +102,12 @@ pub(super) fn held_on(
     }
     let disturbances = core::mem::take(&mut own.disturbances);
     let mut prepared = own.prepare().ok()?;
-    let setpoint = &scenario.setpoint;
-    let goes_on = match setpoint.is_noise() {
-        true => afterwards == Afterwards::Noise,
-        false => setpoint.goes_on(),
+    let after = match &scenario.setpoint {
+        noise if noise.is_noise() => After::of_noise(afterwards),
+        swing if swing.goes_on() => After::GoesOn,
+        _ => After::Holds,
     };
-    hold(&mut prepared.setpoint_rad, before, After::of(goes_on, setpoint.is_noise()));
+    hold(&mut prepared.setpoint_rad, before, after);
     let places = [
         (Entry::Servo, &mut prepared.at_servo),
         (Entry::Elevator, &mut prepared.at_elevator),
@@ -132,25 +132,21 @@ pub(super) fn held_on(
 enum After {
     GoesOn,
     Holds,
-    /// What has no mean other than 0.
+    /// It is nothing any more.
     Ends,
 }
 
 impl After {
-    fn of(goes_on: bool, is_noise: bool) -> Self {
-        match (goes_on, is_noise) {
-            (true, _) => Self::GoesOn,
-            (false, true) => Self::Ends,
-            (false, false) => Self::Holds,
-        }
+    fn of_noise(afterwards: Afterwards) -> Self {
+        if afterwards == Afterwards::Noise { Self::GoesOn } else { Self::Ends }
     }
 
     fn of_disturbance(disturbance: &Disturbance, afterwards: Afterwards) -> Self {
-        match afterwards {
-            _ if !disturbance.goes_on() => Self::Holds,
-            Afterwards::Noise => Self::GoesOn,
-            Afterwards::Swings if !disturbance.is_noise() => Self::GoesOn,
-            Afterwards::Swings | Afterwards::Quiet => Self::Ends,
+        match (disturbance, afterwards) {
+            (noise, _) if noise.is_noise() => Self::of_noise(afterwards),
+            (load, _) if !load.goes_on() => Self::Holds,
+            (_, Afterwards::Quiet) => Self::Ends,
+            (_, Afterwards::Swings | Afterwards::Noise) => Self::GoesOn,
         }
     }
 }

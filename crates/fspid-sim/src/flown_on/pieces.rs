@@ -6,8 +6,8 @@ use crate::scenario::Scenario;
 
 /// What moves within a part of the flight by no more than this share of all its movement has come to rest.
 const RESTS: f64 = 1e-3;
-/// With nothing that moves it, a swing that does not shrink by a hundredth stays.
-const STAYS: f64 = 0.99;
+/// With nothing that moves it, a swing that does not shrink by a tenth from one fifth of a flight to the next stays.
+const STAYS: f64 = 0.9;
 /// What has moved so many times as much has grown.
 const GROWN: f64 = 1.05;
 /// Under noise two parts of a flight differ by chance: what has doubled has grown.

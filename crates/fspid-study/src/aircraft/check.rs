@@ -4,6 +4,7 @@ use fspid_aircraft::data::{AircraftData, ModelData};
 use serde_json::{Value, json};
 
 use super::condition::Question;
+use super::list::kind;
 use super::load::load;
 use super::modes::{Modes, modes};
 use crate::json::with_null_reasons;
@@ -45,23 +46,15 @@ pub fn check(file: &str) -> Result<CheckedAircraft, AircraftFailure> {
 }
 
 impl CheckedAircraft {
-    fn kind(&self) -> &'static str {
-        match &self.data.model {
-            ModelData::Derivatives(_) => "derivatives",
-            ModelData::Linear(_) => "linear",
-            ModelData::Forces(_) => "tables",
-        }
-    }
-
     /// The answer for people, in two lines.
     #[must_use]
     pub fn text(&self) -> String {
-        let motions = match &self.modes {
-            Some(modes) => modes.in_words(),
-            None if self.kind() == "tables" => {
+        let motions = match (&self.modes, &self.data.model) {
+            (Some(modes), _) => modes.in_words(),
+            (None, ModelData::Forces(_)) => {
                 "tables have no flight condition of their own; trim it at one".to_owned()
             }
-            None => "it cannot be trimmed at the flight condition of its data".to_owned(),
+            (None, _) => "it cannot be trimmed at the flight condition of its data".to_owned(),
         };
         format!("{}: good; {}\n{motions}\n", self.file, self.data.title)
     }
@@ -71,7 +64,7 @@ impl CheckedAircraft {
     pub fn json(&self) -> Value {
         let answer = json!({
             "schema": 1, "file": self.file, "kind": "aircraft", "good": true, "name": self.data.name,
-            "model": self.kind(), "warnings": self.warnings,
+            "model": kind(&self.data.model), "warnings": self.warnings,
             "modes": self.modes.as_ref().map(Modes::json),
         });
         with_null_reasons(

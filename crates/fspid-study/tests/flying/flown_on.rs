@@ -169,46 +169,35 @@ fn analyse_says_of_a_swing_at_limits_what_its_flight_is_told() {
     assert_eq!(analysis.stability(), Stability::Stable);
 }
 
-/// A double integrator behind a slew limit: small motions decay, and a swing that noise has once made large stays.
-const KICKED: &str = r#"
-schema = 1
-name = "noise that carries it away"
-[plant]
-numerator = [1.0, 0.5]
-denominator = [1.0, 1.5, 0.0, 0.0]
-elevator_sign = "nose-up-positive"
-[actuator]
-time_constant_s = 0.1
-rate_limit_deg_s = 5.0
-[loop]
-sample_period_s = 0.02
-duration_s = 60.0
-[setpoint]
-kind = "step"
-amplitude_deg = 1.0
-[[disturbance]]
-kind = "noise"
-enters_at = "servo"
-standard_deviation_deg = 3.0
-seed = 1
-at_s = 10.0
-[[controller]]
-name = "PID"
-kind = "pid"
-kp = 4.0
-ki = 1.5
-kd = 2.0
-derivative_filter_s = 0.05
-"#;
+/// A linear plant, its actuator, sample period and duration in s, and a step in deg that a PID flies.
+fn stepped(
+    [numerator, denominator]: [&str; 2],
+    actuator: &str,
+    [sample_period_s, duration_s]: [f64; 2],
+    step_deg: f64,
+    pid: &str,
+) -> String {
+    format!(
+        "schema = 1\nname = \"step\"\nplant = {{ numerator = {numerator}, denominator = {denominator}, elevator_sign = \"nose-up-positive\" }}\nactuator = {{ {actuator} }}\nloop = {{ sample_period_s = {sample_period_s:?}, duration_s = {duration_s:?} }}\nsetpoint = {{ kind = \"step\", amplitude_deg = {step_deg:?} }}\n[[controller]]\nname = \"PID\"\nkind = \"pid\"\n{pid}\n"
+    )
+}
 
-/// It ends at 370 000 deg after 240 s. Without its noise it rests, which was all that was asked of it.
+/// A double integrator behind a limit of rate: small motions decay, and a swing that noise has once made large stays. It ended at
+/// 370 000 deg after 240 s; without its noise it rests, which was all that was asked of it.
 #[test]
 fn noise_that_carries_a_flight_into_a_swing_at_limits_leaves_it_in_doubt() {
+    let kicked = stepped(
+        ["[1.0, 0.5]", "[1.0, 1.5, 0.0, 0.0]"],
+        "time_constant_s = 0.1, rate_limit_deg_s = 5.0",
+        [0.02, 60.0],
+        1.0,
+        "kp = 4.0\nki = 1.5\nkd = 2.0\nderivative_filter_s = 0.05\n[[disturbance]]\nkind = \"noise\"\nenters_at = \"servo\"\nstandard_deviation_deg = 3.0\nseed = 1\nat_s = 10.0",
+    );
     for duration in ["loop.duration_s=60.0", "loop.duration_s=240.0"] {
-        assert_eq!(doubt(&result(KICKED, &[duration])), Some(Doubt::SwingAtLimits), "{duration}");
+        assert_eq!(doubt(&result(&kicked, &[duration])), Some(Doubt::SwingAtLimits), "{duration}");
     }
     let little = ["disturbance[0].standard_deviation_deg=0.01"];
-    assert_eq!(doubt(&result(KICKED, &little)), None);
+    assert_eq!(doubt(&result(&kicked, &little)), None);
 }
 
 /// A step that leaves the Navion of the textbook in a swing between the limits of the command's rate.
@@ -259,41 +248,21 @@ fn a_flight_that_is_lost_at_limits_within_its_own_length_is_in_doubt() {
 }
 
 /// A response that has hardly begun moves no more than one that has ended; and an error stands where it turns.
-const BEGUN: &str = r#"
-schema = 1
-name = "begun"
-[plant]
-numerator = [1.0, 0.3]
-denominator = [1.0, 0.86, 1.89, -0.144]
-elevator_sign = "nose-up-positive"
-[actuator]
-time_constant_s = 0.035
-position_limit_deg = 5.0
-[loop]
-sample_period_s = 0.005
-duration_s = 0.44
-[setpoint]
-kind = "step"
-amplitude_deg = 5.0
-at_s = 0.045
-[[controller]]
-name = "PID"
-kind = "pid"
-kp = 0.17
-ki = 0.16
-kd = 2.6
-integral = "literal"
-setpoint_weights = { proportional = 0.0 }
-derivative_on = "measurement"
-"#;
-
 #[test]
 fn a_response_that_has_hardly_begun_or_just_turns_has_not_come_to_rest() {
+    let begun = stepped(
+        ["[1.0, 0.3]", "[1.0, 0.86, 1.89, -0.144]"],
+        "time_constant_s = 0.035, position_limit_deg = 5.0",
+        [0.005, 0.44],
+        5.0,
+        "kp = 0.17\nki = 0.16\nkd = 2.6\nintegral = \"literal\"\nsetpoint_weights = { proportional = 0.0 }\nderivative_on = \"measurement\"",
+    );
+    let at = "setpoint.at_s=0.045";
     for duration in ["0.2", "0.44", "1.0", "2.2"] {
-        let set = [&*format!("loop.duration_s={duration}")];
-        assert_eq!(doubt(&result(BEGUN, &set)), Some(Doubt::SwingAtLimits), "{duration} s");
+        let set = [at, &*format!("loop.duration_s={duration}")];
+        assert_eq!(doubt(&result(&begun, &set)), Some(Doubt::SwingAtLimits), "{duration} s");
     }
-    assert!(diverges(BEGUN, &["loop.duration_s=400.0"]));
+    assert!(diverges(&begun, &[at, "loop.duration_s=400.0"]));
 }
 
 /// An unstable plant at rest, which a load takes at its end beyond what the limits can bring back.
@@ -311,65 +280,48 @@ fn what_changes_at_the_end_of_a_flight_is_flown_on() {
 /// A flight that ends before its overshoot comes to the guard, after which the command is held for good.
 #[test]
 fn a_sample_guard_that_is_met_later_leaves_a_flight_in_doubt() {
-    let text = r#"
-schema = 1
-name = "guarded"
-[plant]
-numerator = [1.0, 1.0]
-denominator = [1.0, 1.0, 1.0, -0.3]
-elevator_sign = "nose-up-positive"
-[actuator]
-time_constant_s = 0.05
-[loop]
-sample_period_s = 0.01
-duration_s = 0.8
-[setpoint]
-kind = "step"
-amplitude_deg = 10.0
-[[controller]]
-name = "PID"
-kind = "pid"
-kp = 4.0
-ki = 1.0
-kd = 2.0
-derivative_filter_s = 0.02
-sample_guard_deg = 11.0
-"#;
-    assert_eq!(doubt(&result(text, &[])), Some(Doubt::HeldByGuard));
-    assert!(diverges(text, &["loop.duration_s=100.0"]));
-    assert_eq!(doubt(&result(text, &["controller.PID.sample_guard_deg=60.0"])), None);
+    let guarded = stepped(
+        ["[1.0, 1.0]", "[1.0, 1.0, 1.0, -0.3]"],
+        "time_constant_s = 0.05",
+        [0.01, 0.8],
+        10.0,
+        "kp = 4.0\nki = 1.0\nkd = 2.0\nderivative_filter_s = 0.02\nsample_guard_deg = 11.0",
+    );
+    assert_eq!(doubt(&result(&guarded, &[])), Some(Doubt::HeldByGuard));
+    assert!(diverges(&guarded, &["loop.duration_s=100.0"]));
+    assert_eq!(doubt(&result(&guarded, &["controller.PID.sample_guard_deg=60.0"])), None);
 }
 
 /// Aircraft are not flown on; a swing that their own flight shows is told all the same.
 #[test]
 fn a_swing_at_limits_that_the_flight_of_an_aircraft_shows_leaves_it_in_doubt() {
-    let text = r#"
-schema = 1
-name = "swings"
-[aircraft]
-name = "beaver"
-airspeed_m_s = 47.0
-altitude_m = 500.0
-[actuator]
-time_constant_s = 0.1
-rate_limit_deg_s = 20.0
-[loop]
-sample_period_s = 0.02
-duration_s = 22.0
-[setpoint]
-kind = "step"
-amplitude_deg = -0.7
-[[controller]]
-name = "PID"
-kind = "pid"
-kp = 3.3
-ki = 2.3
-kd = 0.3
-derivative_filter_s = 0.05
-slew_limit_deg_s = 2.6
-"#;
-    assert_eq!(doubt(&result(text, &[])), Some(Doubt::SwingAtLimits));
-    assert_eq!(doubt(&result(text, &["controller.PID.slew_limit_deg_s=26.0"])), None);
+    let step = |aircraft: &str, speed: &str, pid: &str| {
+        let of_plant = stepped(["[]", "[]"], "time_constant_s = 0.2", [0.02, 22.0], -0.72, pid);
+        let lines = of_plant.lines().map(|line| match line.starts_with("plant") {
+            true => format!("aircraft = {{ name = \"{aircraft}\", {speed}, altitude_m = 500.0 }}"),
+            false => line.to_owned(),
+        });
+        lines.collect::<Vec<_>>().join("\n")
+    };
+    let beaver = step(
+        "beaver",
+        "airspeed_m_s = 47.0",
+        "kp = 3.3\nki = 2.3\nkd = 0.3\nderivative_filter_s = 0.05\nslew_limit_deg_s = 2.6",
+    );
+    let navion = step(
+        "navion",
+        "airspeed_ft_s = 176.0",
+        "kp = 3.8\nki = 0.1\nkd = 0.6\nderivative_filter_s = 0.05\nslew_limit_deg_s = 5.8",
+    );
+    // Wherever in its swing the flight ends.
+    for (text, duration) in
+        [(&beaver, "22.0"), (&navion, "29.0"), (&navion, "31.5"), (&navion, "60.0")]
+    {
+        let set = [&*format!("loop.duration_s={duration}")];
+        assert_eq!(doubt(&result(text, &set)), Some(Doubt::SwingAtLimits), "{duration} s");
+        let wide = [set[0], "controller.PID.slew_limit_deg_s=90.0"];
+        assert_eq!(doubt(&result(text, &wide)), None, "{duration} s");
+    }
 }
 
 /// "PASS phase_margin_deg 48.1 deg", of a flight that diverges at 25 s.
