@@ -100,7 +100,7 @@ impl FamilyAnswer {
                     let claim = proved(family).join("; ");
                     match (self.trouble(), as_flown.not_proved_between()) {
                         (Some(trouble), _) => format!("{trouble}: {claim}"),
-                        (None, Some(between)) => format!("PROVED: {claim}; {between}"),
+                        (None, Some(between)) => format!("PROVED: {claim}. {between}"),
                         (None, None) => format!("PROVED: {claim}"),
                     }
                 }

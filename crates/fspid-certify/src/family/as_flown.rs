@@ -64,7 +64,7 @@ impl AsFlown {
     pub(in super::super) fn not_proved_between(&self) -> Option<String> {
         let Self::Held { members, what } = self else { return None };
         Some(format!(
-            "that {what} hold at rest in the family was asked of {members} members, at corners of the box and in its middle, and is not proved between them"
+            "That {what} hold at rest in the family was asked of {members} members, at corners of the box and in its middle, and is not proved between them."
         ))
     }
 }
