@@ -87,7 +87,7 @@ impl<R: Real> ReferenceModel<R> {
         allowed_if(damped, ControllerSetting::ModelDamping, self.damping, "at most 1.5")?;
         let slow = self.bandwidth_rad_s * dt_s <= R::from_f64(LONGEST_STEP);
         let what = ControllerSetting::ModelBandwidth;
-        allowed_if(slow, what, self.bandwidth_rad_s, "at most half per sample period")?;
+        allowed_if(slow, what, self.bandwidth_rad_s, "at most 0.5 over the sample period")?;
         Ok(())
     }
 }

@@ -37,6 +37,19 @@ impl Controller {
         self.memory.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// A sample; refused without a rate where the controller needs one: zero would take its damping away, and nobody would see it.
+    fn sample(
+        &self,
+        py: Python<'_>,
+        (setpoint_rad, measurement_rad): (f64, f64),
+        rate_rad_s: Option<f64>,
+    ) -> PyResult<Sample<f64>> {
+        if rate_rad_s.is_none() && self.controller.uses_rate() {
+            return Err(error::input(py, NEEDS_RATE));
+        }
+        Ok(Sample { setpoint_rad, measurement_rad, rate_rad_s: rate_rad_s.unwrap_or(0.0) })
+    }
+
     fn with<T>(&self, work: impl FnOnce(&Now) -> T) -> T {
         work(&self.memory().now)
     }
@@ -59,6 +72,8 @@ impl Controller {
         if was_lent { Err(error::input(py, LENT)) } else { Ok((Lent(self), now)) }
     }
 }
+
+const NEEDS_RATE: &str = "this controller uses the pitch rate, rad/s: give `rate` with each sample (`uses_rate` tells which need one)";
 
 const LENT: &str = "step_many answers samples of this controller in another thread; each thread needs a controller of its own";
 
@@ -138,10 +153,15 @@ impl Controller {
     }
 
     /// Answers a sample.
-    #[pyo3(signature = (setpoint, measurement, rate=0.0))]
-    fn step(&self, py: Python<'_>, setpoint: f64, measurement: f64, rate: f64) -> PyResult<f64> {
-        let sample =
-            Sample { setpoint_rad: setpoint, measurement_rad: measurement, rate_rad_s: rate };
+    #[pyo3(signature = (setpoint, measurement, rate=None))]
+    fn step(
+        &self,
+        py: Python<'_>,
+        setpoint: f64,
+        measurement: f64,
+        rate: Option<f64>,
+    ) -> PyResult<f64> {
+        let sample = self.sample(py, (setpoint, measurement), rate)?;
         self.changing(py, |now| {
             let step = self.controller.step(&mut now.state, sample);
             now.last = Some(step);
@@ -150,17 +170,16 @@ impl Controller {
     }
 
     /// Takes part in a sample that another has commanded.
-    #[pyo3(signature = (setpoint, measurement, command, rate=0.0))]
+    #[pyo3(signature = (setpoint, measurement, command, rate=None))]
     fn track(
         &self,
         py: Python<'_>,
         setpoint: f64,
         measurement: f64,
         command: f64,
-        rate: f64,
+        rate: Option<f64>,
     ) -> PyResult<f64> {
-        let sample =
-            Sample { setpoint_rad: setpoint, measurement_rad: measurement, rate_rad_s: rate };
+        let sample = self.sample(py, (setpoint, measurement), rate)?;
         self.changing(py, |now| {
             let step = self.controller.track(&mut now.state, sample, command);
             now.last = Some(step);
@@ -181,6 +200,9 @@ impl Controller {
     fn step_many(&self, py: Python<'_>, inputs: &Bound<'_, PyTuple>) -> PyResult<Column> {
         let names = ["setpoint", "measurement", "rate"].map(str::to_owned);
         let columns: Vec<Numbers> = same_length(py, &names[..inputs.len().clamp(2, 3)], inputs)?;
+        if columns.len() < names.len() && self.controller.uses_rate() {
+            return Err(error::input(py, NEEDS_RATE));
+        }
         let controller = self.controller;
         let (lent, mut now) = self.lend(py)?;
         let (now, commands) = interrupt::run(py, move || {

@@ -63,6 +63,21 @@ def test_no_sample_is_lost_between_threads():
     assert pid.step(1e-9, 0.0) == alone.step(1e-9, 0.0)
 
 
+def test_a_controller_that_uses_the_rate_is_not_answered_without():
+    damped, plain = fspid.Pid(0.01, kp=2.0, ki=0.5, kd=0.0, rate_gain=0.4), fspid.Pid(0.01, kp=2.0, ki=0.5, kd=0.0)
+    assert (damped.uses_rate, plain.uses_rate) == (True, False)
+    for asked in (
+        lambda: damped.step(0.1, 0.0),
+        lambda: damped.step_many([0.1], [0.0]),
+        lambda: damped.track(0.1, 0.0, 0.02),
+    ):
+        with pytest.raises(fspid.InputError, match="give `rate` with each sample"):
+            asked()
+    # What was refused left nothing, and a rate that is not needed moves nothing.
+    assert damped.step(0.1, 0.0, 0.25) == pytest.approx(plain.step(0.1, 0.0, 0.25) - 0.1)
+    assert plain.track(0.1, 0.0, 0.02) == 0.02
+
+
 def test_settings_of_a_controller_are_checked_as_in_the_file():
     with pytest.raises(fspid.ScenarioError) as told:
         fspid.Pid(0.01, kp="much", ki=0.5, kd=0.1, kq=1.0)

@@ -27,6 +27,17 @@ def test_a_scenario_says_what_it_is(step):
     assert step.check() == []
 
 
+def test_a_dictionary_that_was_handed_out_is_the_callers_own(step):
+    flight = step.simulate()
+    for answer in (flight, flight["PID"], step.analyse()):
+        told = answer.to_dict()
+        answer.to_dict().clear()
+        assert answer.to_dict() == told != {}
+    flight.to_dict()["controllers"][0]["failed"] = True
+    step.analyse()["PID"].clear()
+    assert flight["PID"].failed is False
+
+
 def test_everything_that_is_wrong_is_told_at_once():
     wrong = {**STEP, "loop": {"sample_period_s": -1.0, "duratio_s": 20.0}}
     with pytest.raises(fspid.ScenarioError) as told:

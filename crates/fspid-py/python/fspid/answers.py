@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -67,7 +68,10 @@ class Answer:
         return self._native.good
 
     def to_dict(self) -> dict[str, Any]:
-        """What the program prints with ``--format json``, as a dictionary."""
+        """What the program prints with ``--format json``, as a dictionary of the caller's own."""
+        return copy.deepcopy(self._known())
+
+    def _known(self) -> dict[str, Any]:
         import json
 
         if self._dict is None:
@@ -211,8 +215,8 @@ class Trace(Columns):
         return ax
 
     def to_dict(self) -> dict[str, Any]:
-        """All that is known of the flight but its columns."""
-        return self._facts
+        """All that is known of the flight but its columns, as a dictionary of the caller's own."""
+        return copy.deepcopy(self._facts)
 
     def __repr__(self) -> str:
         rows = len(self._columns["time_s"])
@@ -233,7 +237,7 @@ class Flight(_Saved, Mapping[str, Trace]):
             columns = self._native.columns(controller)
             if columns is None:
                 raise KeyError(f"no controller {controller!r}; there are {', '.join(self._native.controllers)}")
-            facts = next(it for it in self.to_dict()["controllers"] if it["name"] == controller)
+            facts = next(it for it in self._known()["controllers"] if it["name"] == controller)
             self._traces[controller] = Trace(controller, columns, facts)
         return self._traces[controller]
 

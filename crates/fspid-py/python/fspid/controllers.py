@@ -49,6 +49,11 @@ class Controller:
         """Faults that are latched; ``none`` without any."""
         return self._native.faults
 
+    @property
+    def uses_rate(self) -> bool:
+        """True where it uses the measured pitch rate, which each sample then has to have."""
+        return self._native.uses_rate
+
     def step(self, setpoint: float, measurement: float, rate: float | None = None) -> float:
         """Answer a sample.
 
@@ -57,15 +62,18 @@ class Controller:
         setpoint, measurement : float
             Commanded and measured pitch, rad.
         rate : float, optional
-            Measured pitch rate, rad/s; for controllers with a rate loop.
+            Measured pitch rate, rad/s, nose up positive; needed where :attr:`uses_rate` is true.
 
         Returns
         -------
         float
             The command, rad; positive is nose up.
+
+        Raises
+        ------
+        InputError
+            No rate, of a controller that uses it.
         """
-        if rate is None:
-            return self._native.step(setpoint, measurement)
         return self._native.step(setpoint, measurement, rate)
 
     def step_many(self, setpoint: Numbers, measurement: Numbers, rate: Numbers | None = None) -> _core.Column:
@@ -85,11 +93,12 @@ class Controller:
         ------
         InputError
             Where another thread is in ``step_many`` of this controller: a controller has one memory, and its samples one
-            order. Until that call ends, every other that would change the memory is refused too, ``step`` among them.
+            order. Until that call ends, every other that would change the memory is refused too, ``step`` among them. And
+            without rates where :attr:`uses_rate` is true.
         """
         return self._native.step_many((setpoint, measurement) if rate is None else (setpoint, measurement, rate))
 
-    def track(self, setpoint: float, measurement: float, command: float, rate: float = 0.0) -> float:
+    def track(self, setpoint: float, measurement: float, command: float, rate: float | None = None) -> float:
         """Take part in a sample that another has commanded, so that taking over bumps nothing."""
         return self._native.track(setpoint, measurement, command, rate)
 

@@ -9,7 +9,7 @@ use crate::file::{repository, text};
 const GOLDEN: &str = "crates/fspid-scenario/tests/scenarios/messages.txt";
 
 /// A mistake: what it is, what is replaced in the starter, and by what.
-const MISTAKES: [(&str, &str, &str); 48] = [
+const MISTAKES: [(&str, &str, &str); 50] = [
     ("a mistyped key", "sample_period_s", "sample_perod_s"),
     ("a key without its unit", "duration_s", "duration"),
     ("a key in another unit", "sample_period_s = 0.01", "sample_period_ms = 10"),
@@ -61,6 +61,16 @@ const MISTAKES: [(&str, &str, &str); 48] = [
         "anti-windup without a limit",
         "kd = 0.05\n",
         "kd = 0.05\nanti_windup = { kind = \"conditional\" }\n",
+    ),
+    (
+        "a tracking time below the sample period",
+        "kd = 0.05\n",
+        "kd = 0.05\noutput_limits_deg = [-20, 20]\nanti_windup = { kind = \"back-calculation\", tracking_s = 0.001 }\n",
+    ),
+    (
+        "a reference model that is faster than the samples",
+        "range = 5.0",
+        "range = 5.0\nsecond_input = \"error-and-model-error\"\nmodel = { bandwidth_rad_s = 60.0, damping = 0.7 }",
     ),
     (
         "leakage without accumulation",

@@ -1,5 +1,5 @@
-//! Extended simulation of a linear plant behind limits whose flight has not come to rest, or ends in a limit cycle: does it
-//! settle when the simulation continues past the end of the flight?
+//! Extended simulation of a flight behind limits that has not come to rest, or ends in a limit cycle: does it settle when the
+//! simulation continues past the end of the flight?
 //!
 //! Around a rest that limits leave, small motions decay; a swing that meets limits may grow from there on, or stay. Of such a
 //! flight nothing at rest speaks, so that it is flown on: with what is held at its end, and with what swings, and once without
@@ -13,11 +13,12 @@ use core::ops::ControlFlow;
 use crate::closed_loop::fly;
 use crate::controller::Controller;
 use crate::held_limits::{Ends, Moves};
+use crate::plant::Plant;
 use crate::rest::Doubt;
 use crate::sample_guard;
 use crate::scenario::Scenario;
 use crate::signal::{Disturbance, Entry};
-use crate::trace::{Outcome, Trace};
+use crate::trace::{EndCause, Outcome, Trace};
 use moved::{Afterwards, Moved, changes_late, has_swings, held_on, is_noisy};
 use pieces::Pieces;
 
@@ -35,8 +36,9 @@ const PERIODS: f64 = 2.0;
 /// Why a flight behind limits is in doubt: it is lost, or it has not come to rest, and flown on is lost, or still meets limits in
 /// a swing that does not shrink, or is held by its sample guard.
 ///
-/// Of plants that are not linear, and in moving air, which is that of a way that ends with the flight, the flight itself is asked
-/// for a swing that stays at limits, and not flown on.
+/// A nonlinear aircraft that is flown on is asked for a swing that stays at limits alone, for it has slow motions beside: what it
+/// comes to without one is told by where its flight leads. In moving air, which is that of a way that ends with the flight, and of
+/// another simulator's aircraft the flight itself is asked for such a swing, and not flown on.
 pub(crate) fn doubt(
     scenario: &Scenario,
     controller: &Controller,
@@ -54,23 +56,29 @@ pub(crate) fn doubt(
         return is_linear.then_some(Doubt::SwingAtLimits);
     }
     let pieces = pieces_of(scenario, &ends, trace);
-    let flies_on = is_linear && scenario.surroundings.weather.is_none();
     if has_come_to_rest(scenario, &pieces, trace) {
         return None;
     }
     let moves = moves()?;
+    let is_external = matches!(scenario.plant, Plant::External(_));
+    let flies_on = !is_external && !scenario.has_moving_air();
     let moved = moved_in_flight(scenario);
-    if !flies_on {
-        let ends_as_it_flies = !changes_late(scenario, &trace.setpoint_rad);
-        let swings_on = ends_as_it_flies && pieces.swings_on(moved, moves);
-        return swings_on.then_some(Doubt::SwingAtLimits);
-    }
+    let changes_late = changes_late(scenario, &trace.setpoint_rad);
+    let swings_itself = || !changes_late && pieces.swings_on(moved, moves);
     // One that is as long as that is its own answer.
-    if rows > SAMPLES[1] {
-        return pieces.goes_on(moved, moves).then_some(Doubt::SwingAtLimits);
+    if !flies_on || rows > SAMPLES[1] {
+        let is_asked_for_rest = is_linear && flies_on;
+        let goes_on =
+            if is_asked_for_rest { pieces.goes_on(moved, moves) } else { swings_itself() };
+        return goes_on.then_some(Doubt::SwingAtLimits);
     }
     // At a limit that it has met once, noise may carry a plant that runs away over the edge; any other that still meets them.
     let meets = if moves == Moves::Away { pieces.whole().meets() } else { pieces.tail().meets() };
+    // An aircraft that no longer meets limits is on its way to the rest that holds.
+    if !(is_linear || meets || changes_late) {
+        return None;
+    }
+    let swings_itself = !is_linear && swings_itself();
     let ways = [
         (Afterwards::Swings, true),
         (Afterwards::Quiet, has_swings(scenario)),
@@ -78,7 +86,12 @@ pub(crate) fn doubt(
     ];
     let mut asked = ways.into_iter().filter(|(_, is_asked)| *is_asked);
     asked.find_map(|(afterwards, _)| {
-        doubt_flown_on(scenario, controller, &ends, (afterwards, moves))
+        let asked = Asked { afterwards, moves, swings_itself };
+        match flown_on(scenario, controller, &ends, asked) {
+            Some(answer) => answer,
+            // What cannot be flown on has its own flight alone.
+            None => swings_itself.then_some(Doubt::SwingAtLimits),
+        }
     })
 }
 
@@ -126,13 +139,22 @@ fn has_shown_its_swings(scenario: &Scenario) -> bool {
     periods.all(|(from_s, period_s)| from_s > end_s || from_s + PERIODS * period_s <= end_s)
 }
 
-/// Why the flight is in doubt as it goes on; what cannot be flown on says nothing.
-fn doubt_flown_on(
+/// What is asked of a flight that is flown on.
+#[derive(Clone, Copy)]
+struct Asked {
+    afterwards: Afterwards,
+    moves: Moves,
+    /// It is that of an aircraft, and ends in a swing at limits; whoever flies on without it has left it behind.
+    swings_itself: bool,
+}
+
+/// Why the flight is in doubt as it goes on; nothing of what cannot be flown on.
+fn flown_on(
     scenario: &Scenario,
     controller: &Controller,
     ends: &Ends,
-    (afterwards, moves): (Afterwards, Moves),
-) -> Option<Doubt> {
+    Asked { afterwards, moves, swings_itself }: Asked,
+) -> Option<Option<Doubt>> {
     let rows = scenario.timing.rows();
     let horizon = (TIMES * rows).clamp(SAMPLES[0], SAMPLES[1]);
     let prepared = held_on(scenario, horizon, afterwards)?;
@@ -154,15 +176,27 @@ fn doubt_flown_on(
         rested = moved == Moved::Nothing && is_seen && pieces.rests();
         if rested { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
-    let is_lost = !matches!(outcome.ok()?, Outcome::Completed);
-    match (is_held, rested) {
+    let outcome = outcome.ok()?;
+    let has_grown =
+        || moved == Moved::ByNoise && own.is_some_and(|own| pieces.has_doubled_since(own));
+    let goes_on = || match scenario.plant.linear() {
+        Some(_) => outcome != Outcome::Completed || pieces.goes_on(moved, moves) || has_grown(),
+        None => pieces.swings_on(moved, moves) || is_lost(outcome, swings_itself, &pieces),
+    };
+    Some(match (is_held, rested) {
         (true, _) => Some(Doubt::HeldByGuard),
         (false, true) => None,
-        (false, false) => {
-            let has_grown =
-                || moved == Moved::ByNoise && own.is_some_and(|own| pieces.has_doubled_since(own));
-            let goes_on = is_lost || pieces.goes_on(moved, moves) || has_grown();
-            goes_on.then_some(Doubt::SwingAtLimits)
+        (false, false) => goes_on().then_some(Doubt::SwingAtLimits),
+    })
+}
+
+/// True of an aircraft that ends early out of a swing at limits, or on its back at them; without either it comes down to the ground
+/// as commanded.
+fn is_lost(outcome: Outcome, swings_itself: bool, pieces: &Pieces<'_>) -> bool {
+    match outcome {
+        Outcome::EndedEarly(end) => {
+            swings_itself || (end.cause == EndCause::Diverged && pieces.ends_at_limits())
         }
+        Outcome::Completed | Outcome::ModeNeverBegan { .. } => false,
     }
 }

@@ -18,7 +18,7 @@ const ALIKE: f64 = 1e-3;
 const UNSEEN: f64 = 2.0;
 /// Under noise an error that moves in the last two fifths by no more than this share of all its movement has come to an end.
 const QUIET: f64 = 0.2;
-/// A swing at limits of a flight that is not flown on meets them at one of so many samples at least.
+/// A swing at limits of an aircraft meets them at one of so many samples at least.
 const AT_LIMITS: usize = 4;
 /// A limit of rate is met a thousandth before it, for rounding.
 const AT_RATE: f64 = 0.999;
@@ -212,13 +212,21 @@ impl<'a> Pieces<'a> {
             }
     }
 
-    /// True for a flight that is not flown on, at the end of which limits are met again and again in an error that does not
-    /// shrink.
+    /// True for an aircraft's flight at the end of which limits are met again and again in an error that does not shrink.
     pub(super) fn swings_on(&self, moved: Moved, moves: Moves) -> bool {
+        // Of fewer pieces than fifths nothing is said.
+        if self.all.len() < 5 {
+            return false;
+        }
         let [.., fourth, fifth] = self.fifths();
         let stands = moves == Moves::Back && self.stands_at_a_limit(fourth.and(fifth));
         let times = if moved == Moved::Nothing { STAYS } else { GROWN_IN_NOISE };
         fourth.is_at_limits() && fifth.is_at_limits() && !stands && self.grows(times)
+    }
+
+    /// True where limits are met again and again at the end of a flight.
+    pub(super) fn ends_at_limits(&self) -> bool {
+        self.tail().is_at_limits()
     }
 
     /// True where the error moves in the last two fifths, under noise at limits, twice as much as in an earlier part.

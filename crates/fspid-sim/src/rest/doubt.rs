@@ -169,7 +169,7 @@ pub enum Doubt {
     RunsAway,
     /// A flight, flown on, is lost, or meets limits in a swing that does not shrink.
     #[error(
-        "limits are met, and the flight does not settle, nor when it is flown on (linear plants are, for ten times as long): it swings on between them or is lost, as a longer flight shows; wider limits, smaller or slower commands, or lower gains may hold it"
+        "limits are met, and the flight does not settle, nor when it is flown on (in still air, for ten times as long): it swings on between them or is lost, as a longer flight shows; wider limits, smaller or slower commands, or lower gains may hold it"
     )]
     SwingAtLimits,
 }

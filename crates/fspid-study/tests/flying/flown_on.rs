@@ -292,16 +292,39 @@ fn a_sample_guard_that_is_met_later_leaves_a_flight_in_doubt() {
     assert_eq!(doubt(&result(&guarded, &["controller.PID.sample_guard_deg=60.0"])), None);
 }
 
-/// Aircraft are not flown on; a swing that their own flight shows is told all the same.
+/// The scenario with an aircraft at an airspeed in place of its plant.
+fn of_aircraft(of_plant: &str, aircraft: &str, speed: &str) -> String {
+    let lines = of_plant.lines().map(|line| match line.starts_with("plant") {
+        true => format!("aircraft = {{ name = \"{aircraft}\", {speed}, altitude_m = 500.0 }}"),
+        false => line.to_owned(),
+    });
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+/// A DC-8 whose elevator is too slow for its gains lay on its back after 55 s, and was stable in its 10 s.
+#[test]
+fn a_swing_at_limits_that_grows_after_the_flight_of_an_aircraft_leaves_it_in_doubt() {
+    let slow = stepped(
+        ["[]", "[]"],
+        "time_constant_s = 0.09, rate_limit_deg_s = 2.08",
+        [0.02, 10.1],
+        -2.34,
+        "kp = 0.579\nki = 2.16\nkd = 0.945\nderivative_filter_s = 0.05",
+    );
+    let slow = of_aircraft(&slow, "dc-8-approach", "airspeed_m_s = 81.35");
+    assert_eq!(doubt(&result(&slow, &[])), Some(Doubt::SwingAtLimits));
+    assert!(diverges(&slow, &["loop.duration_s=60.0"]));
+    // A step that is small for the same elevator, and one that is fast enough.
+    assert_eq!(doubt(&result(&slow, &["setpoint.amplitude_deg=-0.2"])), None);
+    assert_eq!(doubt(&result(&slow, &["actuator.rate_limit_deg_s=20.0"])), None);
+}
+
+/// A swing that an aircraft's own flight shows is told without flying on.
 #[test]
 fn a_swing_at_limits_that_the_flight_of_an_aircraft_shows_leaves_it_in_doubt() {
     let step = |aircraft: &str, speed: &str, pid: &str| {
         let of_plant = stepped(["[]", "[]"], "time_constant_s = 0.2", [0.02, 22.0], -0.72, pid);
-        let lines = of_plant.lines().map(|line| match line.starts_with("plant") {
-            true => format!("aircraft = {{ name = \"{aircraft}\", {speed}, altitude_m = 500.0 }}"),
-            false => line.to_owned(),
-        });
-        lines.collect::<Vec<_>>().join("\n")
+        of_aircraft(&of_plant, aircraft, speed)
     };
     let beaver = step(
         "beaver",

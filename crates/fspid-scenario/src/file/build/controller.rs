@@ -84,12 +84,11 @@ pub(super) fn outer(
         integral: section.get(keys::INTEGRAL)?,
         ..ends
     };
-    let key = (section, keys::NAME);
     match section.variant()? {
-        OuterKind::Pid => judged(report, key, Pid::new(gains?, config)).map(Controller::Fixed),
+        OuterKind::Pid => placed(report, section, Pid::new(gains?, config)).map(Controller::Fixed),
         OuterKind::Fspid => {
             let tuner = tuner(report, files, section, gains);
-            judged(report, key, Fspid::new(tuner?, config)).map(Controller::SelfTuning)
+            placed(report, section, Fspid::new(tuner?, config)).map(Controller::SelfTuning)
         }
     }
 }

@@ -6,19 +6,32 @@ use fspid_diagnostics::Report;
 use super::{judged, rad};
 use crate::file::spec::controller as keys;
 use crate::file::spec::controller::AntiWindupKind;
-use crate::keyed::Section;
+use crate::keyed::{KeyName, Section};
 
-/// The controller, or its conflict at the setting that is in it.
+/// The controller, or what is wrong with it at the setting that it is about.
 pub(super) fn placed<T>(
     report: &mut Report,
     section: &Section,
     result: Result<T, ConfigError>,
 ) -> Option<T> {
-    let key = match result {
-        Err(ConfigError::Conflict { .. }) => keys::ANTI_WINDUP.name,
-        _ => keys::NAME.name,
-    };
-    judged(report, (section, key), result)
+    let place = result.as_ref().err().and_then(|error| place_of(section, error));
+    judged(report, place.unwrap_or((section, keys::NAME.name)), result)
+}
+
+/// Where a setting stands that is sound by itself, and not with others: limits that exclude each other, times that the sample period
+/// bounds.
+fn place_of<'s>(section: &'s Section, error: &ConfigError) -> Option<(&'s Section, KeyName)> {
+    match error {
+        ConfigError::Conflict { .. } => Some((section, keys::ANTI_WINDUP.name)),
+        ConfigError::Number { what: ControllerSetting::TrackingTime, .. } => {
+            Some((section.get(keys::ANTI_WINDUP)?, keys::TRACKING_S.name))
+        }
+        ConfigError::Number { what: ControllerSetting::ModelBandwidth, .. } => {
+            let model = section.get(keys::SUPERVISOR)?.get(keys::MODEL)?;
+            Some((model, keys::BANDWIDTH_RAD_S.name))
+        }
+        _ => None,
+    }
 }
 
 /// A configuration with limits, anti-windup and guard alone.
