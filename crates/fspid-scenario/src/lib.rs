@@ -27,6 +27,7 @@ pub mod requirement;
 mod setting_path;
 pub mod supervisor;
 mod system_text;
+pub mod toml_text;
 pub mod tuning;
 pub mod turned;
 

@@ -10,6 +10,7 @@ use crate::argument::NamedFile;
 use crate::exit::{Failure, note};
 use fspid_external::{ProcessHost, SimulatorHost, serve};
 use fspid_scenario::file::{self, Study, unread_in_words};
+use fspid_scenario::toml_text::quoted;
 use fspid_sim::Scenario;
 use fspid_sim::external::set_host;
 use fspid_sim::external_plant::set_plant_host;
@@ -134,18 +135,13 @@ fn entry(key: &str, file: &Path, more: &str) -> Result<String, Failure> {
     let name = path.file_name().unwrap_or_default();
     match (name.to_str(), path.to_str()) {
         (Some(name), Some(path)) => {
-            let (name, path) = (toml_text(name), toml_text(path));
+            let (name, path) = (quoted(name), quoted(path));
             Ok(format!(
                 "controller[]={{ name = {name}, kind = \"external\", {key} = {path}{more} }}"
             ))
         }
         _ => Err(refused(&"its path is no text")),
     }
-}
-
-/// A text as TOML writes it: as JSON does, but for one character.
-fn toml_text(text: &str) -> String {
-    serde_json::Value::from(text).to_string().replace('\u{7f}', "\\u007f")
 }
 
 /// The program that runs, whatever lies at its path by now: Linux keeps it there, also once it is removed.

@@ -15,6 +15,7 @@ use crate::file::spec::scenario::{
 use crate::keyed::document::{Item, Member, Value};
 use crate::keyed::{Kind, Table};
 use crate::requirement::Requirement;
+use crate::toml_text::{key, quoted};
 use fspid_diagnostics::{Report, Span};
 
 /// What is left of a scenario in a replay.
@@ -314,12 +315,6 @@ fn write_line(out: &mut String, member: &Member) {
     out.push_str(&format!("{} = {}\n", key(&member.name), written(&member.item.value)));
 }
 
-/// A key, in quotes where it needs them.
-fn key(name: &str) -> String {
-    let is_bare = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
-    if !name.is_empty() && name.chars().all(is_bare) { name.to_owned() } else { quoted(name) }
-}
-
 /// A value in one line.
 pub(crate) fn written(value: &Value) -> String {
     match value {
@@ -341,19 +336,6 @@ pub(crate) fn written(value: &Value) -> String {
             format!("{{ {} }}", members.join(", "))
         }
     }
-}
-
-/// A text in quotes; control characters are escaped.
-fn quoted(text: &str) -> String {
-    let escaped = |c: char| match c {
-        '"' | '\\' => format!("\\{c}"),
-        '\n' => "\\n".to_owned(),
-        '\t' => "\\t".to_owned(),
-        '\r' => "\\r".to_owned(),
-        c if c.is_control() => format!("\\u{:04X}", u32::from(c)),
-        c => c.to_string(),
-    };
-    format!("\"{}\"", text.chars().map(escaped).collect::<String>())
 }
 
 #[cfg(test)]

@@ -13,6 +13,7 @@ use super::import::ImportFailure;
 use super::load::text;
 use super::table::table;
 use fspid_scenario::aircraft::number::significant;
+use fspid_scenario::toml_text::quoted;
 use fspid_scenario::units::degrees;
 
 /// An aircraft of JSBSim that was read.
@@ -79,7 +80,6 @@ impl JsbsimImport {
     }
 
     fn toml(&self, stem: &str, name: impl Fn(&str) -> String) -> String {
-        let quoted = |text: &str| toml::Value::from(text).to_string();
         let Stops { elevator, aileron, rudder } = self.aircraft.stops;
         let span = |(min, max): (f64, f64)| format!("[{min:?}, {max:?}]");
         let numbered = self.aircraft.notes.iter().enumerate();

@@ -9,6 +9,7 @@ use fspid_sim::{ExternalPlant, SimError, Simulator};
 use serde_json::{Value, json};
 
 use fspid_scenario::file::Study;
+use fspid_scenario::toml_text::quoted;
 use fspid_scenario::units::degrees;
 
 /// Frequencies between which the model is compared with the simulator's own, rad/s: where pitch loops cross over.
@@ -220,9 +221,4 @@ impl SimulatorModel {
             "compared_rad_s": COMPARED_RAD_S,
         })
     }
-}
-
-/// A text as TOML writes it: as JSON does, but for one character.
-fn quoted(text: &str) -> String {
-    Value::from(text).to_string().replace('\u{7f}', "\\u007f")
 }

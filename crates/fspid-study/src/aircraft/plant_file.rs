@@ -2,6 +2,8 @@
 
 use fspid_aircraft::data::{LinearCondition, LinearElevator, ModelData};
 
+use fspid_scenario::toml_text::quoted;
+
 use super::linearise::Linear;
 use super::trim::Trimmed;
 
@@ -72,8 +74,4 @@ fn condition(trimmed: &Trimmed) -> String {
 fn list(values: &[f64]) -> String {
     let values: Vec<String> = values.iter().map(|value| format!("{value:?}")).collect();
     format!("[{}]", values.join(", "))
-}
-
-fn quoted(text: &str) -> String {
-    toml::Value::String(text.to_owned()).to_string()
 }

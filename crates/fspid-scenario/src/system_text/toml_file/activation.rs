@@ -4,9 +4,10 @@ use fspid_fuzzy::system::{Activation, Comparison};
 use serde_json::{Value, json};
 
 use super::fields::{Fields, word};
-use super::write::{number, quoted};
+use super::write::number;
 use crate::keyed::document::{Item, Value as Written};
 use crate::keyed::word::{Word, words};
+use crate::toml_text::quoted;
 use fspid_diagnostics::Report;
 
 words! {

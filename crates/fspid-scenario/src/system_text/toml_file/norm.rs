@@ -6,8 +6,8 @@ use serde_json::{Value, json};
 
 use super::fields::{Fields, word};
 use super::formula::{formula, formula_schema};
-use super::write::quoted;
 use crate::keyed::document::{Item, Value as Written};
+use crate::toml_text::quoted;
 use fspid_diagnostics::Report;
 
 /// The two grades of a norm's formula.

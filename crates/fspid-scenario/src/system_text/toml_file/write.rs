@@ -9,6 +9,7 @@ use fspid_fuzzy::system::{
 };
 
 use super::{activation, norm, rules};
+use crate::toml_text::{key, quoted};
 
 /// The text of a system's file.
 #[must_use]
@@ -207,22 +208,4 @@ pub(super) fn number(value: f64) -> String {
 fn numbers(values: &[f64]) -> String {
     let written: Vec<String> = values.iter().map(|value| number(*value)).collect();
     format!("[{}]", written.join(", "))
-}
-
-/// A name as a key.
-pub(super) fn key(name: &str) -> String {
-    let is_bare = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
-    if !name.is_empty() && name.chars().all(is_bare) { name.to_owned() } else { quoted(name) }
-}
-
-/// A text in quotes; what cannot be seen is escaped.
-pub(super) fn quoted(text: &str) -> String {
-    let escaped = |c: char| match c {
-        '"' | '\\' => format!("\\{c}"),
-        '\n' => "\\n".to_owned(),
-        '\t' => "\\t".to_owned(),
-        c if c.is_control() => format!("\\u{:04X}", u32::from(c)),
-        c => c.to_string(),
-    };
-    format!("\"{}\"", text.chars().map(escaped).collect::<String>())
 }

@@ -6,10 +6,10 @@ use fspid_fuzzy::system::{
 
 use super::super::fields::{Fields, below, in_order, word};
 use super::super::spec::{CELLS, COLUMNS, ROWS};
-use super::super::write::{key, quoted};
 use super::Vocabulary;
 use crate::keyed::document::{Item, Value as Written};
 use crate::keyed::{Key, Section};
+use crate::toml_text::{key, quoted};
 use fspid_diagnostics::{Report, Span};
 
 /// The cell that stands for no rule.

@@ -5,9 +5,9 @@ use fspid_fuzzy::system::{Parts, Rule, RuleBlock};
 
 use super::super::fields::Fields;
 use super::super::formula::within;
-use super::super::write::quoted;
 use super::{Vocabulary, grid, tree};
 use crate::keyed::document::{Item, Value as Written};
+use crate::toml_text::quoted;
 use fspid_diagnostics::{Report, Span};
 
 /// The rules of a text or list, with their places.

@@ -6,9 +6,10 @@ use fspid_fuzzy::Hedge;
 use fspid_fuzzy::system::{Antecedent, Consequent, Parts, Rule, Statement, Variable};
 
 use super::super::fields::{Fields, any_number, below, word};
-use super::super::write::{number, quoted};
+use super::super::write::number;
 use super::Vocabulary;
 use crate::keyed::document::{Item, Value as Written};
+use crate::toml_text::quoted;
 use fspid_diagnostics::Report;
 
 /// Deepest nesting that is read; the system's own limit is lower.
