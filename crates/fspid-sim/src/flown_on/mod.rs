@@ -86,12 +86,7 @@ pub(crate) fn doubt(
     ];
     let mut asked = ways.into_iter().filter(|(_, is_asked)| *is_asked);
     asked.find_map(|(afterwards, _)| {
-        let asked = Asked { afterwards, moves, swings_itself };
-        match flown_on(scenario, controller, &ends, asked) {
-            Some(answer) => answer,
-            // What cannot be flown on has its own flight alone.
-            None => swings_itself.then_some(Doubt::SwingAtLimits),
-        }
+        doubt_flown_on(scenario, controller, &ends, Asked { afterwards, moves, swings_itself })
     })
 }
 
@@ -148,16 +143,17 @@ struct Asked {
     swings_itself: bool,
 }
 
-/// Why the flight is in doubt as it goes on; nothing of what cannot be flown on.
-fn flown_on(
+/// Why the flight is in doubt as it goes on; what cannot be flown on has its own swing alone.
+fn doubt_flown_on(
     scenario: &Scenario,
     controller: &Controller,
     ends: &Ends,
     Asked { afterwards, moves, swings_itself }: Asked,
-) -> Option<Option<Doubt>> {
+) -> Option<Doubt> {
+    let of_its_own = swings_itself.then_some(Doubt::SwingAtLimits);
     let rows = scenario.timing.rows();
     let horizon = (TIMES * rows).clamp(SAMPLES[0], SAMPLES[1]);
-    let prepared = held_on(scenario, horizon, afterwards)?;
+    let Some(prepared) = held_on(scenario, horizon, afterwards) else { return of_its_own };
     let mut pieces = Pieces::new(scenario, ends, (rows / 5).max(horizon / PIECES));
     let moved = Moved::of(scenario, afterwards);
     let (mut rested, mut is_held, mut own) = (false, false, None);
@@ -176,18 +172,18 @@ fn flown_on(
         rested = moved == Moved::Nothing && is_seen && pieces.rests();
         if rested { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
-    let outcome = outcome.ok()?;
+    let Ok(outcome) = outcome else { return of_its_own };
     let has_grown =
         || moved == Moved::ByNoise && own.is_some_and(|own| pieces.has_doubled_since(own));
     let goes_on = || match scenario.plant.linear() {
         Some(_) => outcome != Outcome::Completed || pieces.goes_on(moved, moves) || has_grown(),
         None => pieces.swings_on(moved, moves) || is_lost(outcome, swings_itself, &pieces),
     };
-    Some(match (is_held, rested) {
+    match (is_held, rested) {
         (true, _) => Some(Doubt::HeldByGuard),
         (false, true) => None,
         (false, false) => goes_on().then_some(Doubt::SwingAtLimits),
-    })
+    }
 }
 
 /// True of an aircraft that ends early out of a swing at limits, or on its back at them; without either it comes down to the ground
