@@ -228,7 +228,12 @@ def asked(programs: list[Tests], filters: list[str], number: int, longest_s: flo
 def copied() -> None:
     """What git knows, or would, as it is now; what was copied and is the same stays as old as it is."""
     told = subprocess.check_output(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=ROOT, text=True)
-    for name in filter(None, told.split("\0")):
+    names = set(filter(None, told.split("\0")))
+    # A module that has become a folder would be there twice.
+    for stale in COPY.glob("crates/**/*.rs"):
+        if str(stale.relative_to(COPY)) not in names:
+            stale.unlink()
+    for name in names:
         ours, theirs = ROOT / name, COPY / name
         if ours.is_file() and not (theirs.is_file() and theirs.read_bytes() == ours.read_bytes()):
             theirs.parent.mkdir(parents=True, exist_ok=True)

@@ -301,25 +301,32 @@ fn of_aircraft(of_plant: &str, aircraft: &str, speed: &str) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// A DC-8 whose elevator is too slow for its gains lay on its back after 55 s, and was stable in its 10 s.
-#[test]
-fn a_swing_at_limits_that_grows_after_the_flight_of_an_aircraft_leaves_it_in_doubt() {
-    let slow = stepped(
+/// A DC-8 whose elevator is too slow for its gains: it lies on its back after 55 s, and its flight ends after 10 s.
+fn slow_elevator() -> String {
+    let step = stepped(
         ["[]", "[]"],
         "time_constant_s = 0.09, rate_limit_deg_s = 2.08",
         [0.02, 10.1],
         -2.34,
         "kp = 0.579\nki = 2.16\nkd = 0.945\nderivative_filter_s = 0.05",
     );
-    let slow = of_aircraft(&slow, "dc-8-approach", "airspeed_m_s = 81.35");
+    of_aircraft(&step, "dc-8-approach", "airspeed_m_s = 81.35")
+}
+
+/// It was stable in its 10 s.
+#[test]
+fn a_swing_at_limits_that_grows_after_the_flight_of_an_aircraft_leaves_it_in_doubt() {
+    let slow = slow_elevator();
     assert_eq!(doubt(&result(&slow, &[])), Some(Doubt::SwingAtLimits));
     assert!(diverges(&slow, &["loop.duration_s=60.0"]));
+    // Also where no limit is met yet, for the step comes at the end.
+    assert_eq!(doubt(&result(&slow, &["setpoint.at_s=10.09"])), Some(Doubt::SwingAtLimits));
     // A step that is small for the same elevator, and one that is fast enough.
     assert_eq!(doubt(&result(&slow, &["setpoint.amplitude_deg=-0.2"])), None);
     assert_eq!(doubt(&result(&slow, &["actuator.rate_limit_deg_s=20.0"])), None);
 }
 
-/// A swing that an aircraft's own flight shows is told without flying on.
+/// A swing that an aircraft's own flight shows is told, in moving air by that flight.
 #[test]
 fn a_swing_at_limits_that_the_flight_of_an_aircraft_shows_leaves_it_in_doubt() {
     let step = |aircraft: &str, speed: &str, pid: &str| {
@@ -336,6 +343,10 @@ fn a_swing_at_limits_that_the_flight_of_an_aircraft_shows_leaves_it_in_doubt() {
         "airspeed_ft_s = 176.0",
         "kp = 3.8\nki = 0.1\nkd = 0.6\nderivative_filter_s = 0.05\nslew_limit_deg_s = 5.8",
     );
+    // The air of a way ends with the flight, which is asked alone.
+    let breeze = "[wind]\nkind = \"log-shear\"\nw20_kt = 0.1\nfrom_deg = 0.0\n";
+    assert_eq!(doubt(&result(&format!("{beaver}\n{breeze}"), &[])), Some(Doubt::SwingAtLimits));
+    assert_eq!(doubt(&result(&format!("{}\n{breeze}", slow_elevator()), &[])), None);
     // Wherever in its swing the flight ends.
     for (text, duration) in
         [(&beaver, "22.0"), (&navion, "29.0"), (&navion, "31.5"), (&navion, "60.0")]
