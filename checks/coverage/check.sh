@@ -41,17 +41,26 @@ env "$runner=$PWD/checks/coverage/run.sh" cargo test --locked --no-fail-fast --t
 counted() {
     local name
     name="$(basename "$1")"
-    "llvm-profdata-$llvm" merge --sparse --output="$CARGO_TARGET_DIR/$name.profdata" "${@:2}"
+    # A program that a test kills while it writes leaves a file that is not whole.
+    "llvm-profdata-$llvm" merge --sparse --failure-mode=all --output="$CARGO_TARGET_DIR/$name.profdata" "${@:2}"
     "llvm-cov-$llvm" export --format=lcov --skip-functions --instr-profile="$CARGO_TARGET_DIR/$name.profdata" "$1" \
         >"$CARGO_TARGET_DIR/$name.lcov" 2>"$CARGO_TARGET_DIR/$name.told"
     rm "$CARGO_TARGET_DIR/$name.profdata"
 }
+started=()
 while read -r program; do
-    raw=("$FSPID_COVERAGE_RAW/$(basename "$program")"/*.profraw)
-    [[ -e "${raw[0]}" ]] && counted "$program" "${raw[@]}"
+    raw="$FSPID_COVERAGE_RAW/$(basename "$program")"
+    own=("$raw/$(cat "$raw.pid")"-*.profraw)
+    [[ -e "${own[0]}" ]] || continue
+    # Behind the number of the process stands that of the program.
+    signature="${own[0]##*-}" signature="${signature%_*}"
+    counted "$program" "$raw"/*-"$signature"_*.profraw
+    for file in "$raw"/*.profraw; do
+        [[ "$file" == *-"$signature"_* ]] || started+=("$file")
+    done
 done <"$programs"
 # What tests start is a program too.
-if [[ "${crates[*]}" == *workspace* ]]; then counted "$CARGO_TARGET_DIR/debug/fspid" "$FSPID_COVERAGE_RAW"/*/*.profraw; fi
+if [[ "${crates[*]}" == *workspace* ]]; then counted "$CARGO_TARGET_DIR/debug/fspid" "${started[@]}"; fi
 rm -rf "$FSPID_COVERAGE_RAW"
 asked=()
 for name in "$@"; do asked+=(--crate "$name"); done

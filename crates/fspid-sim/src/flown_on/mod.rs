@@ -7,6 +7,8 @@
 
 mod moved;
 mod pieces;
+#[cfg(test)]
+mod tests;
 
 use core::ops::ControlFlow;
 
