@@ -97,7 +97,11 @@ fn headline(certified: &Certified, outcome: &Outcome) -> Headline {
                 "NOT PROVED as it flies".to_owned(),
                 format!("{trouble}; proved is the pitch loop alone: {}", sentence(certificate)),
             ),
-            (None, None) => ("PROVED".to_owned(), sentence(certificate)),
+            (None, None) => {
+                // What was asked beside it is told below.
+                let word = if certified.is_proved() { "PROVED" } else { "PROVED IN PART" };
+                (word.to_owned(), sentence(certificate))
+            }
             (None, Some(_)) => {
                 ("PROVED for the pitch loop alone".to_owned(), sentence(certificate))
             }

@@ -37,16 +37,22 @@ impl Controller {
         self.memory.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A sample; refused without a rate where the controller needs one: zero would take its damping away, and nobody would see it.
+    /// Refuses samples without a rate where the controller needs one: zero would take its damping away, and nobody would see it.
+    fn has_its_rate(&self, py: Python<'_>, is_given: bool) -> PyResult<()> {
+        match is_given || !self.controller.uses_rate() {
+            true => Ok(()),
+            false => Err(error::input(py, NEEDS_RATE)),
+        }
+    }
+
+    /// A sample, which has to have its rate.
     fn sample(
         &self,
         py: Python<'_>,
         (setpoint_rad, measurement_rad): (f64, f64),
         rate_rad_s: Option<f64>,
     ) -> PyResult<Sample<f64>> {
-        if rate_rad_s.is_none() && self.controller.uses_rate() {
-            return Err(error::input(py, NEEDS_RATE));
-        }
+        self.has_its_rate(py, rate_rad_s.is_some())?;
         Ok(Sample { setpoint_rad, measurement_rad, rate_rad_s: rate_rad_s.unwrap_or(0.0) })
     }
 
@@ -200,9 +206,7 @@ impl Controller {
     fn step_many(&self, py: Python<'_>, inputs: &Bound<'_, PyTuple>) -> PyResult<Column> {
         let names = ["setpoint", "measurement", "rate"].map(str::to_owned);
         let columns: Vec<Numbers> = same_length(py, &names[..inputs.len().clamp(2, 3)], inputs)?;
-        if columns.len() < names.len() && self.controller.uses_rate() {
-            return Err(error::input(py, NEEDS_RATE));
-        }
+        self.has_its_rate(py, columns.len() == names.len())?;
         let controller = self.controller;
         let (lent, mut now) = self.lend(py)?;
         let (now, commands) = interrupt::run(py, move || {

@@ -17,8 +17,8 @@ const LEAST_TAIL: usize = 10;
 ///
 /// [`Doubt::HeldByGuard`] where its last sample, or that of the flight as it goes on, is beyond the controller's sample guard;
 /// [`Doubt::RunsAway`] where that of a plant that does not come to rest by itself ends at a limit of controller or servo with an
-/// error that grows, through the last tenth of it, at every sample; and [`Doubt::SwingAtLimits`] where that of a linear plant is
-/// lost, or a flight ends, as it is or flown on, at limits in a swing that does not shrink.
+/// error that grows, through the last tenth of it, at every sample; and [`Doubt::SwingAtLimits`] where that of a linear plant, or
+/// that of an aircraft at limits, is lost, or a flight ends, as it is or flown on, at limits in a swing that does not shrink.
 #[must_use]
 pub fn doubt_of_flight(
     scenario: &Scenario,

@@ -87,13 +87,9 @@ impl Certified {
         // What was asked beside stability and is not proved, lest a good word stand alone.
         let beside = self.lines().into_iter().filter(|line| !self.is_proved() && is_beside(line));
         let beside = beside.map(|(about, sentence)| format!("; {about} {sentence}"));
-        let word = match headline.word.as_str() {
-            "PROVED" if !self.is_proved() => "PROVED IN PART".to_owned(),
-            _ => headline.word,
-        };
         Card {
             standing: self.standing(),
-            word,
+            word: headline.word,
             name: self.name(),
             detail: headline.detail + &beside.collect::<String>() + ".",
         }

@@ -53,11 +53,16 @@ pub(crate) fn doubt(
         return None;
     }
     let is_linear = scenario.plant.linear().is_some();
-    if trace.rows() < rows {
-        // Without limits a loop that holds at rest holds; what ends another plant's flight is told by its verdict.
-        return is_linear.then_some(Doubt::SwingAtLimits);
-    }
     let pieces = pieces_of(scenario, &ends, trace);
+    if trace.rows() < rows {
+        // Without limits a loop that holds at rest holds; what else ends an aircraft's flight is told by its verdict.
+        let is_of_limits = is_linear || {
+            let moved = moved_in_flight(scenario);
+            let swings_itself = moves().is_some_and(|moves| pieces.swings_on(moved, moves));
+            is_lost(trace.outcome, swings_itself, &pieces)
+        };
+        return is_of_limits.then_some(Doubt::SwingAtLimits);
+    }
     if has_come_to_rest(scenario, &pieces, trace) {
         return None;
     }

@@ -326,6 +326,22 @@ fn a_swing_at_limits_that_grows_after_the_flight_of_an_aircraft_leaves_it_in_dou
     assert_eq!(doubt(&result(&slow, &["actuator.rate_limit_deg_s=20.0"])), None);
 }
 
+/// Its margins were met beside "diverged".
+#[test]
+fn an_aircraft_that_is_lost_at_limits_within_its_flight_has_no_margins_to_require() {
+    let asked = "[[requirement]]\nmeasure = \"stable\"\n[[requirement]]\nmeasure = \"phase_margin_deg\"\nleast = 10.0\n";
+    let found = |set: &[&str]| {
+        let flown = Simulation::of(&study(&format!("{}\n{asked}", slow_elevator()), set));
+        let judged = flown.expect("it flies").judgements;
+        judged.into_iter().map(|it| (it.met, it.found.err())).collect::<Vec<_>>()
+    };
+    let undecided = NotEvaluated::Absent(Absent::Undecided(Doubt::SwingAtLimits));
+    let lost = found(&["loop.duration_s=60.0"]);
+    assert_eq!(lost, vec![(false, None), (false, Some(undecided))]);
+    let fast = found(&["loop.duration_s=60.0", "actuator.rate_limit_deg_s=20.0"]);
+    assert_eq!(fast, vec![(true, None); 2]);
+}
+
 /// A swing that an aircraft's own flight shows is told, in moving air by that flight.
 #[test]
 fn a_swing_at_limits_that_the_flight_of_an_aircraft_shows_leaves_it_in_doubt() {
