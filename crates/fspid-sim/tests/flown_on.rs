@@ -2,7 +2,7 @@
 
 use fspid_core::{ControllerSetting, Gains, Limits, Pid, PidConfig};
 use fspid_sim::signal::{Disturbance, Entry, Profile, Shape};
-use fspid_sim::stability::{doubt_of_flight, growth_at_rest};
+use fspid_sim::stability::{doubt_of_flight, doubt_when_flown, growth_at_rest};
 use fspid_sim::{
     Actuator, Controller, ElevatorSign, LinearPlant, NamedController, Outcome, PlantChange,
     Scenario, Surroundings, Timing, Trace, simulate,
@@ -149,6 +149,33 @@ fn a_flight_that_comes_to_rest_after_it_has_met_a_limit_is_not_lost() {
         assert!(trace.command_rad.iter().any(|it| *it >= 0.2), "it meets the limit");
         assert!(!is_lost(&scenario), "{denominator:?}");
     }
+}
+
+#[test]
+fn a_flight_that_ends_at_a_limit_on_its_way_to_the_set_point_is_not_lost() {
+    // It turns the plant by a sixtieth of a radian a second, so that it is there after half a minute.
+    let scenario = limited(&INTEGRATING, 0.01, |it| {
+        it.setpoint = Profile::new(0.5, STEP).expect("allowed");
+    });
+    let trace = flown(&scenario, 10.0);
+    let last = trace.command_rad.iter().rev().take(60);
+    assert!(last.copied().all(|it| it >= 0.01), "it ends at its limit");
+    assert!(!is_lost(&scenario));
+}
+
+#[test]
+fn who_has_not_flown_one_of_two_controllers_is_told_of_that_one() {
+    let mut both = limited(&UNSTABLE, 0.2, |it| it.disturbances = load(0.25, STEP));
+    let weak = both.controllers[0].clone();
+    let gains = Gains { kp: 3.0, ki: 0.5, kd: 1.5 };
+    let strong = NamedController { name: "strong".into(), controller: pid(gains, Some(2.0)) };
+    both.controllers.push(strong.clone());
+    let found = [&weak, &strong].map(|named| doubt_when_flown(&both, named));
+    let traces = simulate(&both).expect("flies").traces;
+    for ((named, trace), found) in both.controllers.iter().zip(&traces).zip(found) {
+        assert_eq!(found, doubt_of_flight(&both, &named.controller, trace), "{}", named.name);
+    }
+    assert_eq!(found.map(|it| it.is_some()), [true, false]);
 }
 
 #[test]

@@ -1,7 +1,10 @@
 //! What moves a flight after its end, and the flight as it goes on under that.
 
+#[cfg(test)]
+mod tests;
+
 use crate::scenario::{Prepared, Scenario};
-use crate::signal::{Disturbance, Entry, Profile};
+use crate::signal::{Disturbance, Entry};
 use crate::timing::Timing;
 
 /// What keeps an error moving for ever.
@@ -42,7 +45,7 @@ pub(super) fn is_noisy(scenario: &Scenario) -> bool {
     let end_s = scenario.timing.end_s();
     let mut noises = scenario.disturbances.iter().filter(|it| it.is_noise());
     noises.any(|it| it.acts_by(end_s))
-        || (scenario.setpoint.is_noise() && commands_anything(&scenario.setpoint))
+        || scenario.setpoint.is_noise()
         || scenario.surroundings.is_noisy()
 }
 
@@ -56,11 +59,8 @@ pub(super) fn has_swings(scenario: &Scenario) -> bool {
 fn swings_by_command(scenario: &Scenario) -> bool {
     let setpoint = &scenario.setpoint;
     let end_s = scenario.timing.end_s();
-    commands_anything(setpoint) && setpoint.period_s().is_some_and(|(from_s, _)| from_s <= end_s)
-}
-
-fn commands_anything(setpoint: &Profile) -> bool {
-    setpoint.ends_rad().iter().any(|it| *it != 0.0)
+    let has_size = setpoint.ends_rad().iter().any(|it| *it != 0.0);
+    has_size && setpoint.period_s().is_some_and(|(from_s, _)| from_s <= end_s)
 }
 
 /// True where set-point, loads or plant change within the last fifth of a flight, too late to see what comes of it.

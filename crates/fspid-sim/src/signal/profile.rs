@@ -94,11 +94,12 @@ impl Profile {
         }
     }
 
+    /// True for noise of some size, which [`Self::ends_rad`] leaves out.
     pub(crate) fn is_noise(&self) -> bool {
-        matches!(self.0, Kind::Shape { shape: Shape::Noise { .. }, .. })
+        matches!(self.0, Kind::Shape { amplitude_rad, shape: Shape::Noise { .. } } if amplitude_rad != 0.0)
     }
 
-    /// Least and largest set-point that is commanded in all time, rad; the trim is one of them.
+    /// Least and largest set-point that is commanded in all time, rad; the trim is one of them. Noise is left out.
     #[must_use]
     pub fn ends_rad(&self) -> [f64; 2] {
         match &self.0 {
