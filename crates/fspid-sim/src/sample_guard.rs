@@ -37,3 +37,76 @@ pub(crate) fn is_beyond(controller: &Controller, sample: [f64; 3]) -> bool {
     let limit_rad = controller.config().guard.limit_rad();
     [setpoint_rad, theta_rad, rate_rad_s].iter().any(|value| value.abs() > limit_rad)
 }
+
+#[cfg(test)]
+mod tests {
+    use fspid_core::{Gains, Guard, Pid, PidConfig};
+
+    use super::*;
+    use crate::closed_loop::simulate;
+    use crate::plant::{ElevatorSign, LinearPlant};
+    use crate::scenario::NamedController;
+    use crate::signal::{Disturbance, Profile, Shape};
+    use crate::timing::Timing;
+
+    const LIMIT_RAD: f64 = 0.5;
+
+    fn guarded(limit_rad: f64) -> Controller {
+        let guard = Guard::new(limit_rad).expect("allowed");
+        let config = PidConfig { guard, ..PidConfig::sampled_every(0.01) };
+        let gains = Gains { kp: 1.0, ki: 0.0, kd: 1.0 };
+        Controller::Fixed(Pid::new(gains, config).expect("allowed"))
+    }
+
+    /// A flight under a load at the measurement, from 0.5 s on.
+    fn scenario(load_rad: f64) -> Scenario {
+        let plant = LinearPlant::new(&[1.0], &[1.0, 1.0], ElevatorSign::NoseUpPositive);
+        let step = Shape::Step { at_s: 0.5 };
+        let load = Disturbance::new(Entry::Measurement, load_rad, step.clone());
+        let setpoint = Profile::new(0.1, step).expect("allowed");
+        let timing = Timing::new(0.01, 1.0).expect("allowed");
+        let named = NamedController { name: "C".into(), controller: guarded(LIMIT_RAD) };
+        Scenario {
+            controllers: vec![named],
+            disturbances: vec![load.expect("allowed")],
+            ..Scenario::new("guarded", plant.expect("proper"), timing, setpoint)
+        }
+    }
+
+    /// Whether the command is held of a flight that ends at a pitch and rate under a load at the measurement.
+    fn is_held(load_rad: f64, [theta_rad, rate_rad_s]: [f64; 2], faults: Faults) -> bool {
+        let own = scenario(load_rad);
+        let mut trace = simulate(&own).expect("flies").traces.remove(0);
+        trace.faults = faults;
+        *trace.theta_rad.last_mut().expect("flown") = theta_rad;
+        *trace.q_rad_s.last_mut().expect("flown") = rate_rad_s;
+        holds_the_command(&own, &own.controllers[0].controller, &trace)
+    }
+
+    #[test]
+    fn a_command_is_held_where_the_last_pitch_that_is_measured_is_beyond_the_guard() {
+        let implausible = Faults::IMPLAUSIBLE;
+        assert!(is_held(0.25, [0.3, 0.0], implausible) && is_held(-0.25, [-0.3, 0.0], implausible));
+        assert!(
+            !is_held(0.25, [0.2, 0.0], implausible) && !is_held(-0.25, [0.6, 0.0], implausible)
+        );
+        // Without a rate in its law a controller sees none; and without the fault nothing was held.
+        assert!(
+            !is_held(0.25, [0.0, 9.0], implausible) && !is_held(0.25, [0.3, 0.0], Faults::NONE)
+        );
+    }
+
+    #[test]
+    fn a_sample_at_the_guard_is_believed_and_a_guard_beyond_all_flights_is_none() {
+        let controller = guarded(LIMIT_RAD);
+        for (sample, wanted) in [
+            ([LIMIT_RAD, -LIMIT_RAD, 0.0], false),
+            ([0.51, 0.0, 0.0], true),
+            ([0.0, -0.51, 0.0], true),
+            ([0.0, 0.0, 9.0], false),
+        ] {
+            assert_eq!(is_beyond(&controller, sample), wanted, "{sample:?}");
+        }
+        assert!(is_set(&controller) && !is_set(&guarded(DIVERGED_RAD)));
+    }
+}

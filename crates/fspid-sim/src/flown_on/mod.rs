@@ -141,6 +141,12 @@ fn has_shown_its_swings(scenario: &Scenario) -> bool {
     periods.all(|(from_s, period_s)| from_s > end_s || from_s + PERIODS * period_s <= end_s)
 }
 
+/// How many samples a flight of so many is flown on to, and how many are a piece of that.
+fn lengths(rows: usize) -> [usize; 2] {
+    let horizon = (TIMES * rows).clamp(SAMPLES[0], SAMPLES[1]);
+    [horizon, (rows / 5).max(horizon / PIECES)]
+}
+
 /// What is asked of a flight that is flown on.
 #[derive(Clone, Copy)]
 struct Asked {
@@ -159,9 +165,9 @@ fn doubt_flown_on(
 ) -> Option<Doubt> {
     let of_its_own = swings_itself.then_some(Doubt::SwingAtLimits);
     let rows = scenario.timing.rows();
-    let horizon = (TIMES * rows).clamp(SAMPLES[0], SAMPLES[1]);
+    let [horizon, piece] = lengths(rows);
     let Some(prepared) = held_on(scenario, horizon, afterwards) else { return of_its_own };
-    let mut pieces = Pieces::new(scenario, ends, (rows / 5).max(horizon / PIECES));
+    let mut pieces = Pieces::new(scenario, ends, piece);
     let moved = Moved::of(scenario, afterwards);
     let (mut rested, mut is_held, mut own) = (false, false, None);
     let outcome = fly(&prepared, controller, |instant| {

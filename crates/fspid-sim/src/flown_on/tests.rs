@@ -3,7 +3,9 @@
 use fspid_core::{ControllerSetting, Gains, Limits, Pid, PidConfig};
 
 use super::*;
+use crate::closed_loop::simulate;
 use crate::plant::{ElevatorSign, LinearPlant};
+use crate::scenario::NamedController;
 use crate::signal::{Profile, Shape};
 use crate::timing::Timing;
 use crate::trace::EarlyEnd;
@@ -115,4 +117,149 @@ fn limits_of_a_last_quarter_alone_are_no_swing_at_limits() {
     // In the fourth fifth it is within them.
     sizes_rad[6..8].fill([0.1, 0.5 * MOST_RAD]);
     assert!(!goes_on(sizes_rad));
+}
+
+#[test]
+fn a_flight_is_flown_on_ten_times_as_long_within_ends_in_pieces_of_a_fifth_of_it_or_a_fiftieth_of_the_way()
+ {
+    assert_eq!(lengths(201), [10_000, 200]);
+    assert_eq!(lengths(1_001), [10_010, 200]);
+    assert_eq!(lengths(5_000), [50_000, 1_000]);
+    assert_eq!(lengths(20_000), [100_000, 4_000]);
+}
+
+/// A disturbance at the servo of a tenth of the limit.
+fn with(shape: Shape) -> Scenario {
+    let disturbance = Disturbance::new(Entry::Servo, 0.1, shape).expect("allowed");
+    Scenario { disturbances: vec![disturbance], ..scenario().0 }
+}
+
+#[test]
+fn a_flight_has_shown_what_swings_in_it_for_two_periods() {
+    let sine = |at_s: f64, frequency_hz: f64| Shape::Sine { at_s, frequency_hz };
+    let shows = |shape: Shape| has_shown_its_swings(&with(shape));
+    assert!(has_shown_its_swings(&scenario().0));
+    assert!(shows(sine(0.0, 1.0)) && !shows(sine(0.0, 0.99)) && !shows(sine(0.01, 1.0)));
+    assert!(shows(sine(1.5, 4.0)) && !shows(sine(1.5, 3.9)));
+    assert!(!shows(sine(2.0, 0.1)) && shows(sine(2.01, 0.1)), "it begins after the flight");
+    let commanded = Profile::new(0.1, sine(0.0, 0.99)).expect("allowed");
+    assert!(!has_shown_its_swings(&Scenario { setpoint: commanded, ..scenario().0 }));
+}
+
+/// Whether a flight has come to rest whose last four periods of ten are of a size; before them it moves by 0.1 rad.
+fn comes_to_rest(scenario: &Scenario, before_rad: f64, [error_rad, command_rad]: [f64; 2]) -> bool {
+    let ends = Ends::of(scenario, &self::scenario().1);
+    let mut sizes_rad = [[0.1, before_rad]; 10];
+    sizes_rad[6..].fill([error_rad, command_rad]);
+    has_come_to_rest(scenario, &swinging(&ends, scenario, sizes_rad), &trace_of(scenario))
+}
+
+/// The trace of the tests' controller.
+fn trace_of(scenario: &Scenario) -> Trace {
+    let controllers = vec![NamedController { name: "C".into(), controller: self::scenario().1 }];
+    simulate(&Scenario { controllers, ..scenario.clone() }).expect("flies").traces.remove(0)
+}
+
+#[test]
+fn what_nothing_moves_has_come_to_rest_where_it_stands_and_nothing_changes_late() {
+    let (own, controller) = scenario();
+    assert!(comes_to_rest(&own, MOST_RAD, [1e-5, 1e-5]));
+    assert!(!comes_to_rest(&own, MOST_RAD, [1e-2, 1e-5]));
+    assert!(!comes_to_rest(&with(Shape::Step { at_s: 1.9 }), MOST_RAD, [1e-5, 1e-5]));
+    // Of a few samples nothing is said.
+    let ends = Ends::of(&own, &controller);
+    for (length, wanted) in [(LEAST_FIFTH, true), (LEAST_FIFTH - 1, false)] {
+        let mut pieces = Pieces::new(&own, &ends, length);
+        (0..5 * length).for_each(|_| pieces.push(0.0, 0.0, 0.0, 0.0));
+        assert_eq!(has_come_to_rest(&own, &pieces, &trace_of(&own)), wanted, "{length}");
+    }
+}
+
+#[test]
+fn what_swings_moves_has_come_to_rest_where_it_repeats_within_limits_and_has_shown_its_swings() {
+    let swings = with(Shape::Sine { at_s: 0.0, frequency_hz: 2.0 });
+    assert!(comes_to_rest(&swings, MOST_RAD, [0.05, 0.5]), "limits were met before");
+    assert!(!comes_to_rest(&swings, 0.5, [0.05, MOST_RAD]));
+    assert!(!comes_to_rest(&with(Shape::Sine { at_s: 0.0, frequency_hz: 0.2 }), 0.5, [0.05, 0.5]));
+    // A swing that grows by a hundredth does not repeat, nor one of which a part is left out.
+    let (_, controller) = scenario();
+    let ends = Ends::of(&swings, &controller);
+    let rests = |pieces: &Pieces<'_>| has_come_to_rest(&swings, pieces, &trace_of(&swings));
+    assert!(rests(&swinging(&ends, &swings, changing(1.0, 0.5))));
+    assert!(rests(&swinging(&ends, &swings, changing(1.0009, 0.5))));
+    assert!(!rests(&swinging(&ends, &swings, changing(1.01, 0.5))));
+    let mut cut = swinging(&ends, &swings, changing(1.0, 0.5));
+    cut.push(0.1, 0.5, 0.0, 0.0);
+    assert!(!rests(&cut));
+}
+
+#[test]
+fn what_noise_moves_has_come_to_rest_where_it_met_no_limit_and_its_beginning_is_over() {
+    let noisy = with(Shape::Noise { at_s: 0.0, seed: 1 });
+    assert!(comes_to_rest(&noisy, 0.5, [0.02, 0.5]));
+    assert!(!comes_to_rest(&noisy, 0.5, [0.021, 0.5]), "it is more than a fifth");
+    assert!(!comes_to_rest(&noisy, MOST_RAD, [0.02, 0.5]), "a limit was met");
+    let mut slow = noisy.clone();
+    slow.disturbances.extend(with(Shape::Sine { at_s: 0.0, frequency_hz: 0.2 }).disturbances);
+    assert!(!comes_to_rest(&slow, 0.5, [0.02, 0.5]), "its swing was not shown");
+}
+
+/// A flight that follows a swing to the digit has an error of nothing, and one that leads it by as much has not.
+#[test]
+fn an_error_is_what_the_pitch_lacks_of_the_set_point() {
+    let (mut own, controller) = scenario();
+    own.setpoint =
+        Profile::new(0.1, Shape::Sine { at_s: 0.0, frequency_hz: 1.0 }).expect("allowed");
+    let ends = Ends::of(&own, &controller);
+    let mut trace = trace_of(&own);
+    trace.command_rad.fill(0.0);
+    trace.theta_rad = trace.setpoint_rad.clone();
+    let pieces = pieces_of(&own, &ends, &trace);
+    assert!(pieces.rests() && pieces.length == 40);
+    trace.theta_rad.iter_mut().for_each(|it| *it = -*it);
+    assert!(!pieces_of(&own, &ends, &trace).rests());
+}
+
+/// Neither where its plant leads nor anything else is asked of it.
+#[test]
+fn a_linear_plant_that_is_lost_within_its_flight_is_in_doubt_at_once() {
+    let (own, controller) = scenario();
+    let mut trace = trace_of(&own);
+    assert_eq!(doubt(&own, &controller, &trace, || None), None);
+    trace.theta_rad.truncate(150);
+    trace.time_s.truncate(150);
+    let found = doubt(&own, &controller, &trace, || panic!("it is known"));
+    assert_eq!(found, Some(Doubt::SwingAtLimits));
+    // Without limits a loop that holds at rest holds.
+    let gains = Gains { kp: 2.0, ki: 0.0, kd: 1.0 };
+    let free = Pid::new(gains, PidConfig::sampled_every(0.01)).expect("allowed");
+    assert_eq!(doubt(&own, &Controller::Fixed(free), &trace, || panic!("nothing ends")), None);
+}
+
+#[test]
+fn under_noise_an_error_has_grown_that_moves_twice_as_much_at_limits_as_before() {
+    let (own, controller) = scenario();
+    let ends = Ends::of(&own, &controller);
+    let of =
+        |error_rad: f64, command_rad: f64| swinging(&ends, &own, [[error_rad, command_rad]; 10]);
+    let earlier = of(0.1, 0.5).whole();
+    assert!(of(0.2, MOST_RAD).has_doubled_since(earlier));
+    assert!(!of(0.199, MOST_RAD).has_doubled_since(earlier));
+    assert!(!of(0.2, 0.5).has_doubled_since(earlier), "no limit is met");
+}
+
+/// By how much they move from sample to sample, not where they are.
+#[test]
+fn a_limit_of_rate_is_met_where_a_command_moves_by_as_much_in_a_sample() {
+    let (own, _) = scenario();
+    let config = PidConfig { slew_rad_s: Some(10.0), ..PidConfig::sampled_every(0.01) };
+    let gains = Gains { kp: 2.0, ki: 0.0, kd: 1.0 };
+    let ends = Ends::of(&own, &Controller::Fixed(Pid::new(gains, config).expect("allowed")));
+    let meets = |commands_rad: [f64; 3]| {
+        let mut pieces = Pieces::new(&own, &ends, PERIOD);
+        commands_rad.iter().for_each(|it| pieces.push(0.1, *it, 0.0, 0.0));
+        pieces.whole().meets()
+    };
+    assert!(!meets([0.5; 3]) && !meets([0.5, 0.59, 0.5]));
+    assert!(meets([0.5, 0.6, 0.6]) && meets([0.5, 0.4, 0.4]) && meets([0.0, -0.1, -0.1]));
 }
