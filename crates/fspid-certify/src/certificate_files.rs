@@ -13,6 +13,8 @@ pub struct CertificateFile {
     pub name: String,
     /// What it holds.
     pub text: String,
+    /// The changes of its case, as `--set` takes them: it is held against the scenario with them.
+    pub set: Vec<String>,
 }
 
 /// Why no certificate can be written: what it holds could not be read again, since a number of the scenario is beyond all
@@ -42,7 +44,7 @@ impl Certification {
     ) -> Option<Result<CertificateFile, NotWritable>> {
         let text = to_text(certified.certificate()?, &certified.origin);
         Some(match from_text(&text) {
-            Ok(_) => Ok(CertificateFile { name: self.file_name(certified), text }),
+            Ok(_) => Ok(CertificateFile { name: self.file_name(certified), text, set: Vec::new() }),
             Err(refused) => Err(NotWritable { controller: certified.controller.clone(), refused }),
         })
     }
@@ -65,9 +67,10 @@ impl CertifiedCases {
         for case in self.cases() {
             let folder = self.folder(&case.change);
             let own = case.certification.certificate_files()?.into_iter();
-            files.extend(own.map(|CertificateFile { name, text }| CertificateFile {
-                name: format!("{folder}/{name}"),
-                text,
+            files.extend(own.map(|file| CertificateFile {
+                name: format!("{folder}/{}", file.name),
+                set: case.change.set.clone(),
+                ..file
             }));
         }
         Ok(files)

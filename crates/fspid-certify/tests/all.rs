@@ -3,6 +3,7 @@
 mod as_it_flies;
 #[path = "../../fspid-study/tests/as_read.rs"]
 mod as_read;
+mod cases;
 mod designs;
 mod page;
 mod provable;

@@ -171,4 +171,8 @@ fn a_page_of_cases_has_a_section_for_each() {
         assert!(read.contains(sentence), "{sentence}");
     }
     assert!(read.contains("--cases choices") && read.contains("--check proofs/"), "commands");
+    // A certificate is held against the scenario with what its case sets.
+    for delay in [0, 2] {
+        assert!(read.contains(&format!("--set actuator.delay_samples={delay}")), "{delay}");
+    }
 }

@@ -139,6 +139,8 @@ pub struct Trace {
     pub elevator_rad: Vec<f64>,
     /// Gains used.
     pub gains: Vec<Gains<f64>>,
+    /// Whether an autopilot was at a limit of its own, at each sample; empty without one.
+    pub autopilot_limited: Vec<bool>,
     /// What else this flight has: what sensors showed, gusts, what an aircraft shows beyond pitch.
     pub columns: Vec<Column>,
     /// When an aircraft first left the range of its model, if it did.
@@ -165,6 +167,7 @@ impl Trace {
             command_rad: column(),
             elevator_rad: column(),
             gains: Vec::with_capacity(rows),
+            autopilot_limited: Vec::with_capacity(if prepared.has_autopilot() { rows } else { 0 }),
             columns: Self::empty_columns(prepared),
             exit: None,
             outcome: Outcome::Completed,
@@ -191,6 +194,7 @@ impl Trace {
         self.command_rad.push(instant.step.command_rad);
         self.elevator_rad.push(instant.elevator_rad);
         self.gains.push(instant.step.gains);
+        self.autopilot_limited.extend(instant.autopilot.map(|it| it.is_limited));
         self.saturated_samples += usize::from(instant.step.saturated);
         self.faults = instant.step.faults;
         self.push_columns(prepared, instant);

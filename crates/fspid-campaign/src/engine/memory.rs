@@ -49,6 +49,7 @@ fn new_trace() -> Trace {
         command_rad: Vec::new(),
         elevator_rad: Vec::new(),
         gains: Vec::new(),
+        autopilot_limited: Vec::new(),
         columns: Vec::new(),
         exit: None,
         outcome: Outcome::Completed,

@@ -82,12 +82,12 @@ impl CertifiedCases {
         names
     }
 
-    /// Names of the cases at which a loop of a controller is not proved.
+    /// Names of the cases at which a loop of a controller is not proved, or which have no such controller.
     pub(super) fn not_proved<'a>(&'a self, controller: &'a str) -> impl Iterator<Item = &'a str> {
         let is_missing = move |case: &&CertifiedCase| {
-            let mut own =
-                case.certification.results.iter().filter(|it| it.controller == controller);
-            own.any(|it| !it.is_proved())
+            let results = case.certification.results.iter();
+            let mut own = results.filter(|it| it.controller == controller).peekable();
+            own.peek().is_none() || own.any(|it| !it.is_proved())
         };
         self.cases.iter().filter(is_missing).map(|case| case.change.name.as_str())
     }

@@ -5,7 +5,7 @@ use std::path::Path;
 use fspid_scenario::file::{LoadError, Study, Template};
 use fspid_sim::SimError;
 
-use super::{Cases, CertifiedCases, Change, NoCases};
+use super::{Cases, CertifiedCases, Change, NoCases, choices};
 use crate::Question;
 
 /// Why the cases of a scenario have no answer.
@@ -41,6 +41,9 @@ impl CertifiedCases {
         question: Question<'_>,
         tell: &mut dyn FnMut(&str),
     ) -> Result<Self, CasesError> {
+        if which == Cases::Choices && !question.family {
+            choices::all_are_apart(study)?;
+        }
         let mut found = Self::new(study, which)?;
         for (change, changed) in read(source, found.changes())? {
             let mut tell = |name: &str| tell(&format!("{name} at {}", change.name));

@@ -3,7 +3,7 @@
 use fspid_scenario::dispersion::{Dispersion, Distribution};
 use fspid_scenario::file::Study;
 
-use super::Change;
+use super::{Change, NoCases};
 use crate::family;
 
 /// True of a dispersion that chooses among values of the loop that are no numbers of a family: another aircraft, another
@@ -23,6 +23,20 @@ fn apart(study: &Study) -> impl Iterator<Item = &Dispersion> {
 pub(in super::super) fn only_choices_differ(study: &Study) -> bool {
     let is_settled = |it: &Dispersion| is_chosen_apart(it) || family::is_outside_of_the_loop(it);
     apart(study).next().is_some() && study.dispersions.iter().all(is_settled)
+}
+
+/// Refuses choices that would stay as they are in all combinations, beside the word that all are proved.
+///
+/// # Errors
+/// [`NoCases::InAFamily`] with their names.
+pub(super) fn all_are_apart(study: &Study) -> Result<(), NoCases> {
+    let is_left = |it: &&Dispersion| {
+        let is_chosen = matches!(it.distribution, Distribution::Choice(_));
+        is_chosen && !is_chosen_apart(it) && !family::is_outside_of_the_loop(it)
+    };
+    let targets = study.dispersions.iter().filter(is_left).flat_map(|it| &it.targets);
+    let left: Vec<String> = targets.map(|target| format!("`{}`", target.name)).collect();
+    if left.is_empty() { Ok(()) } else { Err(NoCases::InAFamily(left.join(", "))) }
 }
 
 /// How many combinations there are; 0 where nothing is chosen.

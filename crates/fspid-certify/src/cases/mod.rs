@@ -122,6 +122,11 @@ pub enum NoCases {
     /// The scenario has none.
     #[error("the scenario has no {0}; leave --cases out to certify it as it is")]
     None(&'static str),
+    /// Choices that no combination holds, since they are numbers of a family.
+    #[error(
+        "{0}: chosen as well, as numbers of a family, and not one by one: --family asks every combination with them; or give one value with --set and leave the dispersion out"
+    )]
+    InAFamily(String),
     /// More than are certified at once.
     #[error("{found} {of}; allowed are up to {MOST_CASES}")]
     TooMany {
@@ -237,7 +242,10 @@ impl CertifiedCases {
         let results = self.cases.iter().flat_map(|case| &case.certification.results);
         let own: Vec<&Certified> = results.filter(|it| it.controller == controller).collect();
         // Every change has the controller, with a plant or more.
-        let is_whole = self.cases.len() == self.changes.len() && own.len() >= self.changes.len();
+        let has_own = |case: &CertifiedCase| {
+            case.certification.results.iter().any(|it| it.controller == controller)
+        };
+        let is_whole = self.cases.len() == self.changes.len() && self.cases.iter().all(has_own);
         is_whole.then_some(own)
     }
 

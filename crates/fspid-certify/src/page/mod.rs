@@ -175,15 +175,16 @@ pub(super) fn files_chapter(files: &[CertificateFile], subject: Subject<'_>) -> 
         cards: true,
     };
     let check = |file: &CertificateFile| {
-        format!("fspid certify --check {folder}/{} --against FILE", shell::word(&file.name))
+        let name = shell::word(&file.name);
+        let sets = subject.study.overrides.iter().chain(&file.set);
+        let sets: String = sets.map(|it| format!(" --set {}", shell::word(it))).collect();
+        format!("fspid certify --check {folder}/{name} --against FILE{sets}")
     };
     let checks: Vec<String> = files.iter().map(check).collect();
     let written = match subject.folder {
         Some(_) => "They were written beside this page",
         None => "--out DIR in the same command writes them",
     };
-    let sets: String =
-        subject.study.overrides.iter().map(|it| format!(" --set {}", shell::word(it))).collect();
     let items = match files.is_empty() {
         true => {
             vec![Item::Text("There is none: nothing is proved, and nothing refuted.".to_owned())]
@@ -193,9 +194,7 @@ pub(super) fn files_chapter(files: &[CertificateFile], subject: Subject<'_>) -> 
             Item::Text(format!(
                 "{written}. Each is proved anew from its numbers alone, and held against what the scenario flies, by:"
             )),
-            Item::Code(
-                checks.iter().map(|it| format!("{it}{sets}")).collect::<Vec<_>>().join("\n"),
-            ),
+            Item::Code(checks.join("\n")),
         ],
     };
     Chapter { id: "certificates".to_owned(), title: "Certificates".to_owned(), items }

@@ -78,6 +78,11 @@ impl Channel {
         self.memory.is_some()
     }
 
+    /// True where its answer was cut by limits of its own.
+    pub(super) fn is_limited(&self) -> bool {
+        self.own != Cut::Not
+    }
+
     /// What it remembers while it is engaged.
     pub(super) fn memory(&self) -> Option<&State<f64>> {
         self.memory.as_ref()

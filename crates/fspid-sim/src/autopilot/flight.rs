@@ -399,7 +399,21 @@ impl AutopilotState {
             above_beam_m: self.above_beam_m,
             throttle: self.throttle.trim + self.commands.throttle,
             bank_rad: self.commands.bank_rad,
+            is_limited: self.is_limited(autopilot, observed),
         }
+    }
+
+    fn is_limited(&self, autopilot: &Autopilot, observed: &Observed) -> bool {
+        let total = autopilot.total_energy.as_ref().filter(|_| self.energy[0].is_engaged());
+        let is_far = total.is_some_and(|total| total.is_limited(observed, self.held_by_energy()));
+        let mut channels = self.channels.iter().chain(&self.energy);
+        is_far || self.throttle_cut != Cut::Not || channels.any(Channel::is_limited)
+    }
+
+    /// Altitude, m, and airspeed, m/s, at which total energy holds; what nobody holds is no number.
+    fn held_by_energy(&self) -> [f64; 2] {
+        [Quantity::Altitude, Quantity::Airspeed]
+            .map(|quantity| self.held[quantity.place()].unwrap_or(f64::NAN))
     }
 }
 

@@ -15,6 +15,8 @@ pub struct AutopilotSample {
     pub throttle: f64,
     /// The bank that is asked for, rad.
     pub bank_rad: f64,
+    /// An engaged loop is at a limit of its own, of value or of rate, or the throttle at an end of its travel.
+    pub is_limited: bool,
 }
 
 /// Names of [`AutopilotSample::values`], in order; modes count from 1.

@@ -42,18 +42,25 @@ pub(super) struct Rates {
 }
 
 impl TotalEnergy {
-    /// The rates of energy and of its distribution.
-    pub(super) fn rates(
-        &self,
-        observed: &Observed,
-        [altitude_m, airspeed_m_s]: [f64; 2],
-    ) -> [Rates; 2] {
+    /// Flight path, rad, and acceleration, g, that altitude and airspeed ask for, without their limits.
+    fn wanted(&self, observed: &Observed, [altitude_m, airspeed_m_s]: [f64; 2]) -> [f64; 2] {
         let climb_m_s = self.altitude_gain_1_s * (altitude_m - observed.altitude_m);
         let speed_m_s = observed.airspeed_m_s.max(LEAST_SPEED_M_S);
-        let path = (climb_m_s / speed_m_s).clamp(-self.most_path_rad, self.most_path_rad);
         let wanted_m_s2 = self.airspeed_gain_1_s * (airspeed_m_s - observed.airspeed_m_s);
-        let speeding = (wanted_m_s2 / STANDARD_GRAVITY_M_S2)
-            .clamp(-self.most_acceleration_g, self.most_acceleration_g);
+        [climb_m_s / speed_m_s, wanted_m_s2 / STANDARD_GRAVITY_M_S2]
+    }
+
+    /// True where one of the two commands is at its limit.
+    pub(super) fn is_limited(&self, observed: &Observed, held: [f64; 2]) -> bool {
+        let [path, speeding] = self.wanted(observed, held);
+        path.abs() >= self.most_path_rad || speeding.abs() >= self.most_acceleration_g
+    }
+
+    /// The rates of energy and of its distribution.
+    pub(super) fn rates(&self, observed: &Observed, held: [f64; 2]) -> [Rates; 2] {
+        let [path, speeding] = self.wanted(observed, held);
+        let path = path.clamp(-self.most_path_rad, self.most_path_rad);
+        let speeding = speeding.clamp(-self.most_acceleration_g, self.most_acceleration_g);
         let (path_found, speeding_found) =
             (observed.path_rad, observed.path_acceleration_m_s2 / STANDARD_GRAVITY_M_S2);
         [

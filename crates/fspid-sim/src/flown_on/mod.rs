@@ -22,7 +22,7 @@ use crate::scenario::Scenario;
 use crate::signal::{Disturbance, Entry};
 use crate::trace::{EndCause, Outcome, Trace};
 use moved::{Afterwards, Moved, changes_late, has_swings, held_on, is_noisy};
-use pieces::Pieces;
+use pieces::{Pieces, Shown};
 
 /// So many times as long a flight is flown on.
 const TIMES: usize = 10;
@@ -49,7 +49,8 @@ pub(crate) fn doubt(
 ) -> Option<Doubt> {
     let rows = scenario.timing.rows();
     let ends = Ends::of(scenario, controller);
-    if ends.are_none() && !sample_guard::is_set(controller) {
+    let is_free = ends.are_none() && scenario.autopilot.is_none();
+    if is_free && !sample_guard::is_set(controller) {
         return None;
     }
     let is_linear = scenario.plant.linear().is_some();
@@ -70,7 +71,7 @@ pub(crate) fn doubt(
     let is_external = matches!(scenario.plant, Plant::External(_));
     let flies_on = !is_external && !scenario.has_moving_air();
     let moved = moved_in_flight(scenario);
-    let changes_late = changes_late(scenario, &trace.setpoint_rad);
+    let changes_late = changes_late(scenario, trace);
     let swings_itself = || !changes_late && pieces.swings_on(moved, moves);
     // One that is as long as that is its own answer.
     if !flies_on || rows > SAMPLES[1] {
@@ -110,11 +111,23 @@ fn pieces_of<'a>(scenario: &Scenario, ends: &'a Ends, trace: &Trace) -> Pieces<'
     let at_servo = scenario.loads_rad(Entry::Servo);
     let mut pieces = Pieces::new(scenario, ends, (trace.rows() / 5).max(1));
     for k in 0..trace.rows() {
-        let load_rad = at_servo.as_ref().and_then(|it| it.get(k)).copied().unwrap_or(0.0);
-        let error_rad = trace.setpoint_rad[k] - trace.theta_rad[k];
-        pieces.push(error_rad, trace.command_rad[k], load_rad, trace.elevator_rad[k]);
+        pieces.push(Shown {
+            moving_rad: moving_rad(scenario, trace.setpoint_rad[k], trace.theta_rad[k]),
+            command_rad: trace.command_rad[k],
+            at_servo_rad: at_servo.as_ref().and_then(|it| it.get(k)).copied().unwrap_or(0.0),
+            elevator_rad: trace.elevator_rad[k],
+            autopilot_is_limited: trace.autopilot_limited.get(k) == Some(&true),
+        });
     }
     pieces
+}
+
+/// What comes to rest, or swings: the error of the pitch loop; with an autopilot, whose swings move the set-point, the pitch itself.
+fn moving_rad(scenario: &Scenario, setpoint_rad: f64, theta_rad: f64) -> f64 {
+    match scenario.autopilot {
+        None => setpoint_rad - theta_rad,
+        Some(_) => theta_rad,
+    }
 }
 
 /// True where the flight itself has come to rest; or where something moves it for ever, what it does, without limits, once its
@@ -130,7 +143,7 @@ fn has_come_to_rest(scenario: &Scenario, pieces: &Pieces<'_>, trace: &Trace) -> 
         }
     };
     // Of a few samples nothing is said.
-    pieces.length >= LEAST_FIFTH && has_ended() && !changes_late(scenario, &trace.setpoint_rad)
+    pieces.length >= LEAST_FIFTH && has_ended() && !changes_late(scenario, trace)
 }
 
 /// True where a flight holds some periods of everything that swings.
@@ -171,10 +184,14 @@ fn doubt_flown_on(
     let moved = Moved::of(scenario, afterwards);
     let (mut rested, mut is_held, mut own) = (false, false, None);
     let outcome = fly(&prepared, controller, |instant| {
-        let load_rad =
-            prepared.at_servo.as_ref().and_then(|it| it.get(instant.k)).copied().unwrap_or(0.0);
-        let error_rad = instant.setpoint_rad - instant.theta_rad;
-        pieces.push(error_rad, instant.step.command_rad, load_rad, instant.elevator_rad);
+        let at_servo = prepared.at_servo.as_ref().and_then(|it| it.get(instant.k));
+        pieces.push(Shown {
+            moving_rad: moving_rad(scenario, instant.setpoint_rad, instant.theta_rad),
+            command_rad: instant.step.command_rad,
+            at_servo_rad: at_servo.copied().unwrap_or(0.0),
+            elevator_rad: instant.elevator_rad,
+            autopilot_is_limited: instant.autopilot.is_some_and(|it| it.is_limited),
+        });
         if instant.k + 1 == rows {
             own = Some(pieces.whole());
         }

@@ -6,6 +6,7 @@ mod tests;
 use crate::scenario::{Prepared, Scenario};
 use crate::signal::{Disturbance, Entry};
 use crate::timing::Timing;
+use crate::trace::Trace;
 
 /// What keeps an error moving for ever.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,8 +65,10 @@ fn swings_by_command(scenario: &Scenario) -> bool {
 }
 
 /// True where set-point, loads or plant change within the last fifth of a flight, too late to see what comes of it.
-pub(super) fn changes_late(scenario: &Scenario, setpoint_rad: &[f64]) -> bool {
-    let rows = setpoint_rad.len();
+///
+/// With an autopilot, which moves the set-point all the time, the mode stands for it.
+pub(super) fn changes_late(scenario: &Scenario, trace: &Trace) -> bool {
+    let rows = trace.rows();
     let from = rows - rows / 5;
     let timing = scenario.timing;
     let changes = |values: &[f64]| {
@@ -80,9 +83,12 @@ pub(super) fn changes_late(scenario: &Scenario, setpoint_rad: &[f64]) -> bool {
     };
     let from_s = timing.time_s(from);
     let mut plants = scenario.plant_changes.iter().filter(|it| it.at_s() <= timing.end_s());
-    (!scenario.setpoint.goes_on() && changes(setpoint_rad))
-        || loads.any(is_late)
-        || plants.any(|it| it.at_s() + it.ramp_s() >= from_s)
+    let commanded = match scenario.autopilot {
+        None if scenario.setpoint.goes_on() => &[],
+        None => trace.setpoint_rad.as_slice(),
+        Some(_) => trace.column("mode").unwrap_or_default(),
+    };
+    changes(commanded) || loads.any(is_late) || plants.any(|it| it.at_s() + it.ramp_s() >= from_s)
 }
 
 /// The flight as it goes on to so many samples: what stands still at its end is held, what swings swings on where it is to, and

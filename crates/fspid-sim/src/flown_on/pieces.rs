@@ -20,6 +20,8 @@ const UNSEEN: f64 = 2.0;
 const QUIET: f64 = 0.2;
 /// A swing at limits of an aircraft meets them at one of so many samples at least.
 const AT_LIMITS: usize = 4;
+/// What goes so many times as far as it is large turns back in between.
+const TURNS: f64 = 1.5;
 /// A limit of rate is met a thousandth before it, for rounding.
 const AT_RATE: f64 = 0.999;
 
@@ -56,10 +58,24 @@ impl Reach {
     }
 }
 
+/// A sample of a flight.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shown {
+    /// What is to come to rest, rad: the error, or the pitch.
+    pub(super) moving_rad: f64,
+    pub(super) command_rad: f64,
+    /// What acts beside the command at the servo, rad.
+    pub(super) at_servo_rad: f64,
+    pub(super) elevator_rad: f64,
+    pub(super) autopilot_is_limited: bool,
+}
+
 /// What error, command and elevator do over some samples, and whether a limit was met in them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Span {
     error: Reach,
+    /// How far the error went, there and back.
+    way_rad: f64,
     command: Reach,
     elevator: Reach,
     samples: usize,
@@ -70,6 +86,7 @@ pub(super) struct Span {
 impl Span {
     const NONE: Self = Self {
         error: Reach::NONE,
+        way_rad: 0.0,
         command: Reach::NONE,
         elevator: Reach::NONE,
         samples: 0,
@@ -79,6 +96,7 @@ impl Span {
     fn and(self, other: Self) -> Self {
         Self {
             error: self.error.and(other.error),
+            way_rad: self.way_rad + other.way_rad,
             command: self.command.and(other.command),
             elevator: self.elevator.and(other.elevator),
             samples: self.samples + other.samples,
@@ -96,6 +114,11 @@ impl Span {
         self.met * AT_LIMITS >= self.samples
     }
 
+    /// True where the error went there and back: what drifts one way at a limit is no swing.
+    fn turns(self) -> bool {
+        self.way_rad >= TURNS * self.error.size_rad()
+    }
+
     fn of(spans: &[Self]) -> Self {
         spans.iter().fold(Self::NONE, |all, one| all.and(*one))
     }
@@ -107,9 +130,11 @@ pub(super) struct Pieces<'a> {
     pub(super) length: usize,
     /// An error that moves by no more has not moved for a sensor of such a resolution.
     unseen_rad: f64,
+    /// An autopilot may stand at a limit of its own while the pitch drifts, as in a long climb.
+    pub(super) may_drift: bool,
     samples: usize,
     all: Vec<Span>,
-    before: Option<[f64; 2]>,
+    before: Option<Shown>,
 }
 
 impl<'a> Pieces<'a> {
@@ -117,30 +142,31 @@ impl<'a> Pieces<'a> {
         let resolution_rad =
             scenario.surroundings.pitch_sensor.map_or(0.0, |it| it.model().resolution);
         let unseen_rad = UNSEEN * resolution_rad;
-        Self { ends, length, unseen_rad, samples: 0, all: Vec::new(), before: None }
+        let may_drift = scenario.autopilot.is_some();
+        let (samples, all, before) = (0, Vec::new(), None);
+        Self { ends, length, unseen_rad, may_drift, samples, all, before }
     }
 
-    /// Takes a sample: its error, its command, what acts beside it at the servo, and the elevator.
-    pub(super) fn push(
-        &mut self,
-        error_rad: f64,
-        command_rad: f64,
-        at_servo_rad: f64,
-        elevator_rad: f64,
-    ) {
-        let [by_command, by_elevator] = self.before.map_or([0.0; 2], |[command, elevator]| {
-            [command_rad - command, elevator_rad - elevator]
-        });
-        self.before = Some([command_rad, elevator_rad]);
-        let meets = self.ends.are_met(command_rad, at_servo_rad)
-            || self.ends.are_met_by_moving(AT_RATE, by_command, by_elevator);
+    pub(super) fn push(&mut self, shown: Shown) {
+        let Shown { moving_rad, command_rad, at_servo_rad, elevator_rad, autopilot_is_limited } =
+            shown;
+        let before = self.before.unwrap_or(shown);
+        let meets = autopilot_is_limited
+            || self.ends.are_met(command_rad, at_servo_rad)
+            || self.ends.are_met_by_moving(
+                AT_RATE,
+                command_rad - before.command_rad,
+                elevator_rad - before.elevator_rad,
+            );
         let sample = Span {
-            error: Reach::at(error_rad),
+            error: Reach::at(moving_rad),
+            way_rad: (moving_rad - before.moving_rad).abs(),
             command: Reach::at(command_rad),
             elevator: Reach::at(elevator_rad),
             samples: 1,
             met: usize::from(meets),
         };
+        self.before = Some(shown);
         if self.samples.is_multiple_of(self.length) {
             self.all.push(Span::NONE);
         }
@@ -219,9 +245,12 @@ impl<'a> Pieces<'a> {
             return false;
         }
         let [.., fourth, fifth] = self.fifths();
-        let stands = moves == Moves::Back && self.stands_at_a_limit(fourth.and(fifth));
+        let end = fourth.and(fifth);
+        let stands = moves == Moves::Back && self.stands_at_a_limit(end);
         let times = if moved == Moved::Nothing { STAYS } else { GROWN_IN_NOISE };
-        fourth.is_at_limits() && fifth.is_at_limits() && !stands && self.grows(times)
+        let is_at_limits = fourth.is_at_limits() && fifth.is_at_limits();
+        let swings = !self.may_drift || end.turns();
+        is_at_limits && swings && !stands && self.grows(times)
     }
 
     /// True where limits are met again and again at the end of a flight.

@@ -30,13 +30,18 @@ fn scenario() -> (Scenario, Controller) {
     (Scenario::new("pieces", plant.expect("proper"), timing, step), Controller::Fixed(pid))
 }
 
+fn shown(moving_rad: f64, command_rad: f64) -> Shown {
+    let (at_servo_rad, elevator_rad, autopilot_is_limited) = (0.0, 0.0, false);
+    Shown { moving_rad, command_rad, at_servo_rad, elevator_rad, autopilot_is_limited }
+}
+
 /// A swing of the error and of the command, each of a size in rad for each of ten periods.
 fn swinging<'a>(ends: &'a Ends, scenario: &Scenario, sizes_rad: [[f64; 2]; 10]) -> Pieces<'a> {
     let mut pieces = Pieces::new(scenario, ends, PERIOD);
     for [error_rad, command_rad] in sizes_rad {
         for k in 0..PERIOD {
             let side = if k < PERIOD / 2 { 1.0 } else { -1.0 };
-            pieces.push(side * error_rad, side * command_rad, 0.0, 0.0);
+            pieces.push(shown(side * error_rad, side * command_rad));
         }
     }
     pieces
@@ -170,7 +175,7 @@ fn what_nothing_moves_has_come_to_rest_where_it_stands_and_nothing_changes_late(
     let ends = Ends::of(&own, &controller);
     for (length, wanted) in [(LEAST_FIFTH, true), (LEAST_FIFTH - 1, false)] {
         let mut pieces = Pieces::new(&own, &ends, length);
-        (0..5 * length).for_each(|_| pieces.push(0.0, 0.0, 0.0, 0.0));
+        (0..5 * length).for_each(|_| pieces.push(shown(0.0, 0.0)));
         assert_eq!(has_come_to_rest(&own, &pieces, &trace_of(&own)), wanted, "{length}");
     }
 }
@@ -189,7 +194,7 @@ fn what_swings_moves_has_come_to_rest_where_it_repeats_within_limits_and_has_sho
     assert!(rests(&swinging(&ends, &swings, changing(1.0009, 0.5))));
     assert!(!rests(&swinging(&ends, &swings, changing(1.01, 0.5))));
     let mut cut = swinging(&ends, &swings, changing(1.0, 0.5));
-    cut.push(0.1, 0.5, 0.0, 0.0);
+    cut.push(shown(0.1, 0.5));
     assert!(!rests(&cut));
 }
 
@@ -257,9 +262,28 @@ fn a_limit_of_rate_is_met_where_a_command_moves_by_as_much_in_a_sample() {
     let ends = Ends::of(&own, &Controller::Fixed(Pid::new(gains, config).expect("allowed")));
     let meets = |commands_rad: [f64; 3]| {
         let mut pieces = Pieces::new(&own, &ends, PERIOD);
-        commands_rad.iter().for_each(|it| pieces.push(0.1, *it, 0.0, 0.0));
+        commands_rad.iter().for_each(|it| pieces.push(shown(0.1, *it)));
         pieces.whole().meets()
     };
     assert!(!meets([0.5; 3]) && !meets([0.5, 0.59, 0.5]));
     assert!(meets([0.5, 0.6, 0.6]) && meets([0.5, 0.4, 0.4]) && meets([0.0, -0.1, -0.1]));
+}
+
+/// It swings at a limit around it, or drifts there one way.
+#[test]
+fn an_autopilot_at_a_limit_swings_on_where_the_pitch_turns_back_and_does_not_shrink() {
+    let (own, controller) = scenario();
+    let ends = Ends::of(&own, &controller);
+    let swings_on = |autopilot_is_limited: bool, pitch: fn(f64) -> f64| {
+        let mut pieces = Pieces::new(&own, &ends, PERIOD);
+        pieces.may_drift = true;
+        for k in 0..10 * PERIOD {
+            let moving_rad = pitch(k as f64 / PERIOD as f64);
+            pieces.push(Shown { autopilot_is_limited, ..shown(moving_rad, 0.0) });
+        }
+        pieces.swings_on(Moved::Nothing, Moves::On)
+    };
+    let swing = |periods: f64| 0.1 * libm::sin(core::f64::consts::TAU * periods);
+    assert!(swings_on(true, swing) && !swings_on(false, swing));
+    assert!(!swings_on(true, |periods| 0.1 * periods));
 }

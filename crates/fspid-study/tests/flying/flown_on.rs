@@ -387,3 +387,23 @@ fn a_requirement_on_margins_is_not_evaluated_where_limits_leave_the_flight_in_do
     let small = found(&["setpoint.amplitude_deg=2.0"]);
     assert!(small.iter().all(|(met, found)| *met && found.is_ok()), "{small:?}");
 }
+
+/// A Navion's altitude went up and down by 5 m for ever, at the limit of rate of the loop that holds it: "stable".
+#[test]
+fn a_swing_at_a_limit_of_an_outer_loop_leaves_the_flight_in_doubt() {
+    let capture = include_str!("../../../../scenarios/gallery/altitude-capture.toml");
+    let of = |most_per_s: &str, more: &[&str]| {
+        let limit = format!("outer_loop.altitude.most_per_s={most_per_s}");
+        let set = ["outer_loop.altitude.kp=0.6", &limit];
+        doubt(&result(capture, &[&set[..], more].concat()))
+    };
+    let ends = ["outer_loop.altitude.least=-0.8", "outer_loop.altitude.most=1.4"];
+    for duration in ["60.0", "90.0", "300.0"] {
+        let long = &*format!("loop.duration_s={duration}");
+        let narrow = [&ends[..], &[long]].concat();
+        assert_eq!(of("0.065", &narrow), Some(Doubt::SwingAtLimits), "{duration} s");
+        assert_eq!(of("0.3", &narrow), None, "{duration} s");
+    }
+    // A climb at a limit that the flight does not end is no swing.
+    assert_eq!(of("1.0", &["loop.duration_s=30.0"]), None);
+}

@@ -24,6 +24,7 @@ mod outer_gains;
 mod outer_loops;
 mod requirements;
 mod six_dof;
+mod turns;
 mod what_is_held;
 mod where_it_leads;
 mod wind_table;

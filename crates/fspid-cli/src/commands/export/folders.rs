@@ -14,6 +14,14 @@ pub(super) fn check(arguments: &Arguments) -> Result<(), Failure> {
     free("--out", &arguments.out, arguments.force)?;
     let Some(evidence) = &arguments.evidence else { return Ok(()) };
     free("--evidence", evidence, arguments.force)?;
+    // What its script found before is of what was exported before.
+    let results = evidence.join("results");
+    if results.exists() {
+        return Err(Failure::input(format_args!(
+            "{} has what the script of an earlier export found there, and would stand beside another; remove it, or choose another folder",
+            results.display()
+        )));
+    }
     if from_root(&arguments.out).starts_with(from_root(evidence)) {
         return Err(Failure::input(
             "--out is in the folder of --evidence, which has files of the same names; each needs a folder of its own",

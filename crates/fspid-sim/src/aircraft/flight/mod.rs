@@ -200,7 +200,7 @@ impl AircraftFlight {
             k: 0,
             tick: 0,
             aileron_rad: self.aileron_rad(&sight.euler, 0.0),
-            rudder_rad: self.rudder_rad(&self.start, &sight.euler),
+            rudder_rad: self.rudder_rad(&self.start, &sight.euler, || sight.flow.airspeed_m_s),
             bank_rad: 0.0,
             is_steered: false,
             throttle: self.plant.trim().controls.throttle,
@@ -254,13 +254,19 @@ impl AircraftFlight {
         travel.clamp(self.leveller.aileron_rad(euler.phi_rad - bank_rad))
     }
 
-    fn rudder_rad(&self, state: &RigidState, euler: &EulerAngles) -> f64 {
+    fn rudder_rad(
+        &self,
+        state: &RigidState,
+        euler: &EulerAngles,
+        airspeed_m_s: impl FnOnce() -> f64,
+    ) -> f64 {
         let trimmed_rad = self.plant.trim().controls.rudder_rad;
         let Some(damper) = &self.damper else { return trimmed_rad };
         let &EulerAngles { phi_rad, theta_rad, .. } = euler;
         let (sine, _) = crate::math::sin_cos(phi_rad);
         let (_, cosine) = crate::math::sin_cos(theta_rad);
-        let speed_m_s = state.velocity_body_m_s.norm().max(1.0);
+        // Relative to the air: a steady wind carries a turn along and changes nothing about it.
+        let speed_m_s = airspeed_m_s().max(1.0);
         let turn_rad_s = self.aircraft().environment().gravity_m_s2 / speed_m_s * sine * cosine;
         let rudder_rad = damper.rudder_rad(state.rates_rad_s.z, turn_rad_s);
         self.aircraft().model().travel().rudder_rad.clamp(trimmed_rad + rudder_rad)
@@ -273,7 +279,9 @@ impl AircraftFlight {
         }
         let euler = motion.sight.euler;
         motion.aileron_rad = self.aileron_rad(&euler, motion.bank_rad);
-        motion.rudder_rad = self.rudder_rad(&motion.body.state, &euler);
+        let state = &motion.body.state;
+        let airspeed_m_s = || self.aircraft().flow(state, &self.air(motion)).airspeed_m_s;
+        motion.rudder_rad = self.rudder_rad(state, &euler, airspeed_m_s);
     }
 
     /// Takes what an autopilot commands until the next sample.

@@ -79,8 +79,10 @@ fn a_flight_is_moved_by_what_has_a_size_and_begins_within_it() {
 #[test]
 fn what_changes_in_the_last_fifth_changes_late() {
     let is_late = |scenario: &Scenario| {
-        let (setpoint_rad, _) = scenario.setpoint.sampled(scenario.timing);
-        changes_late(scenario, &setpoint_rad)
+        let mut trace = Trace::with_room(&scenario.prepare().expect("flies"));
+        (trace.setpoint_rad, _) = scenario.setpoint.sampled(scenario.timing);
+        trace.time_s = (0..scenario.timing.rows()).map(|k| scenario.timing.time_s(k)).collect();
+        changes_late(scenario, &trace)
     };
     let changing = |at_s: f64, ramp_s: f64| {
         let change = PlantChange::new(at_s, ramp_s, plant()).expect("allowed");

@@ -202,6 +202,7 @@ mod tests {
             command_rad: none(),
             elevator_rad: none(),
             gains: Vec::new(),
+            autopilot_limited: Vec::new(),
             columns: vec![Column { name, values: values.to_vec() }],
             exit: None,
             outcome: Outcome::Completed,

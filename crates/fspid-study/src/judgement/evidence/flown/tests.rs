@@ -26,6 +26,7 @@ fn trace(setpoint_deg: &[f64], theta_deg: &[f64]) -> Trace {
         command_rad: (0..rows).map(|k| radians(3.0 - k as f64)).collect(),
         elevator_rad: (0..rows).map(|k| radians(if k % 2 == 0 { 0.0 } else { 2.0 })).collect(),
         gains: vec![Gains { kp: 1.0, ki: 0.0, kd: 0.0 }; rows],
+        autopilot_limited: Vec::new(),
         columns: Vec::new(),
         exit: None,
         outcome: Outcome::Completed,
