@@ -49,6 +49,11 @@ fn what_is_no_folder_of_its_own_is_refused_before_anything_is_written() {
     assert_eq!(fs::read_to_string(folder.join("full/fspid.c")).expect("a file"), "mine");
     assert!(!folder.join("new").exists() && !folder.join("pack").exists());
     assert_eq!(exported(folder, "--to c --out full --force").0, 0);
+    // What the script of an earlier pack found would stand beside the README of another design.
+    let pack = "--to c --samples 100 --out full --evidence pack --force";
+    fs::create_dir_all(folder.join("pack/results")).expect("a folder");
+    let (code, told) = exported(folder, pack);
+    assert!(code == 2 && told.contains("results has what the script"), "{code} {told}");
     let left = fs::read_dir(folder.join("full")).expect("listed").flatten();
     assert!(left.into_iter().all(|it| !it.file_name().to_string_lossy().starts_with('.')));
 }

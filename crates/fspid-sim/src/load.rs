@@ -89,7 +89,8 @@ impl ConstantLoad {
     }
 }
 
-/// The effect of a constant load with the plant of the scenario on which most of it is left. The loop must be stable.
+/// The effect of a constant load with the plant of the scenario on which most of it is left. The loop must be stable; none where
+/// it grows by itself and outer loops hold it, for what a load does then is theirs to say.
 ///
 /// # Errors
 /// [`SimError`] where a plant cannot be discretised, an aircraft has no linear model, or a number overflows.
@@ -103,6 +104,9 @@ pub fn constant_load(
     let lasting = scenario.lasting_plants().into_iter().map(|(_, plant)| plant);
     let mut worst: Option<ConstantLoad> = None;
     for plant in trimmed.iter().chain(lasting) {
+        if scenario.autopilot.is_some() && !holds(scenario, plant, gains, config) {
+            return Ok(None);
+        }
         let load = with_plant(scenario, plant, gains, config)?;
         let held = HeldIntegral::at_the_end(scenario, plant, gains, config);
         let room = held.map_or(1.0, |it| it.room_rad().to_degrees());
@@ -182,7 +186,7 @@ fn with_plant(
     let for_good = left_for_good(flight, largest, memory.integral)?;
     // A largest that is NaN was never larger than the one before.
     if !(largest.is_finite() && at_end.is_finite() && for_good.is_finite()) {
-        return Err(LtiError::OutOfRange { what: "effect of a constant load" }.into());
+        return Err(LtiError::OutOfRange { what: "share of a constant load" }.into());
     }
     Ok(ConstantLoad { largest, at_end, for_good, has_integral: memory.integral, is_cut: false })
 }

@@ -176,7 +176,8 @@ pub(super) fn files_chapter(files: &[CertificateFile], subject: Subject<'_>) -> 
     };
     let check = |file: &CertificateFile| {
         let name = shell::word(&file.name);
-        let sets = subject.study.overrides.iter().chain(&file.set);
+        // In the order in which they were set: what is set in all cases comes last.
+        let sets = file.set.iter().chain(&subject.study.overrides);
         let sets: String = sets.map(|it| format!(" --set {}", shell::word(it))).collect();
         format!("fspid certify --check {folder}/{name} --against FILE{sets}")
     };

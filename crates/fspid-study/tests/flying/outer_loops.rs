@@ -6,7 +6,7 @@ use fspid_study::analysis::{Analysis, Question, Stability};
 use fspid_study::metrics::Verdict;
 use fspid_study::simulation::Simulation;
 
-use crate::flying::{column, study};
+use crate::flying::{column, result, study};
 
 const CAPTURE: &str = include_str!("../../../../scenarios/gallery/altitude-capture.toml");
 const APPROACH: &str = include_str!("../../../../scenarios/gallery/ils-approach.toml");
@@ -147,4 +147,20 @@ fn an_outer_loop_may_tune_itself() {
         column(&flight.results[0].trace, "altitude_m"),
         column(&plain.results[0].trace, "altitude_m")
     );
+}
+
+/// Of a Navion whose pitch loop grows by itself: in 104 s a load left 10^102 deg "for good", and in 400 s nothing could be asked.
+#[test]
+fn what_a_constant_load_does_is_not_asked_of_a_pitch_loop_that_outer_loops_hold() {
+    const TOTAL_ENERGY: &str = include_str!("../../../../scenarios/gallery/total-energy.toml");
+    let flown = |speed: &str, duration: &str| {
+        let [speed, duration] =
+            [format!("aircraft.airspeed_ft_s={speed}"), format!("loop.duration_s={duration}")];
+        let at_rest = result(TOTAL_ENERGY, &[&speed, &duration]).at_rest;
+        (at_rest.stability_word(), at_rest.load.is_some(), at_rest.not_asked)
+    };
+    for duration in ["104.0", "400.0"] {
+        assert_eq!(flown("209.0", duration), (Some("stable"), false, None), "{duration} s");
+    }
+    assert_eq!(flown("176.0", "104.0"), (Some("stable"), true, None));
 }
