@@ -50,7 +50,7 @@ fn what_is_no_folder_of_its_own_is_refused_before_anything_is_written() {
     assert!(!folder.join("new").exists() && !folder.join("pack").exists());
     assert_eq!(exported(folder, "--to c --out full --force").0, 0);
     // What the script of an earlier pack found would stand beside the README of another design.
-    let pack = "--to c --samples 100 --out full --evidence pack --force";
+    let pack = "--to c --out full --evidence pack --force";
     fs::create_dir_all(folder.join("pack/results")).expect("a folder");
     let (code, told) = exported(folder, pack);
     assert!(code == 2 && told.contains("results has what the script"), "{code} {told}");

@@ -158,6 +158,8 @@ fn bare_below(value: &Value, path: &str, told: &[&str]) -> Option<String> {
             }
             let table = keys.get("null").and_then(Value::as_object);
             let here = table.into_iter().flat_map(|table| table.keys().map(String::as_str));
+            // Why a loop is undecided is why `stable` is neither true nor false.
+            let here = here.chain(keys.contains_key("undecided").then_some("stable"));
             let told: Vec<&str> = told.iter().copied().chain(here).collect();
             keys.iter().find_map(|(key, value)| bare_below(value, &format!("{path}.{key}"), &told))
         }

@@ -17,9 +17,8 @@ const LEAST_TAIL: usize = 10;
 ///
 /// [`Doubt::HeldByGuard`] where its last sample, or that of the flight as it goes on, is beyond the controller's sample guard;
 /// [`Doubt::RunsAway`] where that of a plant that does not come to rest by itself ends at a limit of controller or servo with an
-/// error that grows, through the last tenth of it, at every sample; [`Doubt::OuterLoopRunsAway`] where an autopilot does so with
-/// an altitude, an airspeed, a heading or a beam; and [`Doubt::SwingAtLimits`] where that of a linear plant, or that of an aircraft
-/// at limits, is lost, or a flight ends, as it is or flown on, at limits in a swing that does not shrink.
+/// error that grows, through the last tenth of it, at every sample; and [`Doubt::SwingAtLimits`] where that of a linear plant, or
+/// that of an aircraft at limits, is lost, or a flight ends, as it is or flown on, at limits in a swing that does not shrink.
 #[must_use]
 pub fn doubt_of_flight(
     scenario: &Scenario,
@@ -34,7 +33,6 @@ pub fn doubt_of_flight(
         return Some(Doubt::RunsAway);
     }
     flown_on::doubt(scenario, controller, trace, moves)
-        .or_else(|| outer_loop_runs_away(trace).then_some(Doubt::OuterLoopRunsAway))
 }
 
 /// The same of one of a scenario's controllers, for who has not flown it; none where it cannot be flown.
@@ -55,37 +53,8 @@ fn runs_away(scenario: &Scenario, controller: &Controller, trace: &Trace) -> boo
     if tail < LEAST_TAIL || !trace.command_rad.last().is_some_and(is_cut) {
         return false;
     }
-    let grows = grows_through(tail, &trace.setpoint_rad, &trace.theta_rad);
+    let errors: Vec<f64> =
+        trace.setpoint_rad.iter().zip(&trace.theta_rad).map(|(r, y)| (r - y).abs()).collect();
+    let grows = errors.iter().skip(rows - tail).is_sorted_by(|one, next| one < next);
     grows && trace.command_rad.iter().rev().take(tail).all(is_cut)
-}
-
-/// What an autopilot holds, and what it is: where nobody holds it the two are the same, and nothing grows.
-const HELD: [[&str; 2]; 3] = [
-    ["altitude_target_m", "altitude_m"],
-    ["airspeed_target_m_s", "airspeed_m_s"],
-    ["heading_target_rad", "heading_rad"],
-];
-
-/// True where an autopilot is at a limit of its own through the last tenth, and something that it holds gets further away at each
-/// sample: a throttle at its end while speed is lost, a pitch that lets an altitude sink.
-fn outer_loop_runs_away(trace: &Trace) -> bool {
-    let tail = trace.rows() / 10;
-    let limited = trace.autopilot_limited.iter().rev().take(tail);
-    if tail < LEAST_TAIL || limited.len() < tail || !limited.copied().all(|it| it) {
-        return false;
-    }
-    let grows = |[target, found]: [&str; 2]| match (trace.column(target), trace.column(found)) {
-        (Some(target), Some(found)) => grows_through(tail, target, found),
-        _ => false,
-    };
-    let below_beam = trace.column("above_glide_slope_m");
-    HELD.into_iter().any(grows)
-        || below_beam.is_some_and(|it| grows_through(tail, it, &vec![0.0; it.len()]))
-}
-
-/// True where two quantities get further apart at each of so many last samples.
-fn grows_through(tail: usize, one: &[f64], other: &[f64]) -> bool {
-    let apart: Vec<f64> =
-        one.iter().zip(other).rev().take(tail).map(|(one, other)| (one - other).abs()).collect();
-    apart.is_sorted_by(|later, before| later > before)
 }

@@ -167,11 +167,6 @@ pub enum Doubt {
         "the plant does not come to rest by itself, and the flight ends with its command at a limit and an error that grows: a longer flight shows what becomes of it"
     )]
     RunsAway,
-    /// A flight ended with an autopilot at a limit of its own, and something that it holds got further away through the last tenth.
-    #[error(
-        "the flight ends with an outer loop or the throttle at a limit, and what it holds gets further away: a longer flight shows what becomes of it; wider limits, or targets within reach, may hold it"
-    )]
-    OuterLoopRunsAway,
     /// A flight, flown on, is lost, or meets limits in a swing that does not shrink.
     #[error(
         "limits are met, and the flight does not settle, nor when it is flown on (in still air, for ten times as long): it swings on between them or is lost, as a longer flight shows; wider limits, smaller or slower commands, or lower gains may hold it"
@@ -197,7 +192,6 @@ impl Doubt {
                 | Self::HeldByGuard
                 | Self::BeyondLimits
                 | Self::RunsAway
-                | Self::OuterLoopRunsAway
                 | Self::SwingAtLimits
         )
     }
@@ -230,7 +224,6 @@ impl Doubt {
             | Self::HeldByGuard
             | Self::BeyondLimits
             | Self::RunsAway
-            | Self::OuterLoopRunsAway
             | Self::SwingAtLimits => true,
         }
     }

@@ -420,20 +420,3 @@ fn a_speed_that_is_lost_at_a_limit_of_an_outer_loop_leaves_the_flight_in_doubt()
     let free = ["outer_loop.autothrottle.least=-0.5", "outer_loop.autothrottle.most=0.5"];
     assert_eq!(of(&free), None);
 }
-
-/// A turn that the throttle cannot carry came to the ground after 392 s, from 60 s of a stable flight.
-#[test]
-fn what_gets_further_away_at_a_limit_of_an_autopilot_to_the_end_of_a_flight_leaves_it_in_doubt() {
-    let turn = include_str!("../../../../scenarios/gallery/turn.toml");
-    let of = |most: &str, duration: &str| {
-        let set = [
-            "aircraft.airspeed_ft_s=140.0".to_owned(),
-            "outer_loop.autothrottle.least=-1.0".to_owned(),
-            format!("outer_loop.autothrottle.most={most}"),
-            format!("loop.duration_s={duration}"),
-        ];
-        doubt(&result(turn, &set.each_ref().map(String::as_str)))
-    };
-    assert_eq!(of("0.06", "120.0"), Some(Doubt::OuterLoopRunsAway));
-    assert_eq!(of("0.1", "120.0"), None);
-}
