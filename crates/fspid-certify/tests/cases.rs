@@ -52,5 +52,9 @@ fn a_case_without_the_controller_is_not_proved() {
     let found = answered(Cases::Tuning, &[&tuning], false).expect("cases");
     let text = found.text();
     assert!(text.contains("CPID: NOT PROVED at 1 of 2 cases of [tuning]: renamed"), "{text}");
+    assert!(
+        text.contains("renamed\n  the controller that is asked is not among those of this case\n"),
+        "{text}"
+    );
     assert!(!found.all_proved());
 }

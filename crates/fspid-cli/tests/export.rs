@@ -53,7 +53,7 @@ fn what_is_no_folder_of_its_own_is_refused_before_anything_is_written() {
     let pack = "--to c --out full --evidence pack --force";
     fs::create_dir_all(folder.join("pack/results")).expect("a folder");
     let (code, told) = exported(folder, pack);
-    assert!(code == 2 && told.contains("results has what the script"), "{code} {told}");
+    assert!(code == 2 && told.contains("results holds what the script"), "{code} {told}");
     let left = fs::read_dir(folder.join("full")).expect("listed").flatten();
     assert!(left.into_iter().all(|it| !it.file_name().to_string_lossy().starts_with('.')));
 }

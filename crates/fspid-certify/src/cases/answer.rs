@@ -25,6 +25,9 @@ impl CertifiedCases {
             for certified in &case.certification.results {
                 out.push_str(&line(certified));
             }
+            if case.has_nobody() {
+                out.push_str(&format!("  {NOBODY}\n"));
+            }
         }
         out.push('\n');
         for name in self.controllers() {
@@ -145,6 +148,15 @@ fn line(certified: &Certified) -> String {
         out.push_str(&format!("    {about} {sentence}\n"));
     }
     out
+}
+
+/// What is said of a case without a controller that was asked for.
+pub(super) const NOBODY: &str = "the controller that is asked is not among those of this case";
+
+impl CertifiedCase {
+    pub(super) fn has_nobody(&self) -> bool {
+        self.certification.results.is_empty()
+    }
 }
 
 /// The verdict on a loop, and what it is about.

@@ -5,7 +5,7 @@ use fspid_page::analysis::{
 };
 use fspid_study::shell;
 
-use super::answer::told;
+use super::answer::{NOBODY, told};
 use super::{CertifiedCase, CertifiedCases};
 use crate::certificate_files::NotWritable;
 use crate::page::{Subject, files_chapter};
@@ -42,6 +42,14 @@ impl CertifiedCases {
     fn table(&self) -> Chapter {
         let mut rows = Vec::new();
         for case in &self.cases {
+            if case.has_nobody() {
+                rows.push(vec![
+                    Datum::Text(case.change.name.clone()),
+                    Datum::Text(String::new()),
+                    Datum::Unmet("not proved".to_owned()),
+                    Datum::Text(NOBODY.to_owned()),
+                ]);
+            }
             for certified in &case.certification.results {
                 let verdict = match certified.is_proved() {
                     true => Datum::Met("proved".to_owned()),
@@ -96,6 +104,7 @@ fn section(case: &CertifiedCase) -> Chapter {
     let set = set.collect::<Vec<_>>().join(" ");
     let mut items = Vec::new();
     items.extend((!set.is_empty()).then_some(Item::Code(set)));
+    items.extend(case.has_nobody().then(|| Item::Text(format!("{NOBODY}."))));
     for certified in &certification.results {
         items.push(Item::Heading(certified.name()));
         items.extend(certified.items());

@@ -394,7 +394,8 @@ impl AutopilotState {
             }
         }
         AutopilotSample {
-            mode: self.mode,
+            // A sample that is no larger for a limit: it is copied with each.
+            mode: u32::try_from(self.mode).unwrap_or(u32::MAX),
             targets,
             above_beam_m: self.above_beam_m,
             throttle: self.throttle.trim + self.commands.throttle,

@@ -6,7 +6,7 @@ use super::quantity::Quantity;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AutopilotSample {
     /// Number of the mode, from 0.
-    pub mode: usize,
+    pub mode: u32,
     /// What each of [`Quantity::ALL`] is to be; where nobody holds it, what it is.
     pub targets: [f64; Quantity::ALL.len()],
     /// Height above the beam of the glide slope as it is shown, m; 0 without one.
@@ -38,7 +38,7 @@ impl AutopilotSample {
     pub fn values(&self) -> [f64; AUTOPILOT_COLUMNS.len()] {
         let [altitude_m, vertical_speed_m_s, path_rad, airspeed_m_s, _, heading_rad] = self.targets;
         [
-            (self.mode + 1) as f64,
+            f64::from(self.mode) + 1.0,
             altitude_m,
             vertical_speed_m_s,
             path_rad,

@@ -66,7 +66,7 @@ fn swings_by_command(scenario: &Scenario) -> bool {
 
 /// True where set-point, loads or plant change within the last fifth of a flight, too late to see what comes of it.
 ///
-/// With an autopilot, which moves the set-point all the time, the mode stands for it.
+/// What is commanded is the scenario's own set-point and the mode of an autopilot, which moves the set-point all the time.
 pub(super) fn changes_late(scenario: &Scenario, trace: &Trace) -> bool {
     let rows = trace.rows();
     let from = rows - rows / 5;
@@ -83,12 +83,11 @@ pub(super) fn changes_late(scenario: &Scenario, trace: &Trace) -> bool {
     };
     let from_s = timing.time_s(from);
     let mut plants = scenario.plant_changes.iter().filter(|it| it.at_s() <= timing.end_s());
-    let commanded = match scenario.autopilot {
-        None if scenario.setpoint.goes_on() => &[],
-        None => trace.setpoint_rad.as_slice(),
-        Some(_) => trace.column("mode").unwrap_or_default(),
-    };
-    changes(commanded) || loads.any(is_late) || plants.any(|it| it.at_s() + it.ramp_s() >= from_s)
+    let setpoint = || changes(&scenario.setpoint.sampled(timing).0);
+    (!scenario.setpoint.goes_on() && setpoint())
+        || trace.column("mode").is_some_and(changes)
+        || loads.any(is_late)
+        || plants.any(|it| it.at_s() + it.ramp_s() >= from_s)
 }
 
 /// The flight as it goes on to so many samples: what stands still at its end is held, what swings swings on where it is to, and

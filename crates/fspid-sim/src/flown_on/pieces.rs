@@ -147,6 +147,7 @@ impl<'a> Pieces<'a> {
         Self { ends, length, unseen_rad, may_drift, samples, all, before }
     }
 
+    /// Takes a sample.
     pub(super) fn push(&mut self, shown: Shown) {
         let Shown { moving_rad, command_rad, at_servo_rad, elevator_rad, autopilot_is_limited } =
             shown;

@@ -52,6 +52,8 @@ pub struct Verification {
     pub failed_flights: Vec<FailedFlight>,
     /// What is said of each loop beside its judgements: its gains at rest, loads that it does not remove.
     at_rest: Vec<String>,
+    /// Controllers of whose loops it is undecided whether they are stable.
+    undecided: Vec<String>,
 }
 
 /// What is required beside the entries of the scenario.
@@ -129,6 +131,9 @@ pub fn verify_text(
     let mut failed_flights = simulation.failed_flights();
     failed_flights.retain(|failed| simulation.is_asked(failed));
     let at_rest = simulation.results.iter().flat_map(at_rest).collect();
+    let undecided =
+        simulation.results.iter().filter(|it| it.at_rest.undecided_in_words().is_some());
+    let undecided = undecided.map(|it| it.name.clone()).collect();
     let judgements = simulation.judgements;
     let requirement_files = requirement_files.iter().map(|(name, _)| name.clone()).collect();
     let added = Added { sets, requirement_files };
@@ -141,6 +146,7 @@ pub fn verify_text(
         judgements,
         failed_flights,
         at_rest,
+        undecided,
     })
 }
 

@@ -70,8 +70,19 @@ impl Verification {
                     .to_owned(),
             );
         }
+        // A requirement that is met says nothing of what is not required, and a good word stood alone.
+        if !self.undecided.is_empty() {
+            let names = self.undecided.join(", ");
+            detail.push(format!(
+                "It is undecided whether the loop is stable of {names}: see the notes."
+            ));
+        }
         Verdict {
-            standing: if self.all_met() { Standing::Good } else { Standing::Bad },
+            standing: match (self.all_met(), self.undecided.is_empty()) {
+                (true, true) => Standing::Good,
+                (true, false) => Standing::Fair,
+                (false, _) => Standing::Bad,
+            },
             word: self.word().to_owned(),
             name: self.counted(),
             detail: detail.join(" "),

@@ -321,6 +321,11 @@ fn a_swing_at_limits_that_grows_after_the_flight_of_an_aircraft_leaves_it_in_dou
     assert!(diverges(&slow, &["loop.duration_s=60.0"]));
     // Also where no limit is met yet, for the step comes at the end.
     assert_eq!(doubt(&result(&slow, &["setpoint.at_s=10.09"])), Some(Doubt::SwingAtLimits));
+    // And beside an autopilot that moves the throttle alone, and adds nothing to the set-point.
+    let throttle = "[[outer_loop]]\nname = \"autothrottle\"\nkind = \"pid\"\nholds = \"airspeed\"\nmoves = \"throttle\"\nkp = 0.02\n[[mode]]\nname = \"speed\"\nengage = [\"autothrottle\"]\n";
+    let held = format!("{slow}\n{throttle}");
+    assert_eq!(doubt(&result(&held, &["setpoint.at_s=10.09"])), Some(Doubt::SwingAtLimits));
+    assert_eq!(doubt(&result(&held, &["setpoint.amplitude_deg=-0.2"])), None);
     // A step that is small for the same elevator, and one that is fast enough.
     assert_eq!(doubt(&result(&slow, &["setpoint.amplitude_deg=-0.2"])), None);
     assert_eq!(doubt(&result(&slow, &["actuator.rate_limit_deg_s=20.0"])), None);

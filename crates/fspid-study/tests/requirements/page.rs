@@ -96,3 +96,19 @@ fn a_page_on_which_all_is_met_says_so() {
     assert!(html.contains("\u{2713} PASS") && html.contains("Every requirement is met"));
     assert!(!html.contains("verdict bad") && !html.contains("NOT MET"));
 }
+
+/// A green PASS stood above an altitude that goes up and down by 45 m for ever, and the doubt behind it in the notes.
+#[test]
+fn a_loop_of_which_it_is_undecided_whether_it_is_stable_is_told_beside_the_verdict() {
+    let capture = include_str!("../../../../scenarios/gallery/altitude-capture.toml");
+    let (_folder, path) = written(capture);
+    let html = |limit: &str| {
+        let limit = format!("outer_loop.altitude.most_per_s={limit}");
+        verified(&path, &["outer_loop.altitude.kp=0.6", &limit], &[]).page()
+    };
+    let doubt = "It is undecided whether the loop is stable of PID: see the notes.";
+    let (swings, rests) = (as_read(&html("0.15")), as_read(&html("1.0")));
+    assert!(swings.contains("PASS") && swings.contains(doubt));
+    assert!(rests.contains("PASS") && !rests.contains("undecided"));
+    assert!(html("0.15").contains("verdict fair") && html("1.0").contains("verdict good"));
+}

@@ -18,7 +18,7 @@ pub(super) fn check(arguments: &Arguments) -> Result<(), Failure> {
     let results = evidence.join("results");
     if results.exists() {
         return Err(Failure::input(format_args!(
-            "{} has what the script of an earlier export found there, and would stand beside another; remove it, or choose another folder",
+            "{} holds what the script of an earlier export found, which would stand beside this one; remove it, or choose another folder",
             results.display()
         )));
     }

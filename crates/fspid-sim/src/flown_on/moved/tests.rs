@@ -80,7 +80,6 @@ fn a_flight_is_moved_by_what_has_a_size_and_begins_within_it() {
 fn what_changes_in_the_last_fifth_changes_late() {
     let is_late = |scenario: &Scenario| {
         let mut trace = Trace::with_room(&scenario.prepare().expect("flies"));
-        (trace.setpoint_rad, _) = scenario.setpoint.sampled(scenario.timing);
         trace.time_s = (0..scenario.timing.rows()).map(|k| scenario.timing.time_s(k)).collect();
         changes_late(scenario, &trace)
     };
