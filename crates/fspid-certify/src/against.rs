@@ -194,7 +194,7 @@ impl CheckedFile {
 fn not_held(study: &Study, controller: &str) -> Option<Difference> {
     let scenario = &study.scenario;
     let named = scenario.controllers.iter().find(|named| named.name == controller)?;
-    let flown = not_held_in_words(scenario, &named.controller)?;
+    let flown = not_held_in_words(scenario, named)?;
     Some(Difference { path: "at_rest".to_owned(), certified: "stable".to_owned(), flown })
 }
 

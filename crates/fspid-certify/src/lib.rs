@@ -190,7 +190,7 @@ impl Certification {
         for named in scenario.controllers.iter().filter(|named| wanted(&named.name)) {
             tell(&named.name);
             let around = Around::of(scenario, &named.controller)?;
-            let not_held = not_held_in_words(scenario, &named.controller);
+            let not_held = not_held_in_words(scenario, named);
             for (from_s, plant) in &plants {
                 let described = LoopDescription::of(scenario, plant, &named.controller);
                 results.push(Certified {

@@ -165,13 +165,18 @@ fn a_family_is_not_called_proved_where_a_member_does_not_hold_as_it_flies() {
     }
 }
 
-/// What is proved of every member are pitch loops, and of a linear plant there is nothing else.
+/// What is proved of every member are pitch loops, and of a linear plant without limits there is nothing else.
 #[test]
 fn a_family_says_of_how_many_members_it_was_asked_whether_they_hold_as_they_fly() {
     for (beside, set, what) in [
-        (OUTER_LOOP, &[SLOW][..], Some("outer loops, roll and yaw")),
-        ("", &[SLOW][..], Some("roll and yaw")),
+        (
+            OUTER_LOOP,
+            &[SLOW][..],
+            Some("outer loops, roll and yaw hold at rest and no flight swings at limits"),
+        ),
+        ("", &[SLOW][..], Some("roll and yaw hold at rest and no flight swings at limits")),
         ("", &[LINEAR, WINGS][..], None),
+        ("", &[LINEAR, "actuator.rate_limit_deg_s=60"][..], Some("no flight swings at limits")),
     ] {
         let template = family_of_speeds(beside, set);
         let (found, page) = asked(&template);
@@ -187,12 +192,67 @@ fn a_family_says_of_how_many_members_it_was_asked_whether_they_hold_as_they_fly(
         assert!(page.contains("scales of sensors may change from sample to sample</th>"));
         let checked = against(&found, &template);
         assert!(checked.holds(), "{}", checked.text());
-        let told = what.map(|what| format!("That {what} hold at rest in the family was asked of 3 members, at corners of the box and in its middle, and is not proved between them."));
+        let told = what.map(|what| format!("That in the family {what} was asked of 3 members, at corners of the box and in its middle, and is not proved between them."));
         for text in [&text, &page, &checked.text()] {
             assert!(told.as_ref().is_none_or(|it| text.contains(it)), "{text}");
-            assert_eq!(text.contains("hold at rest in the family"), told.is_some());
+            assert_eq!(text.contains("That in the family"), told.is_some());
         }
         let without = format!("                     {}", told.unwrap_or_default());
         assert!(text.contains(&without), "among what is not in the claim: {text}");
+    }
+}
+
+/// Between the limits of its servo it swings on for ever, after a step of 10 deg; after one of 1 deg it settles.
+const SWING: &str = r#"
+schema = 1
+name = "swing"
+[plant]
+numerator = [2.29451, 2.24784]
+denominator = [1.0, 0.16297, 1.20207, -0.02404]
+elevator_sign = "nose-up-positive"
+[actuator]
+natural_frequency_rad_s = 29.02
+damping = 0.91
+rate_limit_deg_s = 36.77
+[loop]
+sample_period_s = 0.02
+duration_s = 20.0
+[setpoint]
+kind = "step"
+amplitude_deg = 10.42
+at_s = 1.0
+[[controller]]
+name = "PID"
+kind = "pid"
+kp = 2.798
+ki = 0.28
+kd = 0.699
+derivative_filter_s = 0.072
+[[dispersion]]
+name = "kp"
+path = "plant.numerator[1]"
+distribution = "uniform"
+lower = 2.2
+upper = 2.3
+"#;
+
+/// It was PROVED, "HOLDS, AND IS WHAT FLIES", where `analyse` and `verify` call it undecided.
+#[test]
+fn a_loop_that_swings_at_its_limits_is_not_called_proved_and_is_not_what_flies() {
+    for (set, holds) in [(&[][..], false), (&["setpoint.amplitude_deg=1.0"][..], true)] {
+        let overrides: Vec<String> = set.iter().map(|&it: &&str| it.to_owned()).collect();
+        let extra = Extra { overrides: &overrides, ..Extra::default() };
+        let template = Template::parse(SWING, "swing.toml", None, &extra);
+        let template = template.unwrap_or_else(|it| panic!("{it}"));
+        let alone = Certification::of(template.study(), None, &Effort::default());
+        let (family, _) = asked(&template);
+        for found in [&alone.expect("certified"), &family] {
+            assert_eq!(found.all_proved(), holds, "{}", found.text());
+            let told =
+                "NOT PROVED as it flies: undecided: limits are met, and the flight does not settle";
+            assert_eq!(found.text().contains(told), !holds, "{}", found.text());
+            let checked = against(found, &template);
+            assert_eq!(checked.holds(), holds, "{}", checked.text());
+        }
     }
 }

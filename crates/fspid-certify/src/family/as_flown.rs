@@ -24,7 +24,7 @@ pub enum AsFlown {
     Held {
         /// How many they are.
         members: usize,
-        /// What holds in each beside the pitch loop.
+        /// What was asked of each beside the pitch loop, as a sentence without its end.
         what: &'static str,
     },
     /// A member does not, or may not.
@@ -47,7 +47,9 @@ impl AsFlown {
         description: &LoopDescription,
         stops: fn() -> bool,
     ) -> Result<Self, NotProvable> {
-        let Some(what) = beside_the_loop(template.study()) else { return Ok(Self::LoopAlone) };
+        let Some(what) = beside_the_loop(template.study(), description) else {
+            return Ok(Self::LoopAlone);
+        };
         let asked = asked_members(&ends(members));
         for at in &asked {
             if stops() {
@@ -64,20 +66,27 @@ impl AsFlown {
     pub(in super::super) fn not_proved_between(&self) -> Option<String> {
         let Self::Held { members, what } = self else { return None };
         Some(format!(
-            "That {what} hold at rest in the family was asked of {members} members, at corners of the box and in its middle, and is not proved between them."
+            "That in the family {what} was asked of {members} members, at corners of the box and in its middle, and is not proved between them."
         ))
     }
 }
 
-/// What a scenario flies beside its pitch loop; none where that is all.
-fn beside_the_loop(study: &Study) -> Option<&'static str> {
+/// What of a scenario's flights is not in its pitch loop without limits, and is to hold; none where that is all.
+fn beside_the_loop(study: &Study, description: &LoopDescription) -> Option<&'static str> {
     let has_wings = study.derivatives.as_ref().is_none_or(|it| it.data.lateral.is_some());
     match (study.scenario.autopilot.is_some(), &study.scenario.plant) {
-        (true, Plant::Aircraft(_)) if has_wings => Some("outer loops, roll and yaw"),
-        (true, _) => Some("outer loops"),
-        (false, Plant::Aircraft(_)) if has_wings => Some("roll and yaw"),
-        (false, Plant::Aircraft(_)) => Some("flights as they are commanded"),
-        (false, _) => None,
+        (true, Plant::Aircraft(_)) if has_wings => {
+            Some("outer loops, roll and yaw hold at rest and no flight swings at limits")
+        }
+        (true, _) => Some("outer loops hold at rest and no flight swings at limits"),
+        (false, Plant::Aircraft(_)) if has_wings => {
+            Some("roll and yaw hold at rest and no flight swings at limits")
+        }
+        (false, Plant::Aircraft(_)) => {
+            Some("flights hold as they are commanded and none swings at limits")
+        }
+        (false, _) if description.limits().is_empty() => None,
+        (false, _) => Some("no flight swings at limits"),
     }
 }
 
@@ -118,7 +127,7 @@ fn trouble(
     // With the controller that the scenario makes of its numbers, which families do not change.
     let place = place_of(template.study(), description);
     match place.and_then(|place| study.scenario.controllers.get(place)) {
-        Some(named) => trouble_in_words(&study.scenario, &named.controller),
+        Some(named) => trouble_in_words(&study.scenario, named),
         None => Some("its controllers are others".to_owned()),
     }
 }
