@@ -85,5 +85,7 @@ fn words(original: &Parts, written: &Parts) -> String {
     });
     let list = list.collect::<Vec<_>>().join(", ");
     let points = questions(original);
-    format!("largest change of an answer found at {points} points and above the worst: {list}")
+    format!(
+        "largest change of an answer within the ranges of the inputs, found at {points} points and near the worst of them; beyond the ranges it is not measured: {list}"
+    )
 }

@@ -439,7 +439,7 @@ fn a_gaussian_is_refused_in_the_standard_s_dialect_unless_a_loss_is_allowed() {
     assert!(
         told.last()
             .unwrap()
-            .starts_with("largest change of an answer found at 500 points and above the worst")
+            .starts_with("largest change of an answer within the ranges of the inputs, found at 500 points and near the worst of them; beyond the ranges it is not measured")
     );
 }
 
@@ -477,7 +477,7 @@ fn names_that_are_none_are_replaced_if_a_loss_is_allowed() {
     let told = written.notes.last().unwrap().to_string();
     assert_eq!(
         told,
-        "largest change of an answer found at 500 points and above the worst: `tip` 0.0e0"
+        "largest change of an answer within the ranges of the inputs, found at 500 points and near the worst of them; beyond the ranges it is not measured: `tip` 0.0e0"
     );
 }
 

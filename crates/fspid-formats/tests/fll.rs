@@ -334,7 +334,7 @@ fn exact_integrals_are_refused_unless_a_loss_is_allowed_and_then_measured() {
     let told = written.notes.last().unwrap().to_string();
     assert!(
         told.starts_with(
-            "largest change of an answer found at 500 points and above the worst: `delta_kp` "
+            "largest change of an answer within the ranges of the inputs, found at 500 points and near the worst of them; beyond the ranges it is not measured: `delta_kp` "
         ),
         "{told}"
     );

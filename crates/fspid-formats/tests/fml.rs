@@ -213,7 +213,7 @@ fn another_tool_s_integrals_are_a_loss_that_is_measured() {
     let told = writing.notes.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n");
     assert!(
         told.contains(
-            "largest change of an answer found at 500 points and above the worst: `dkp` 4.1e-2"
+            "largest change of an answer within the ranges of the inputs, found at 500 points and near the worst of them; beyond the ranges it is not measured: `dkp` 4.1e-2"
         ),
         "{told}"
     );

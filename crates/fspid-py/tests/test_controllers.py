@@ -82,6 +82,8 @@ def test_settings_of_a_controller_are_checked_as_in_the_file():
     with pytest.raises(fspid.ScenarioError) as told:
         fspid.Pid(0.01, kp="much", ki=0.5, kd=0.1, kq=1.0)
     assert {problem.path for problem in told.value.problems} >= {"controller[0].kp", "controller[0].kq"}
+    with pytest.raises(fspid.InputError, match="name and kind cannot be set"):
+        fspid.Pid(0.01, kp=1.0, name="q", kind="fspid")
 
 
 def test_a_controller_follows_who_flies_and_takes_over_without_a_bump():

@@ -180,7 +180,10 @@ fn of_place(
         return Ok(Some(Undecided::at_trim(Doubt::Kink)));
     }
     let there = Plant::Aircraft(Box::new(plant.clone()));
-    let own = Scenario { plant: there, ..scenario.clone() };
+    let mut own = Scenario { plant: there, ..scenario.clone() };
+    if let (Some(led), Some(autopilot)) = (place.led, &mut own.autopilot) {
+        *autopilot = autopilot.released(led.mode, place.at_limits);
+    }
     let found = match place.led {
         None => growth_of_plant(&own, (0.0, &linear), controller, gains)?
             .and(alone(&own, (controller, gains))),

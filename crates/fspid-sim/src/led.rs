@@ -15,6 +15,8 @@ pub enum Leg {
     OnTheWay,
     /// A turn with nobody at the throttle: the airspeed falls to one of its own, which is not known.
     Turn,
+    /// A turn in which throttle or pitch do not hold what they are to.
+    InTurn,
 }
 
 /// An autopilot mode whose steady flight differs from the initial trim.
@@ -46,6 +48,7 @@ impl fmt::Display for Led {
         let when = match self.leg {
             Leg::End => "in the end",
             Leg::OnTheWay => "on the way there",
+            Leg::InTurn => "in its turn",
             Leg::Turn => {
                 return f.write_str(
                     " turns with nobody at the throttle, and so comes to an airspeed of its own, which is not asked",
@@ -59,7 +62,7 @@ impl fmt::Display for Led {
             ),
             None => write!(
                 f,
-                " leads {when} to no straight flight within the limits of the aircraft's data and controls, with the throttle as it is where nobody moves it"
+                " leads {when} to no straight flight within the limits of the aircraft's data, its controls and its loops, with the throttle as it is where nobody moves it"
             ),
         }
     }

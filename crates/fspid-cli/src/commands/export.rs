@@ -62,7 +62,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "N", value_parser = count::<usize>(&counts::TABLE_POINTS))]
     points: Option<usize>,
     /// Write data for a review into this folder: traces, changes that the vectors find, what a proof is asked, and a
-    /// script that makes the rest; for c, takes a minute.
+    /// script that makes the rest; for c, takes a minute, or several where rules conclude labels.
     #[arg(long, value_name = "DIR")]
     evidence: Option<Folder>,
     /// How integrals of a fuzzy system are computed: `exact`, `endpoints:N`, `midpoint:N`, `trapezoid:N` or `left-end:N`; as

@@ -22,8 +22,8 @@ pub(super) fn files<R: Real>(source: &Source<'_, R>) -> Result<Vec<File>, Refusa
 
 /// A name that a module, its file and a package may have.
 fn module(prefix: &str) -> String {
-    const TAKEN: &str = " abstract alloc as async await become box break const continue core crate do dyn else enum extern \
-        false final fn for fspid_core gen if impl in let lib loop macro match mod move mut override priv proc_macro pub ref \
+    const TAKEN: &str = " abstract alloc as async await become box break build const continue core crate do dyn else enum extern \
+        false final fn for fspid_core gen if impl in let lib loop macro main match mod move mut override priv proc_macro pub ref \
         return self static std struct super test trait true try type typeof unsafe unsized use virtual where while yield ";
     let is_taken = TAKEN.split_whitespace().any(|word| word == prefix);
     if is_taken { format!("{prefix}_design") } else { prefix.to_owned() }
@@ -66,5 +66,7 @@ mod tests {
     #[test]
     fn a_name_that_rust_or_the_package_has_taken_is_another_one() {
         assert_eq!(["loop", "lib", "pitch"].map(module), ["loop_design", "lib_design", "pitch"]);
+        // build.rs would be run before the build, and main.rs be a program.
+        assert_eq!(["build", "main"].map(module), ["build_design", "main_design"]);
     }
 }

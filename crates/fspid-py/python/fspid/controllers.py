@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from . import _core
+from .errors import InputError
 from .scenario import Scenario
 
 if TYPE_CHECKING:
@@ -121,6 +122,8 @@ class _Written(Controller):
     _KIND = ""
 
     def __init__(self, sample_period_s: float, /, **settings: Any) -> None:
+        if given := [key for key in ("name", "kind") if key in settings]:
+            raise InputError(f"{' and '.join(given)} cannot be set: the class says the kind, and there is no name")
         loop = {"sample_period_s": sample_period_s, "duration_s": 10.0 * sample_period_s}
         controller = {"name": "it", "kind": self._KIND, **settings}
         bench = Scenario.from_dict({**_BENCH, "loop": loop, "controller": [controller]})

@@ -1,7 +1,7 @@
 //! The aircraft configurations at which a flight is trimmed and judged: at the start, after each change of configuration,
 //! with empty tanks.
 
-use fspid_aircraft::Trim;
+use fspid_aircraft::{Aircraft, Trim};
 
 use super::{AircraftPlant, Changing, Forces};
 use crate::plant::Plant;
@@ -75,6 +75,17 @@ impl AircraftPlant {
     /// The aircraft where it has another trim.
     pub(crate) fn at(&self, trim: Trim) -> Self {
         Self { trim, ..self.clone() }
+    }
+
+    /// An aircraft that is so many times as heavy, at the same airspeed, path and altitude; nothing where it has no trim.
+    pub(crate) fn under_load(&self, load: f64) -> Option<Self> {
+        let aircraft = self.aircraft();
+        let mut environment = *aircraft.environment();
+        environment.gravity_m_s2 *= load;
+        let model = aircraft.model().clone();
+        let aircraft = Aircraft::new(*aircraft.mass(), model, environment).ok()?;
+        let trim = aircraft.trim(self.trim().target).ok()?;
+        Some(Self { aircraft, trim, ..self.clone() })
     }
 
     /// The aircraft of a time with that much fuel, as if it stayed so; nothing where it has no trim.

@@ -50,6 +50,22 @@ use crate::aircraft::AircraftPlant;
 use crate::controller::Controller;
 use crate::timing::Timing;
 use fspid_aircraft::ForceModel;
+use fspid_core::{Gains, Pid, PidConfig};
+
+/// What stands at a limit in a steady flight, so that no loop moves it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct AtLimits {
+    /// The throttle.
+    pub(crate) throttle: bool,
+    /// The pitch that is commanded.
+    pub(crate) pitch: bool,
+}
+
+/// A controller in the place of another that answers nothing.
+fn at_rest(controller: &Controller) -> Controller {
+    let config = PidConfig::sampled_every(controller.config().dt_s);
+    Pid::new(Gains { kp: 0.0, ki: 0.0, kd: 0.0 }, config).map_or(*controller, Controller::Fixed)
+}
 
 /// The autopilot around the pitch loop.
 #[derive(Clone, Debug, PartialEq)]
@@ -148,6 +164,44 @@ impl Autopilot {
     /// Numbers of the loops that a mode engages, the outermost first.
     pub(crate) fn outermost_first(&self, mode: usize) -> &[usize] {
         self.order.get(mode).map_or(&[], Vec::as_slice)
+    }
+
+    /// The same with nothing in a mode that moves what stands at a limit.
+    pub(crate) fn released(&self, mode: usize, at_limits: AtLimits) -> Self {
+        let mut other = self.clone();
+        let moves_it = |number: usize| match self.moves_in_the_end(number) {
+            Moves::Throttle => at_limits.throttle,
+            Moves::Pitch => at_limits.pitch,
+            Moves::Bank | Moves::Loop(_) => false,
+        };
+        if let Some(mode) = other.modes.get_mut(mode) {
+            mode.engaged.retain(|&number| !moves_it(number));
+            mode.total_energy &= !(at_limits.throttle && at_limits.pitch);
+        }
+        if let Some(order) = other.order.get_mut(mode) {
+            order.retain(|&number| !moves_it(number));
+        }
+        if let Some(total) = &mut other.total_energy {
+            let movers = [
+                (at_limits.throttle, &mut total.energy),
+                (at_limits.pitch, &mut total.distribution),
+            ];
+            for (_, mover) in movers.into_iter().filter(|(is_at_limit, _)| *is_at_limit) {
+                *mover = at_rest(mover);
+            }
+        }
+        other
+    }
+
+    /// What a loop moves, over those whose target it moves.
+    fn moves_in_the_end(&self, number: usize) -> Moves {
+        let mut moves = self.loops.get(number).map_or(Moves::Loop(number), |it| it.moves);
+        // There are no circles, so that this is enough.
+        for _ in 0..self.loops.len() {
+            let Moves::Loop(below) = moves else { break };
+            moves = self.loops.get(below).map_or(moves, |it| it.moves);
+        }
+        moves
     }
 
     /// The same with another controller in the place of one of its loops.

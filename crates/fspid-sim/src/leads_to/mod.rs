@@ -11,6 +11,7 @@ use fspid_aircraft::{Trim, TrimTarget};
 use fspid_core::Gains;
 
 use crate::aircraft::{AircraftPlant, Change, Standing};
+use crate::autopilot::AtLimits;
 use crate::controller::Controller;
 use crate::held_limits::pitches_at_the_end;
 use crate::led::Led;
@@ -26,6 +27,8 @@ pub(crate) struct Place {
     pub(crate) led: Option<Led>,
     /// The aircraft there; none where nothing is found within its limits.
     pub(crate) plant: Option<AircraftPlant>,
+    /// What of its mode stands at a limit there, and so moves nothing.
+    pub(crate) at_limits: AtLimits,
 }
 
 /// Places that differ by less, as a part of airspeed and in rad, were asked.
@@ -67,10 +70,12 @@ fn pitches_rad(
 
 /// True where two places are one.
 fn is_asked_by(one: &Place, other: &Place) -> bool {
-    let whose = |it: &Place| (it.standing, it.led.map(|led| led.mode));
+    let whose = |it: &Place| (it.standing, it.led.map(|led| led.mode), it.at_limits);
     let is_near = match (&one.plant, &other.plant) {
         (None, None) => true,
-        (Some(one), Some(other)) => is_same(&one.trim().target, &other.trim().target),
+        (Some(one), Some(other)) => {
+            one.aircraft() == other.aircraft() && is_same(&one.trim().target, &other.trim().target)
+        }
         _ => false,
     };
     whose(one) == whose(other) && is_near
@@ -87,7 +92,7 @@ fn places_of(walk: &Walk<'_>, standings: &[Standing]) -> Vec<Place> {
                 standing.by == Change::Fuel || walk.begins_s(mode) < standing.from_s;
             let from = if begins_before { before } else { own.get(mode.wrapping_sub(1)) };
             let there = walk.leads_to(standing, mode, from.copied().flatten().as_ref());
-            own.push(there.first().and_then(|(it, _)| (*it).ok()));
+            own.push(walk::straight(&there));
             let place = |it| walk.place((number, standing), mode, it);
             all.extend(there.into_iter().filter_map(place));
         }

@@ -1,17 +1,19 @@
 //! What is held in each mode, written by hand, and the places of which the trims of the aircraft know by themselves.
 
+mod limits;
+
 use fspid_aircraft::trim::{Held, Path, Power};
 use fspid_aircraft::{Trim, TrimTarget};
 use fspid_core::{ControllerSetting, Limits, PidConfig};
 
 use super::targets::{Targets, true_ones};
 use super::walk::{Engaged, Walk};
-use super::wanted::{Air, Nowhere, Seeker, Wanted, Way};
+use super::wanted::{Air, Nowhere, Seeker, There, Wanted, Way};
 use super::{Place, is_same, pitch_rad, places};
 use crate::aircraft::{AircraftPlant, Change, Standing};
 use crate::autopilot::{
-    Autopilot, Condition, Engagement, Entry, GlideSlope, Mode, Moves, OuterLoop, Quantity, Side,
-    TotalEnergy, Units,
+    AtLimits, Autopilot, Condition, Engagement, Entry, GlideSlope, Mode, Moves, OuterLoop,
+    Quantity, Side, TotalEnergy, Units,
 };
 use crate::in_tests::{
     ALTITUDE_M, DT_S, SPEED_M_S, braked, mode, navion, outer, pid, pitch, scenario,
@@ -153,7 +155,7 @@ fn walk(scenario: &Scenario) -> Walk<'_> {
 fn held(walk: &Walk<'_>, number: usize, from: Option<&Trim>) -> Wanted {
     let plant = navion();
     let (autopilot, mode) = walk.mode(number).expect("a mode");
-    let seeker = Seeker { plant: &plant, air: Air::default() };
+    let seeker = Seeker { plant: &plant, air: Air::default(), from_m_s: SPEED_M_S };
     let all = walk.held(&Engaged { autopilot, mode }, number, &walk.came(from), &seeker);
     assert_eq!(all.len(), 1, "every loop has an integral");
     all[0]
@@ -330,7 +332,7 @@ fn standing(plant: AircraftPlant) -> Standing {
 }
 
 /// Where a mode that holds a vertical speed by pitch leads, with these limits of its pitch.
-fn led(climb_m_s: f64, limits_rad: [f64; 2]) -> Result<Trim, Nowhere> {
+fn led(climb_m_s: f64, limits_rad: [f64; 2]) -> Result<There, Nowhere> {
     let mut loops = loops();
     let mut config = PidConfig::sampled_every(DT_S);
     limited(&mut config, limits_rad);
@@ -339,9 +341,9 @@ fn led(climb_m_s: f64, limits_rad: [f64; 2]) -> Result<Trim, Nowhere> {
         to_hold(mode("climb", &[VERTICAL_SPEED]), &[(Quantity::VerticalSpeed, climb_m_s)]);
     let scenario = scenario(navion(), Some(with_loops(loops, vec![to_climb])));
     let mut ends = walk(&scenario).leads_to(&standing(navion()), 0, None).into_iter();
-    let (end, leg) = ends.next().expect("an end");
-    assert_eq!((leg, ends.count()), (Leg::End, 0));
-    end
+    let end = ends.next().expect("an end");
+    assert_eq!((end.leg, ends.count()), (Leg::End, 0));
+    end.there
 }
 
 #[test]
@@ -360,11 +362,15 @@ fn a_path_is_held_as_far_as_its_pitch_may_be_commanded() {
         assert!(takes_rad * climb_m_s > 0.0 && takes_rad.abs() > 0.1 * deg, "{takes_rad}");
         // The same flight, to the bit: nothing else was looked for.
         let free = led(climb_m_s, [-0.2, 0.2]).expect("it flies");
+        assert_eq!(free.at_limits, AtLimits::default());
+        let free = free.trim;
         assert_eq!((free.target, free.point), (path.target, path.point));
         // Half of the pitch that it takes, from below and, of a climb, from above.
         let half_rad = 0.5 * takes_rad;
         let limits_rad = if climb_m_s < 0.0 { [half_rad, 0.2] } else { [-0.2, half_rad] };
         let cut = led(climb_m_s, limits_rad).expect("it flies");
+        assert_eq!(cut.at_limits, AtLimits { pitch: true, throttle: false });
+        let cut = cut.trim;
         assert!((pitch_rad(&cut) - pitch_rad(start) - half_rad).abs() < 1e-8);
         assert!((cut.point.throttle - start.point.throttle).abs() < 1e-9);
         let found_m_s = cut.target.airspeed_m_s * libm::sin(cut.target.flight_path_rad);

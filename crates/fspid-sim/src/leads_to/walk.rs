@@ -4,10 +4,10 @@ use fspid_aircraft::trim::Power;
 use fspid_aircraft::{Trim, TrimTarget};
 
 use super::targets::{Targets, true_ones, written};
-use super::wanted::{Air, Nowhere, Seeker, Wanted, Way};
+use super::wanted::{Air, Nowhere, Seeker, There, Wanted, Way};
 use super::{Place, is_same, pitch_rad};
 use crate::aircraft::{AircraftPlant, Standing};
-use crate::autopilot::{Autopilot, Mode, Moves, OuterLoop, Quantity};
+use crate::autopilot::{AtLimits, Autopilot, Mode, Moves, OuterLoop, Quantity, Side};
 use crate::controller::Controller;
 use crate::led::{Led, Leg};
 use crate::rest::has_integral;
@@ -18,6 +18,32 @@ const LASTS_S: f64 = 30.0;
 
 /// Lift over weight of a bank that is passed over: the airspeed that a turn takes differs by a fortieth then.
 const SLIGHT_LOAD: f64 = 1.05;
+
+/// A part of what a mode is flown through.
+#[derive(Clone, Debug)]
+pub(super) struct Stretch {
+    pub(super) there: Result<There, Nowhere>,
+    pub(super) leg: Leg,
+    /// What is flown there, where it is not the aircraft that the mode was asked with.
+    pub(super) plant: Option<AircraftPlant>,
+}
+
+impl Stretch {
+    fn of(leg: Leg, there: Result<There, Nowhere>) -> Self {
+        Self { there, leg, plant: None }
+    }
+
+    /// True where nothing stands at a limit.
+    fn is_free(&self) -> bool {
+        self.there.as_ref().is_ok_and(|it| it.at_limits == AtLimits::default())
+    }
+}
+
+/// Where a mode leads in straight flight, if it does.
+pub(super) fn straight(stretches: &[Stretch]) -> Option<Trim> {
+    let first = stretches.iter().find(|it| it.plant.is_none())?;
+    first.there.ok().map(|it| it.trim)
+}
 
 /// A scenario, the trim that it starts from, and what its modes are to hold.
 pub(super) struct Walk<'a> {
@@ -71,8 +97,9 @@ impl<'a> Walk<'a> {
         &self,
         (standing_number, standing): (usize, &Standing),
         number: usize,
-        (there, leg): (Result<Trim, Nowhere>, Leg),
+        stretch: Stretch,
     ) -> Option<Place> {
+        let Stretch { there, leg, plant: own } = stretch;
         let plant = standing.plant.as_ref()?;
         let is_mode = self.mode(number).is_some();
         if is_mode && standing.modes(self.scenario).iter().all(|(other, _)| *other != number) {
@@ -82,21 +109,40 @@ impl<'a> Walk<'a> {
             let target = self.most_telling(number);
             is_mode.then_some(Led { mode: number, target, airspeed_m_s, leg })
         };
-        let place = |led, plant| Some(Place { standing: standing_number, led, plant });
+        let place = |led, plant, at_limits| {
+            Some(Place { standing: standing_number, led, plant, at_limits })
+        };
         match there {
-            Ok(trim) if is_same(&trim.target, &plant.trim().target) => None,
-            Ok(trim) => place(led(Some(trim.target.airspeed_m_s)), Some(plant.at(trim))),
-            Err(Nowhere::NoFlight) => place(led(None), None),
+            Ok(There { trim, at_limits })
+                if own.is_none()
+                    && at_limits == AtLimits::default()
+                    && is_same(&trim.target, &plant.trim().target) =>
+            {
+                None
+            }
+            Ok(There { trim, at_limits }) => {
+                let plant = own.as_ref().unwrap_or(plant).at(trim);
+                place(led(Some(trim.target.airspeed_m_s)), Some(plant), at_limits)
+            }
+            Err(Nowhere::NoFlight) => place(led(None), None, AtLimits::default()),
             Err(Nowhere::NotAsked) => None,
         }
     }
 
-    /// The target of a mode that tells most of where it leads.
+    /// The target of a mode that tells most of where it leads, among those that no other loop moves.
     fn most_telling(&self, number: usize) -> Option<(Quantity, f64)> {
         use Quantity::{Airspeed, Altitude, FlightPath, VerticalSpeed};
         let targets = self.written.get(number)?;
+        let (autopilot, mode) = self.mode(number)?;
+        let is_moved = |quantity: Quantity| {
+            let mut engaged = mode.engaged.iter().filter(|&&number| {
+                autopilot.loops().get(number).is_some_and(|it| it.holds == quantity)
+            });
+            engaged.any(|&number| mode.moves_target(autopilot, number))
+        };
         [Airspeed, VerticalSpeed, FlightPath, Altitude]
             .into_iter()
+            .filter(|&quantity| !is_moved(quantity))
             .find_map(|quantity| Some((quantity, (*targets.get(quantity.place())?)?)))
     }
 
@@ -107,25 +153,38 @@ impl<'a> Walk<'a> {
         standing: &Standing,
         number: usize,
         from: Option<&Trim>,
-    ) -> Vec<(Result<Trim, Nowhere>, Leg)> {
-        let Some(plant) = &standing.plant else { return vec![(Err(Nowhere::NotAsked), Leg::End)] };
-        let seeker = Seeker { plant, air: self.air };
+    ) -> Vec<Stretch> {
+        let Some(plant) = &standing.plant else {
+            return vec![Stretch::of(Leg::End, Err(Nowhere::NotAsked))];
+        };
         let came = self.came(from);
+        let from_m_s = came.trim.target.airspeed_m_s;
+        let seeker = Seeker { plant, air: self.air, from_m_s };
         let Some((autopilot, mode)) = self.mode(number) else {
-            return vec![(seeker.end(&came.untouched(&seeker)), Leg::End)];
+            return vec![Stretch::of(Leg::End, seeker.end(&came.untouched(&seeker)))];
         };
         let engaged = Engaged { autopilot, mode };
-        if engaged.turns() && !engaged.holds_airspeed() && self.lasts(number) {
-            return vec![(Err(Nowhere::NoFlight), Leg::Turn)];
+        let turns = engaged.turns() && self.lasts(number);
+        if turns && !engaged.holds_airspeed() {
+            return vec![Stretch::of(Leg::Turn, Err(Nowhere::NoFlight))];
         }
         let mut held = self.held(&engaged, number, &came, &seeker);
         held.dedup();
-        let ends = held.iter().map(|wanted| (seeker.end(wanted), Leg::End));
+        let ends = held.iter().map(|wanted| Stretch::of(Leg::End, seeker.end(wanted)));
         let on_the_way = held.iter().filter_map(|wanted| {
-            let there = self.on_the_way(&engaged, wanted, &came, &seeker)?;
-            Some((there, Leg::OnTheWay))
+            let there = self.on_the_way(&engaged, number, wanted, &came, &seeker)?;
+            Some(Stretch::of(Leg::OnTheWay, there))
         });
-        ends.chain(on_the_way).collect()
+        let mut all: Vec<Stretch> = ends.chain(on_the_way).collect();
+        if turns {
+            // What stands at a limit in straight flight may be free in the turn, which is what lasts.
+            let is_straight = all.iter().all(Stretch::is_free);
+            all.retain(Stretch::is_free);
+            // As if every loop had an integral: what else it may be in between is more or less of the same turn.
+            let turn = held.first().map(|wanted| engaged.turning(wanted, &seeker));
+            all.extend(turn.filter(|turn| !(is_straight && turn.is_free())));
+        }
+        all
     }
 
     /// From where a mode is flown.
@@ -149,8 +208,12 @@ impl<'a> Walk<'a> {
         let ends = engaged.pitch().and_then(|it| it.ends());
         let range = ends.map(|ends| ends.map(|end| self.base_rad + end));
         let pitch_rad = range.filter(|_| engaged.holds().is_some());
+        let is_gathered =
+            matches!(engaged.holds(), Some(Quantity::Altitude | Quantity::GlideSlope));
         let with = |power| {
-            ways.iter().map(move |&way| Wanted { power, way, altitude_m, throttle, pitch_rad })
+            let wanted =
+                move |&way| Wanted { power, way, altitude_m, throttle, pitch_rad, is_gathered };
+            ways.iter().map(wanted)
         };
         powers.into_iter().flat_map(with).collect()
     }
@@ -224,11 +287,12 @@ impl<'a> Walk<'a> {
     fn on_the_way(
         &self,
         engaged: &Engaged<'_>,
+        number: usize,
         wanted: &Wanted,
         came: &Came,
         seeker: &Seeker<'_>,
-    ) -> Option<Result<Trim, Nowhere>> {
-        let left_m = wanted.altitude_m - came.trim.target.altitude_m;
+    ) -> Option<Result<There, Nowhere>> {
+        let left_m = wanted.altitude_m - self.enters_at_m(number, came);
         let way = self.way_there(engaged, left_m)?;
         let airspeed_m_s = self.start.target.airspeed_m_s;
         let commanded_m_s = match way {
@@ -239,11 +303,26 @@ impl<'a> Walk<'a> {
             }
             Way::Through(_) | Way::Airspeed(_) => return None,
         };
-        let there = seeker.end(&Wanted { way, ..*wanted }).map_err(|_| Nowhere::NoFlight);
-        let flown_m_s = there.as_ref().map_or(commanded_m_s, |it| seeker.climb_m_s(it));
-        // Who goes the other way, as far as pitch may go, never comes there.
-        let climb_m_s = if flown_m_s * left_m > 0.0 { flown_m_s } else { commanded_m_s };
+        let on_the_way = Wanted { way, is_gathered: false, ..*wanted };
+        let there = seeker.end(&on_the_way).map_err(|_| Nowhere::NoFlight);
+        let flown_m_s = there.as_ref().map_or(commanded_m_s, |it| seeker.climb_m_s(&it.trim));
+        // Who goes the other way, as far as pitch and throttle may go, never comes there.
+        let (climb_m_s, there) = match flown_m_s * left_m > 0.0 {
+            true => (flown_m_s, there),
+            false => (commanded_m_s, Err(Nowhere::NoFlight)),
+        };
         (left_m.abs() > LASTS_S * climb_m_s.abs()).then_some(there)
+    }
+
+    /// The altitude at which a mode begins: the one that lets it begin, or where the mode before it led.
+    fn enters_at_m(&self, number: usize, came: &Came) -> f64 {
+        let came_m = came.trim.target.altitude_m;
+        let conditions = self.mode(number).map_or(&[][..], |(_, mode)| &mode.entry.conditions);
+        let of_altitude = conditions.iter().filter(|it| it.quantity == Quantity::Altitude);
+        of_altitude.fold(came_m, |at_m, condition| match condition.side {
+            Side::Above => at_m.max(condition.value),
+            Side::Below => at_m.min(condition.value),
+        })
     }
 
     /// How an altitude is come to that is so far: as fast as the loop that holds it commands.
@@ -292,6 +371,7 @@ impl Came {
             altitude_m: self.trim.target.altitude_m,
             throttle: seeker.throttle(),
             pitch_rad: None,
+            is_gathered: false,
         }
     }
 }
@@ -355,8 +435,23 @@ impl Engaged<'_> {
 
     /// True where it flies a bank that is more than slight.
     fn turns(&self) -> bool {
-        let load = 1.0 / libm::cos(self.mode.bank_rad);
-        self.mover(Moves::Bank).is_none() && load > SLIGHT_LOAD
+        self.mover(Moves::Bank).is_none() && self.load() > SLIGHT_LOAD
+    }
+
+    /// Lift over weight in its bank.
+    fn load(&self) -> f64 {
+        1.0 / libm::cos(self.mode.bank_rad)
+    }
+
+    /// The turn that a mode flies, as a straight flight of an aircraft that is heavier by the load, which has the drag, the angle
+    /// of attack and the thrust of the turn.
+    fn turning(&self, wanted: &Wanted, straight: &Seeker<'_>) -> Stretch {
+        let plant = straight.plant.under_load(self.load());
+        let there = match &plant {
+            Some(plant) => Seeker { plant, ..*straight }.end(wanted),
+            None => Err(Nowhere::NoFlight),
+        };
+        Stretch { there, leg: Leg::InTurn, plant }
     }
 
     /// What it holds by pitch, in the end.

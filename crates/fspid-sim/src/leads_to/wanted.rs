@@ -1,16 +1,24 @@
 //! The trim problem of an autopilot mode: the quantities to be held, and the straight flight that holds them within the
-//! throttle's limits and along the ground track.
+//! limits of throttle and pitch and along the ground track.
 
 use fspid_aircraft::trim::{Held, Path, Power};
 use fspid_aircraft::{ForceModel, Trim};
 
 use super::{SAME, pitch_rad};
 use crate::aircraft::AircraftPlant;
+use crate::autopilot::AtLimits;
 use crate::math::sin_cos;
 use crate::scenario::Scenario;
 
 /// An angle over the ground is turned into one through the air by the airspeed that it makes: so often.
 const TURNS: usize = 12;
+
+/// So many airspeeds on the way to another one are asked whether the throttle suffices for it.
+const ON_THE_WAY: usize = 5;
+
+/// Who comes to another airspeed is taken to overshoot it by this part of the way, as throttles do that come from the other end of
+/// their travel: where the throttle does not bring it back from there, it stands at its end.
+const OVERSHOOT: f64 = 0.5;
 
 /// How the path is held.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,6 +45,15 @@ pub(super) struct Wanted {
     pub(super) throttle: [f64; 2],
     /// Least and largest pitch that is commanded, rad; none without an end.
     pub(super) pitch_rad: Option<[f64; 2]>,
+    /// True for an altitude or a beam, which a path that is not quite theirs leaves further with time.
+    pub(super) is_gathered: bool,
+}
+
+/// A flight that is found, and what stands at a limit in it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct There {
+    pub(super) trim: Trim,
+    pub(super) at_limits: AtLimits,
 }
 
 /// Why there is no place to be asked.
@@ -76,30 +93,46 @@ impl Air {
 pub(super) struct Seeker<'a> {
     pub(super) plant: &'a AircraftPlant,
     pub(super) air: Air,
+    /// The airspeed that there was before.
+    pub(super) from_m_s: f64,
 }
 
 impl Seeker<'_> {
     /// The flight in which this is held, or the pitch that may be commanded next to it.
-    pub(super) fn end(&self, wanted: &Wanted) -> Result<Trim, Nowhere> {
+    pub(super) fn end(&self, wanted: &Wanted) -> Result<There, Nowhere> {
         let none = match (wanted.way, wanted.power) {
             (Way::Pitch(_), Power::Throttle(_)) => Nowhere::NotAsked,
             _ => Nowhere::NoFlight,
         };
-        let found = self.powered(wanted, wanted.way).ok_or(none)?;
-        let theta_rad = pitch_rad(&found);
         // Further than the pitch that loops may command no path is held.
-        match wanted.pitch_rad.map(|[least, most]| theta_rad.max(least).min(most)) {
-            Some(kept_rad) if (kept_rad - theta_rad).abs() > SAME => {
-                self.powered(wanted, Way::Pitch(kept_rad)).ok_or(Nowhere::NotAsked)
-            }
-            _ => Ok(found),
+        let kept_rad = |trim: &Trim| {
+            let theta_rad = pitch_rad(trim);
+            let kept_rad = wanted.pitch_rad.map(|[least, most]| theta_rad.max(least).min(most))?;
+            ((kept_rad - theta_rad).abs() > SAME).then_some(kept_rad)
+        };
+        let keeping = |kept_rad: f64| {
+            let kept = self.powered(wanted, Way::Pitch(kept_rad)).ok_or(Nowhere::NotAsked)?;
+            Ok(There { at_limits: AtLimits { pitch: true, ..kept.at_limits }, ..kept })
+        };
+        // A path that pitch does not allow takes no throttle.
+        let free = self.along(wanted.power, wanted.way, wanted.altitude_m);
+        if let Some(kept_rad) = free.as_ref().and_then(kept_rad).filter(|_| !wanted.is_gathered) {
+            return keeping(kept_rad);
+        }
+        let found = self.powered(wanted, wanted.way).ok_or(none)?;
+        match kept_rad(&found.trim) {
+            None => Ok(found),
+            Some(_) if wanted.is_gathered => Err(Nowhere::NoFlight),
+            Some(kept_rad) => keeping(kept_rad),
         }
     }
 
-    /// With an airspeed as far as the throttle goes for it.
-    fn powered(&self, wanted: &Wanted, way: Way) -> Option<Trim> {
+    /// With an airspeed as far as the throttle goes for it, and where it comes to that from the one before.
+    fn powered(&self, wanted: &Wanted, way: Way) -> Option<There> {
+        let there =
+            |throttle| move |trim| There { trim, at_limits: AtLimits { throttle, pitch: false } };
         let found = self.along(wanted.power, way, wanted.altitude_m);
-        let Power::Airspeed(airspeed_m_s) = wanted.power else { return found };
+        let Power::Airspeed(airspeed_m_s) = wanted.power else { return found.map(there(false)) };
         let [least, most] = wanted.throttle;
         let is_within =
             |it: &Trim| it.point.throttle >= least - SAME && it.point.throttle <= most + SAME;
@@ -110,10 +143,50 @@ impl Seeker<'_> {
         // At its end a throttle stays where it leaves the airspeed short of what is held.
         let short = |it: &Trim| it.target.airspeed_m_s <= airspeed_m_s;
         let beyond = |it: &Trim| it.target.airspeed_m_s >= airspeed_m_s;
-        found
-            .filter(is_within)
-            .or_else(|| at(most).filter(short))
-            .or_else(|| at(least).filter(beyond))
+        // Where it is known which way it would have to go it stands at that end; else at either.
+        let at_most = || at(most).filter(short);
+        let at_least = || at(least).filter(beyond);
+        let found = match found {
+            Some(trim) if is_within(&trim) => {
+                Some(there(self.overshoots(wanted, way, &trim))(trim))
+            }
+            Some(trim) if trim.point.throttle > most => at_most().map(there(true)),
+            Some(_) => at_least().map(there(true)),
+            None => at_most().or_else(at_least).map(there(true)),
+        };
+        found.filter(|it| self.is_come_to(wanted, way, it.trim.target.airspeed_m_s))
+    }
+
+    /// The throttle that an airspeed takes.
+    fn takes(&self, airspeed_m_s: f64, way: Way, altitude_m: f64) -> Option<f64> {
+        let found = self.along(Power::Airspeed(airspeed_m_s), way, altitude_m)?;
+        Some(found.point.throttle)
+    }
+
+    /// True where the throttle does not bring an airspeed that is come to back from a little beyond it.
+    fn overshoots(&self, wanted: &Wanted, way: Way, trim: &Trim) -> bool {
+        let airspeed_m_s = trim.target.airspeed_m_s;
+        let [least, most] = wanted.throttle;
+        let away_m_s = airspeed_m_s - self.from_m_s;
+        let takes = self.takes(airspeed_m_s + OVERSHOOT * away_m_s, way, wanted.altitude_m);
+        away_m_s.abs() > SAME * airspeed_m_s
+            && takes.is_some_and(|takes| if away_m_s > 0.0 { takes < least } else { takes > most })
+    }
+
+    /// True where the throttle may be moved so far that every airspeed on the way from the one before to this one is left
+    /// towards it.
+    fn is_come_to(&self, wanted: &Wanted, way: Way, airspeed_m_s: f64) -> bool {
+        let away_m_s = airspeed_m_s - self.from_m_s;
+        if matches!(way, Way::Airspeed(_)) || away_m_s.abs() <= SAME * airspeed_m_s {
+            return true;
+        }
+        let [least, most] = wanted.throttle;
+        (0..ON_THE_WAY).all(|step| {
+            let part = step as f64 / ON_THE_WAY as f64;
+            let at_m_s = self.from_m_s + part * away_m_s;
+            let takes = self.takes(at_m_s, way, wanted.altitude_m);
+            takes.is_some_and(|takes| if away_m_s > 0.0 { takes < most } else { takes > least })
+        })
     }
 
     fn along(&self, power: Power, way: Way, altitude_m: f64) -> Option<Trim> {

@@ -1,6 +1,7 @@
 //! Flights behind limits that have not come to rest go on, whatever hides what comes of them: noise, few samples, a plant that
 //! holds by itself; and every command says the same of them.
 
+use fspid_sim::stability::doubt_when_flown;
 use fspid_sim::{Doubt, EndCause};
 use fspid_study::analysis::{Analysis, Question, Stability};
 use fspid_study::judgement::NotEvaluated;
@@ -38,6 +39,12 @@ anti_windup = { kind = "conditional" }
 fn diverges(text: &str, set: &[&str]) -> bool {
     let verdict = result(text, set).metrics.verdict;
     matches!(verdict, Verdict::EndedEarly(end) if end.cause == EndCause::Diverged)
+}
+
+/// What the flight itself says, whatever is known of where it leads.
+fn when_flown(text: &str, set: &[&str]) -> Option<Doubt> {
+    let scenario = study(text, set).scenario;
+    doubt_when_flown(&scenario, &scenario.controllers[0])
 }
 
 /// With a noise of a millionth of a degree, or of none, the flight that meets no limit was "stable", and diverged at 42 s.
@@ -418,10 +425,12 @@ fn a_swing_at_a_limit_of_an_outer_loop_leaves_the_flight_in_doubt() {
 fn a_speed_that_is_lost_at_a_limit_of_an_outer_loop_leaves_the_flight_in_doubt() {
     let level = include_str!("../data/level_at_the_throttle.toml");
     let of = |set: &[&str]| doubt(&result(level, set));
-    assert_eq!(of(&[]), Some(Doubt::SwingAtLimits));
+    // Where the mode leads is asked before the flight goes on.
+    assert!(matches!(of(&[]), Some(Doubt::Led { .. } | Doubt::LedNowhere(_))));
+    assert_eq!(when_flown(level, &[]), Some(Doubt::SwingAtLimits));
     assert!(diverges(level, &["loop.duration_s=400.0"]));
     // Lost within the flight it is in no less doubt.
-    assert_eq!(of(&["loop.duration_s=400.0"]), Some(Doubt::SwingAtLimits));
+    assert_eq!(when_flown(level, &["loop.duration_s=400.0"]), Some(Doubt::SwingAtLimits));
     let free = ["outer_loop.autothrottle.least=-0.5", "outer_loop.autothrottle.most=0.5"];
     assert_eq!(of(&free), None);
 }

@@ -242,6 +242,86 @@ fn a_turn_with_nobody_at_the_throttle_is_in_doubt() {
     assert_eq!(doubt(&result(&turn(45.0, &throttle([0.2, 0.02], [-0.5, 0.5], "")), &[])), None);
 }
 
+/// A flight of an autopilot that holds altitude, vertical speed and airspeed, with limits of pitch and throttle and what its second
+/// mode does.
+fn level([airspeed_m_s, most_deg, most]: [f64; 3], second: &str) -> String {
+    let engage = r#"["vertical speed", "altitude", "autothrottle"]"#;
+    let loops = format!(
+        r#"
+[[outer_loop]]
+name = "vertical speed"
+kind = "pid"
+holds = "vertical-speed"
+moves = "pitch"
+kp = 0.5
+ki = 0.5
+least = -10.0
+most = {most_deg:?}
+[[outer_loop]]
+{}[[outer_loop]]
+{}
+[[mode]]
+name = "level"
+engage = {engage}
+[[mode]]
+name = "second"
+engage = {engage}
+at_s = 5.0
+{second}
+"#,
+        altitude(2.5),
+        throttle([0.2, 0.02], [-0.14, most], ""),
+    );
+    let text = flight([0.82, 0.43], &loops)
+        .replace("altitude_m = 4000.0", "altitude_m = 305.0\nthrust = \"with-speed\"");
+    text.replace("airspeed_m_s = 42.0", &format!("airspeed_m_s = {airspeed_m_s:?}"))
+}
+
+/// "flown", stable, after half a minute of a turn that takes more throttle than its loop may give: it comes to the ground.
+#[test]
+fn a_turn_that_takes_more_than_the_throttle_may_give_is_in_doubt() {
+    let turn = |most: f64| level([42.0, 10.0, most], "bank_deg = 31.0");
+    let told = doubt(&result(&turn(0.05), &[]));
+    let (Some(Doubt::Led { led, .. }) | Some(Doubt::LedNowhere(led))) = told else {
+        panic!("{told:?}")
+    };
+    assert_eq!((led.mode, led.leg), (1, Leg::InTurn), "{led}");
+    assert!(led.to_string().contains("in its turn"), "{led}");
+    assert!(result(&turn(0.05), &LONG).trace.rows() < 19_000);
+    let enough = result(&turn(0.4), &[]);
+    assert_eq!((doubt(&enough), enough.at_rest.unstable), (None, None));
+    let flown = result(&turn(0.4), &LONG);
+    let airspeed_m_s = column(&flown.trace, "airspeed_m_s").last().copied();
+    assert!((airspeed_m_s.expect("flown") - 42.0).abs() < 0.1, "{airspeed_m_s:?}");
+}
+
+/// "flown", stable, of an altitude that is left for good, since pitch may not be commanded as high as a slower flight takes it.
+#[test]
+fn an_altitude_that_the_limits_of_pitch_do_not_hold_is_in_doubt() {
+    let slower = |most_deg: f64| level([54.0, most_deg, 0.5], "target = { airspeed_m_s = 44.0 }");
+    let told = doubt(&result(&slower(2.0), &[]));
+    let Some(Doubt::LedNowhere(led)) = told else { panic!("{told:?}") };
+    assert_eq!((led.mode, led.leg), (1, Leg::End), "{led}");
+    let sunk = result(&slower(2.0), &LONG);
+    let altitude_m =
+        |flown: &ControllerResult| *column(&flown.trace, "altitude_m").last().expect("flown");
+    assert!(altitude_m(&sunk) < 280.0, "{}", altitude_m(&sunk));
+    let enough = result(&slower(10.0), &[]);
+    assert_eq!((doubt(&enough), enough.at_rest.unstable), (None, None));
+    let held = altitude_m(&result(&slower(10.0), &LONG));
+    assert!((held - 305.0).abs() < 1.0, "{held}");
+}
+
+/// A throttle at its end was asked as if it held the airspeed: with it, an airspeed of which there is no flight was "stable".
+#[test]
+fn a_throttle_at_its_end_holds_no_airspeed() {
+    let faster = |most: f64| level([41.1, 10.0, most], "target = { airspeed_m_s = 43.2 }");
+    let told = doubt(&result(&faster(0.03), &["loop.duration_s=15.0"]));
+    assert!(matches!(told, Some(Doubt::Led { .. } | Doubt::LedNowhere(_))), "{told:?}");
+    let enough = result(&faster(0.4), &[]);
+    assert_eq!((doubt(&enough), enough.at_rest.unstable), (None, None));
+}
+
 /// Drawn flights, with limits and gains of everything around: what is not in doubt after half a minute is calm after seven.
 #[test]
 fn none_of_many_flights_that_are_called_stable_swings_later() {

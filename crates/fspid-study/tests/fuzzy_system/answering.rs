@@ -195,3 +195,15 @@ fn a_slice_is_drawn_with_its_names_and_refuses_what_is_not_there() {
     let question = SliceQuestion { x: Some("food"), y: Some("food"), ..SliceQuestion::default() };
     assert!(slice(&system, &question).is_err());
 }
+
+/// It was an empty picture, and the rules were said to have no answer.
+#[test]
+fn a_surface_is_not_drawn_at_a_number_that_is_none() {
+    let system = tip();
+    for value in ["nan", "inf", "-inf"] {
+        let fixed = values(&[&format!("food={value}")]);
+        let question = SliceQuestion { fixed: &fixed, ..SliceQuestion::default() };
+        let told = slice(&system, &question).expect_err("no number").to_string();
+        assert!(told.contains("allowed is a finite number"), "{told}");
+    }
+}

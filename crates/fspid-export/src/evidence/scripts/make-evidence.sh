@@ -105,11 +105,11 @@ if has frama-c; then
     asserted="$(sed -n 's/^ *Assertions *//p' results/eva.txt | tr -s ' ')"
     case "$asserted" in *" 0 unknown 0 invalid "*) all_valid=yes ;; *) all_valid=no ;; esac
     if ! grep -q " 0 wrong" results/sweep.txt; then
-        final="Not proved: Frama-C Eva gives ${alarms:-no count of} alarms, but it rests on a sweep: $(tail -1 results/sweep.txt)."
+        final="Not proved: Frama-C Eva gives ${alarms:-no count of} alarm(s), but it rests on a sweep: $(tail -1 results/sweep.txt)."
     elif [ "$alarms" = 0 ] && [ "$all_valid" = yes ]; then
         final="Proved by Frama-C Eva with the sweep beside it: 0 alarms, assertions $asserted, for every finite sample, for ever."
     else
-        final="Not proved: Frama-C Eva gives ${alarms:-no count of} alarms, assertions ${asserted:-none}; results/eva.txt."
+        final="Not proved: Frama-C Eva gives ${alarms:-no count of} alarm(s), assertions ${asserted:-none}; results/eva.txt."
     fi
     echo "$final"
 fi

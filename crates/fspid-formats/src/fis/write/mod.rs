@@ -141,7 +141,7 @@ fn measured(parts: &Parts, text: &str, losses: &mut Losses) {
         };
         let largest = written(largest);
         losses.note(format!(
-            "output `{name}`: answers differ by up to {largest} at {points} points of the ranges and above the worst{unanswered}"
+            "output `{name}`: answers differ by up to {largest} at {points} points of the ranges and near the worst of them, beyond the ranges not measured{unanswered}"
         ));
     }
 }

@@ -3,7 +3,7 @@
 use fspid_fuzzy::system::{Input, Membership, System, Universe};
 
 use super::{Question, Slice};
-use crate::fuzzy_system::answer::named;
+use crate::fuzzy_system::answer::{check, named};
 use fspid_diagnostics::known_words;
 use fspid_scenario::count;
 
@@ -53,6 +53,8 @@ impl<'a> Asking<'a> {
         let mut fixed = Vec::new();
         for (input, value) in given.iter().enumerate().filter(|(n, _)| !chosen.contains(n)) {
             let value = value.or_else(|| self.span(input, &spans).map(|span| span.middle()));
+            let asked = self.system.parts().inputs.get(input).zip(value);
+            self.problems.extend(asked.and_then(|(input, value)| check(input, value).err()));
             fixed.extend(value.map(|value| (input, value)));
         }
         let outputs = self.outputs(question.output);
