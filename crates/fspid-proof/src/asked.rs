@@ -27,7 +27,9 @@ impl Asked {
             .map_or(0.0, |[least, most]| least.abs().max(most.abs()));
         let range = Range {
             setpoint_rad: steady.largest_setpoint_rad().max(commanded_rad),
-            load_rad: steady.load_with_offsets_rad(plant, description.controller.config()),
+            // What holds the trim of an aircraft that has become another is held as a load is.
+            load_rad: steady.load_with_offsets_rad(plant, description.controller.config())
+                + plant.held_away_rad().abs(),
         };
         Self { range, left_out: left_out_of(scenario), commands: Commands::of(scenario) }
     }

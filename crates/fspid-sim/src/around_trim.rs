@@ -10,12 +10,12 @@ use crate::controller::Controller;
 use crate::error::SimError;
 use crate::in_flight::{Alone, poles_of_mode, radii_alone};
 use crate::leads_to::{Place, places};
-use crate::plant::Plant;
+use crate::plant::{LinearPlant, Plant};
 use crate::rest::{Doubt, Rest, RestPoint};
 use crate::scenario::Scenario;
 use crate::sensor::Seeing;
 use crate::stability::{
-    GrowthAtRest, MODE_RADIUS, Undecided, Unstable, doubling_s, growth_of_plant,
+    GrowthAtRest, MODE_RADIUS, Undecided, Unstable, doubling_s, growth_of_plant, holds,
 };
 
 /// A controller and the gains that it has at rest.
@@ -189,10 +189,27 @@ fn of_place(
             .and(alone(&own, (controller, gains))),
         // Who leaves the place within a few samples grows.
         Some(led) => of_mode(&own, led.mode, (controller, gains))
-            .unwrap_or_else(|_| doubted(grown(f64::INFINITY))),
+            .unwrap_or_else(|_| doubted(grown(f64::INFINITY)))
+            .and(by_what_is_held(&own, &linear, (controller, gains))?),
     };
     let certain = found.certain.map(|it| Undecided::at_trim(grown(it.spectral_radius)));
     Ok(certain.or(found.undecided))
+}
+
+/// What grows of the pitch loop by what is held, where it does not with the gains at rest: what grows with these, slowly, the
+/// mode may hold.
+fn by_what_is_held(
+    scenario: &Scenario,
+    linear: &LinearPlant,
+    (controller, gains): Held<'_>,
+) -> Result<GrowthAtRest, SimError> {
+    let rests = Rest::all(scenario, linear, controller, gains);
+    let is_asked = rests.iter().any(|rest| !rest.adds_nothing_to(gains))
+        && holds(scenario, linear, gains, controller.config());
+    match is_asked {
+        true => growth_of_plant(scenario, (0.0, linear), controller, gains),
+        false => Ok(GrowthAtRest::default()),
+    }
 }
 
 /// Why it is not decided where sensors that show motions otherwise change the answer.

@@ -103,6 +103,18 @@ pub struct LinearPlant {
     elevator_sign: ElevatorSign,
     gusts: Option<GustEntry>,
     is_between_slopes: bool,
+    away: Away,
+}
+
+/// How far the trim of an aircraft is from the one that its controllers count from, that of the start of the flight.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Away {
+    /// The command that holds it, rad, nose up positive.
+    pub(crate) command_rad: f64,
+    /// Its pitch, rad.
+    pub(crate) pitch_rad: f64,
+    /// Its throttle, in the measure of the model.
+    pub(crate) throttle: f64,
 }
 
 impl LinearPlant {
@@ -120,7 +132,8 @@ impl LinearPlant {
         if transfer_function.relative_degree() == 0 {
             return Err(SimError::NotStrictlyProper);
         }
-        Ok(Self { transfer_function, elevator_sign, gusts: None, is_between_slopes: false })
+        let (gusts, is_between_slopes, away) = (None, false, Away::default());
+        Ok(Self { transfer_function, elevator_sign, gusts, is_between_slopes, away })
     }
 
     /// The plant with transfer functions from the air's motion to pitch angle: numerators for
@@ -140,6 +153,34 @@ impl LinearPlant {
     #[must_use]
     pub(crate) fn between_slopes(self, is_between_slopes: bool) -> Self {
         Self { is_between_slopes, ..self }
+    }
+
+    /// The plant of a trim that is so far from the one that is counted from.
+    #[must_use]
+    pub(crate) fn being_away(self, away: Away) -> Self {
+        Self { away, ..self }
+    }
+
+    /// Command, rad from the trim of the start and nose up positive, that holds the pitch of the start about the plant's own trim:
+    /// 0 but for an aircraft that has become another or is led elsewhere.
+    ///
+    /// $$ u = u_{trim} - \frac{\theta_{trim}}{G(0)} $$
+    #[must_use]
+    pub fn held_away_rad(&self) -> f64 {
+        let Away { command_rad, pitch_rad, .. } = self.away;
+        if pitch_rad == 0.0 { command_rad } else { command_rad - pitch_rad / self.steady_gain() }
+    }
+
+    /// The plant whose elevator turns it so many times as much: what a gain in the loop makes of it.
+    ///
+    /// # Errors
+    /// [`SimError::Linear`] where its coefficients leave the range of numbers.
+    pub fn with_gain(&self, factor: f64) -> Result<Self, SimError> {
+        let (numerator, denominator) =
+            (self.transfer_function.numerator(), self.transfer_function.denominator());
+        let numerator: Vec<f64> = numerator.coefficients().iter().map(|it| factor * it).collect();
+        let transfer_function = TransferFunction::new(&numerator, denominator.coefficients())?;
+        Ok(Self { transfer_function, ..self.clone() })
     }
 
     /// True where its slopes are means over a kink of an aircraft's data, so that no small motion is its.

@@ -43,16 +43,32 @@ impl Scenario {
     #[must_use]
     pub fn resting(&self) -> Steady {
         let end_s = self.timing.end_s();
-        let stays = |shape: &Shape| match *shape {
-            Shape::Step { .. } | Shape::Ramp { .. } => true,
-            Shape::Pulse { at_s, width_s } => at_s + width_s > end_s,
-            Shape::Doublet { at_s, width_s } => at_s + 2.0 * width_s > end_s,
-            Shape::Square { at_s, half_period_s, .. } => at_s + half_period_s > end_s,
-            Shape::Sine { .. } | Shape::Noise { .. } => false,
-        };
         let setpoint_rad =
             if self.setpoint.is_sine() { [0.0; 2] } else { self.setpoint.ends_rad() };
-        Steady { setpoint_rad, ..self.steady_where(stays) }
+        Steady { setpoint_rad, ..self.steady_where(|shape| stays(shape, end_s)) }
+    }
+
+    /// Least and largest load of what the loop can come to rest under, with its sign: the command, rad and nose up positive, that
+    /// disturbances, biases and offsets of the pitch sensor ask for, each as far as it goes and nothing among it.
+    #[must_use]
+    pub fn resting_loads_rad(&self, plant: &LinearPlant) -> [f64; 2] {
+        let end_s = self.timing.end_s();
+        let ends = |entries: &[Entry]| self.ends(entries, |shape| stays(shape, end_s));
+        let with = |[least, most]: [f64; 2], constant: f64| {
+            [least + constant.min(0.0), most + constant.max(0.0)]
+        };
+        let sensor = self.surroundings.pitch_sensor;
+        let scale = 1.0 + sensor.map_or(0.0, |it| it.model().scale_error);
+        let at_the_elevator =
+            with(ends(&[Entry::Servo, Entry::Elevator]), self.actuator.bias_rad());
+        let seen = with(ends(&[Entry::Measurement]), sensor.as_ref().map_or(0.0, Sensor::bias));
+        let per_seen = 1.0 / (scale * plant.steady_gain());
+        let mut asked = [0.0; 2];
+        for (ends, factor) in [(at_the_elevator, -1.0), (seen, -per_seen)] {
+            let [one, other] = ends.map(|end| if end == 0.0 { 0.0 } else { factor * end });
+            asked = [asked[0] + one.min(other), asked[1] + one.max(other)];
+        }
+        asked
     }
 
     /// Set-point that stays when the flight has ended, rad from the trim; 0 of one that swings.
@@ -87,11 +103,27 @@ impl Scenario {
 
     /// Largest magnitude of the disturbances that enter at some places, noise left out.
     fn furthest(&self, entries: &[Entry], counts: impl Fn(&Shape) -> bool) -> f64 {
+        let [least, most] = self.ends(entries, counts);
+        least.abs().max(most)
+    }
+
+    /// Least and largest sum of the disturbances that enter at some places, noise left out; nothing lies between them.
+    fn ends(&self, entries: &[Entry], counts: impl Fn(&Shape) -> bool) -> [f64; 2] {
         let entering = self.disturbances.iter().filter(|one| entries.contains(&one.entry()));
         let parts = entering.map(Disturbance::part).filter(|(_, shape)| counts(shape));
         let parts: Vec<(f64, &Shape)> = parts.collect();
-        let [least, most] = extremes(&parts);
-        least.abs().max(most)
+        extremes(&parts)
+    }
+}
+
+/// True for what stays from some time on to the end of a flight.
+fn stays(shape: &Shape, end_s: f64) -> bool {
+    match *shape {
+        Shape::Step { .. } | Shape::Ramp { .. } => true,
+        Shape::Pulse { at_s, width_s } => at_s + width_s > end_s,
+        Shape::Doublet { at_s, width_s } => at_s + 2.0 * width_s > end_s,
+        Shape::Square { at_s, half_period_s, .. } => at_s + half_period_s > end_s,
+        Shape::Sine { .. } | Shape::Noise { .. } => false,
     }
 }
 

@@ -36,6 +36,7 @@ impl AircraftPlant {
         let [elevator, forward, down, pitch] = numerators;
         let plant = LinearPlant::new(&elevator, &denominator, ElevatorSign::NoseDownPositive)?;
         let plant = plant.with_gusts([&forward, &down, &pitch])?;
+        let plant = plant.being_away(self.away());
         Ok(plant.between_slopes(self.aircraft().has_kink_at(self.trim())))
     }
 

@@ -63,6 +63,8 @@ pub const MOST_STEP_S: f64 = 0.01;
 pub struct AircraftPlant {
     aircraft: Aircraft<Forces>,
     trim: Trim,
+    /// What controllers count from: the trim of the start of the flight, wherever it has led since.
+    counted_from: Trim,
     ground_altitude_m: Option<f64>,
     spool: Spool,
     lateral: Lateral,
@@ -96,6 +98,7 @@ impl AircraftPlant {
         Ok(Self {
             aircraft,
             trim,
+            counted_from: trim,
             changing,
             ground_altitude_m: None,
             spool: Spool::Instant,

@@ -4,7 +4,7 @@
 use fspid_aircraft::{Aircraft, Trim};
 
 use super::{AircraftPlant, Changing, Forces};
-use crate::plant::Plant;
+use crate::plant::{Away, Plant};
 use crate::scenario::Scenario;
 
 /// An aircraft that stays as it is, at its trim at the speed and altitude of the start.
@@ -70,6 +70,18 @@ impl AircraftPlant {
             all.push(Standing { by: Change::Fuel, from_s, until_s: f64::INFINITY, plant });
         }
         all
+    }
+
+    /// How far its trim is from the one that is counted from.
+    pub(crate) fn away(&self) -> Away {
+        let [here, start] = [&self.trim, &self.counted_from];
+        let pitch_rad = |trim: &Trim| trim.point.alpha_rad + trim.target.flight_path_rad;
+        Away {
+            // The trailing edge goes up where the command turns the nose up.
+            command_rad: start.point.elevator_rad - here.point.elevator_rad,
+            pitch_rad: pitch_rad(here) - pitch_rad(start),
+            throttle: here.point.throttle - start.point.throttle,
+        }
     }
 
     /// The aircraft where it has another trim.

@@ -84,7 +84,8 @@ const LADDER: u32 = 4;
 pub struct RestPoint {
     /// The set-point, rad from the trim.
     pub setpoint_rad: f64,
-    /// The load at the servo, rad, offsets of sensors counted as the command that they ask for.
+    /// The command, rad and nose up positive, that loads and offsets of the pitch sensor ask for, and that holds the trim of an
+    /// aircraft that has become another.
     pub load_rad: f64,
 }
 
@@ -215,8 +216,7 @@ impl Rest {
             return held.still_beside(still);
         }
         // A seen rate is no load here: it has its own place in the controller.
-        let config = PidConfig { rate_gain_s: 0.0, ..*fspid.config() };
-        let loads = either_way(steady.load_with_offsets_rad(plant, &config));
+        let loads = loads_rad(scenario, plant);
         let own = held.setpoints(&steady).into_iter().chain(scenario.setpoint.held_rad());
         let own = own.map(|setpoint_rad| (setpoint_rad, false));
         let commanded = scenario.commanded_rad().into_iter().flatten();
@@ -325,9 +325,11 @@ pub(crate) fn pitches_without_integral(
     }
 }
 
-/// Nothing, and so much to either side, where it is more than nothing.
-fn either_way(size: f64) -> Vec<f64> {
-    if size > 0.0 { vec![0.0, -size, size] } else { vec![0.0] }
+/// The loads under which a plant may rest, none and the largest to either side, with what holds an aircraft's trim away from that
+/// of the start.
+fn loads_rad(scenario: &Scenario, plant: &LinearPlant) -> Vec<f64> {
+    let ends = scenario.resting_loads_rad(plant).into_iter().filter(|load_rad| *load_rad != 0.0);
+    std::iter::once(0.0).chain(ends).map(|load_rad| plant.held_away_rad() + load_rad).collect()
 }
 
 /// True where no constant is multiplied by a gain that moves, and there is an integral that brings the error to zero.

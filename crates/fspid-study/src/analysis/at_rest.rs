@@ -16,7 +16,7 @@ pub fn held_in_words(at: RestPoint) -> String {
         [at.setpoint_rad, at.load_rad].map(|rad| to_six_decimals(degrees(rad)));
     let load = match at.load_rad == 0.0 {
         true => String::new(),
-        false => format!(" under a constant load of {load_deg} deg"),
+        false => format!(" and loads take {load_deg} deg of command"),
     };
     format!("while the set-point is held at {setpoint_deg} deg{load}")
 }

@@ -11,6 +11,7 @@ use fspid_sim::{
 };
 
 use super::Question;
+use super::ages;
 use super::answer::{Margins, poor_in_words};
 use super::at_rest::keeps_its_gains;
 use super::equilibrium::{Equilibrium, equilibrium};
@@ -245,11 +246,18 @@ impl RestLoop {
                 }
             }
             // Margins are of the largest age, which does not stay.
-            Ok(()) => sides.iter_mut().for_each(|side| {
-                if let Err(Absent::Unstable { spectral_radius }) = side.margins {
-                    side.margins = Err(Absent::OldestAge { spectral_radius });
+            Ok(()) => {
+                let asked = ages::Asked { scenario, plant, rest, controller };
+                for side in &mut sides {
+                    side.margins = match side.margins {
+                        Err(Absent::Unstable { spectral_radius }) => {
+                            Err(Absent::OldestAge { spectral_radius })
+                        }
+                        Ok(margins) if point == BreakPoint::Command => asked.borne(margins)?,
+                        other => other,
+                    };
                 }
-            }),
+            }
         }
         Ok(sides)
     }

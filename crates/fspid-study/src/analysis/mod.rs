@@ -8,6 +8,7 @@
 //! A self-tuning controller is analysed at the gains that it has at rest. That its gains move is not
 //! in these numbers: see the frozen-gain map for every gain it can have while they stand still.
 
+mod ages;
 mod answer;
 mod around;
 mod at_rest;

@@ -44,7 +44,7 @@ pub(super) fn rank_without_margins(reason: Absent) -> f64 {
             -3.0 - spectral_radius
         }
         Absent::Unstable { .. } => f64::NEG_INFINITY,
-        Absent::NotProved { .. } | Absent::OldestAge { .. } => -1.0,
+        Absent::NotProved { .. } | Absent::OldestAge { .. } | Absent::AgesAsTheyCome { .. } => -1.0,
         _ => -2.0,
     }
 }

@@ -24,7 +24,10 @@ impl Stability {
     pub fn of(margins: &Result<Margins, Absent>) -> Self {
         match margins {
             // Its poles tell; only how far it is from unstable is not proved, or of no age that lasts.
-            Ok(_) | Err(Absent::NotProved { .. } | Absent::OldestAge { .. }) => Self::Stable,
+            Ok(_)
+            | Err(
+                Absent::NotProved { .. } | Absent::OldestAge { .. } | Absent::AgesAsTheyCome { .. },
+            ) => Self::Stable,
             Err(Absent::Unstable { .. }) => Self::Unstable,
             Err(_) => Self::Undecided,
         }

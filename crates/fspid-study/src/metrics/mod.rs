@@ -14,6 +14,8 @@ pub use metric::{Bad, METRICS, Metric};
 pub(crate) use step::{SETTLING_BAND, is_seen_to_stay};
 pub use step::{StepMetrics, StepWindow};
 
+use std::fmt;
+
 use fspid_diagnostics::digits::to_six_decimals;
 use fspid_sim::{Doubt, EarlyEnd};
 
@@ -64,6 +66,14 @@ pub enum Absent {
         /// Spectral radius of the sampled closed loop with the largest age.
         spectral_radius: f64,
     },
+    /// Margins at the largest age of a sensor's values are not borne by the loop whose ages come as they do.
+    #[error(
+        "none: margins are taken with the largest age of what a sensor with a clock of its own shows, and with {within}, which they allow, the loop is unstable over the ages as they come"
+    )]
+    AgesAsTheyCome {
+        /// What it does not bear.
+        within: WithinMargins,
+    },
     /// The loop has so many states that nothing bounds its peaks from above.
     #[error("no bound of its peaks is proved: {order} states, samples of dead time included")]
     NotProved {
@@ -73,6 +83,24 @@ pub enum Absent {
     /// The controller has no rate loop that could be broken.
     #[error("the controller has no rate loop to break")]
     NoRateLoop,
+}
+
+/// A change of the loop that margins allow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum WithinMargins {
+    /// A gain, dB.
+    GainDb(f64),
+    /// A dead time, s.
+    DelayS(f64),
+}
+
+impl fmt::Display for WithinMargins {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::GainDb(gain_db) => write!(f, "{gain_db:+.1} dB of gain"),
+            Self::DelayS(delay_s) => write!(f, "{delay_s:.3} s of dead time"),
+        }
+    }
 }
 
 /// What is added of a response that is in its band at the end of its window.

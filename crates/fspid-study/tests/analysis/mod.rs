@@ -1,5 +1,6 @@
 //! Margins of scenarios: handbook values, loops that must not be called good, and the answer's shape.
 
+mod ages;
 mod answers;
 mod handbook;
 mod self_tuning;

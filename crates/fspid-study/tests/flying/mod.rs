@@ -12,6 +12,7 @@ mod flown_on;
 mod gains_at_rest;
 mod gallery;
 mod ground;
+mod held_away;
 mod limits;
 mod linear_file;
 mod loading;

@@ -17,7 +17,8 @@ use fspid_lti::{Complex, Matrix, eigenvalues, modulus};
 use super::numbers::Place;
 use super::still::{at_rest, still, unlimited};
 use super::{Asked, Small};
-use crate::autopilot::{Mode, Target};
+use crate::aircraft::AircraftPlant;
+use crate::autopilot::{Mode, Moves, Target};
 use crate::controller::Controller;
 use crate::error::SimError;
 use crate::rest::{Doubt, Found, Rest, Side, Stand, may_not_come_to_rest, stand_of_sides};
@@ -107,6 +108,15 @@ fn acting_loop<'a>(
         return None;
     }
     let [here, command] = small.held_by(autopilot, number)?;
+    // Pitch and throttle are counted from the trim of the start.
+    let away = asked.scenario.plant.aircraft().map(AircraftPlant::away).unwrap_or_default();
+    let command = command
+        + outer.units.moved
+            * match outer.moves {
+                Moves::Pitch => away.pitch_rad,
+                Moves::Throttle => away.throttle,
+                Moves::Bank | Moves::Loop(_) => 0.0,
+            };
     let mut targets = vec![here];
     if !mode.moves_target(autopilot, number) {
         // What a mode before this one held, this one may hold on.

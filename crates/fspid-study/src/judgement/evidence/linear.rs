@@ -216,9 +216,10 @@ fn of_rest(
 fn stable(rest: &RestLoop, place: CasePlace) -> Result<Case, NotEvaluated> {
     match rest.margins {
         // Whether it is stable is known without margins.
-        Ok(_) | Err(Absent::NotProved { .. } | Absent::OldestAge { .. }) => {
-            Ok(Case { value: 1.0, place })
-        }
+        Ok(_)
+        | Err(
+            Absent::NotProved { .. } | Absent::OldestAge { .. } | Absent::AgesAsTheyCome { .. },
+        ) => Ok(Case { value: 1.0, place }),
         Err(Absent::Unstable { spectral_radius }) => {
             let place = CasePlace { spectral_radius: Some(spectral_radius), ..place };
             Ok(Case { value: 0.0, place })
