@@ -39,10 +39,10 @@ impl Stretch {
     }
 }
 
-/// Where a mode leads in straight flight, if it does.
+/// Where a mode ends in straight flight, if it does.
 pub(super) fn straight(stretches: &[Stretch]) -> Option<Trim> {
-    let first = stretches.iter().find(|it| it.plant.is_none())?;
-    first.there.ok().map(|it| it.trim)
+    let end = stretches.iter().find(|it| it.leg == Leg::End)?;
+    end.there.ok().map(|it| it.trim)
 }
 
 /// A scenario, the trim that it starts from, and what its modes are to hold.

@@ -111,7 +111,9 @@ impl Seeker<'_> {
             ((kept_rad - theta_rad).abs() > SAME).then_some(kept_rad)
         };
         let keeping = |kept_rad: f64| {
-            let kept = self.powered(wanted, Way::Pitch(kept_rad)).ok_or(Nowhere::NotAsked)?;
+            let way = Way::Pitch(kept_rad);
+            let free = self.along(wanted.power, way, wanted.altitude_m);
+            let kept = self.powered(wanted, way, free).ok_or(Nowhere::NotAsked)?;
             Ok(There { at_limits: AtLimits { pitch: true, ..kept.at_limits }, ..kept })
         };
         // A path that pitch does not allow takes no throttle.
@@ -119,7 +121,7 @@ impl Seeker<'_> {
         if let Some(kept_rad) = free.as_ref().and_then(kept_rad).filter(|_| !wanted.is_gathered) {
             return keeping(kept_rad);
         }
-        let found = self.powered(wanted, wanted.way).ok_or(none)?;
+        let found = self.powered(wanted, wanted.way, free).ok_or(none)?;
         match kept_rad(&found.trim) {
             None => Ok(found),
             Some(_) if wanted.is_gathered => Err(Nowhere::NoFlight),
@@ -127,12 +129,12 @@ impl Seeker<'_> {
         }
     }
 
-    /// With an airspeed as far as the throttle goes for it, and where it comes to that from the one before.
-    fn powered(&self, wanted: &Wanted, way: Way) -> Option<There> {
+    /// With an airspeed as far as the throttle goes for it, and where it comes to that from the one before; `free` is what is found
+    /// with a throttle without limits.
+    fn powered(&self, wanted: &Wanted, way: Way, free: Option<Trim>) -> Option<There> {
         let there =
             |throttle| move |trim| There { trim, at_limits: AtLimits { throttle, pitch: false } };
-        let found = self.along(wanted.power, way, wanted.altitude_m);
-        let Power::Airspeed(airspeed_m_s) = wanted.power else { return found.map(there(false)) };
+        let Power::Airspeed(airspeed_m_s) = wanted.power else { return free.map(there(false)) };
         let [least, most] = wanted.throttle;
         let is_within =
             |it: &Trim| it.point.throttle >= least - SAME && it.point.throttle <= most + SAME;
@@ -146,7 +148,7 @@ impl Seeker<'_> {
         // Where it is known which way it would have to go it stands at that end; else at either.
         let at_most = || at(most).filter(short);
         let at_least = || at(least).filter(beyond);
-        let found = match found {
+        let found = match free {
             Some(trim) if is_within(&trim) => {
                 Some(there(self.overshoots(wanted, way, &trim))(trim))
             }
@@ -168,9 +170,11 @@ impl Seeker<'_> {
         let airspeed_m_s = trim.target.airspeed_m_s;
         let [least, most] = wanted.throttle;
         let away_m_s = airspeed_m_s - self.from_m_s;
+        if away_m_s.abs() <= SAME * airspeed_m_s {
+            return false;
+        }
         let takes = self.takes(airspeed_m_s + OVERSHOOT * away_m_s, way, wanted.altitude_m);
-        away_m_s.abs() > SAME * airspeed_m_s
-            && takes.is_some_and(|takes| if away_m_s > 0.0 { takes < least } else { takes > most })
+        takes.is_some_and(|takes| if away_m_s > 0.0 { takes < least } else { takes > most })
     }
 
     /// True where the throttle may be moved so far that every airspeed on the way from the one before to this one is left

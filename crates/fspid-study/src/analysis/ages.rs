@@ -11,7 +11,7 @@ const PARTS: [f64; 4] = [0.999, 0.75, 0.5, 0.25];
 /// Margins above are asked up to this, dB.
 const MOST_DB: f64 = 40.0;
 
-/// A loop at rest whose sensors may have clocks of their own.
+/// A loop at rest with a sensor whose values change their age.
 pub(super) struct Asked<'a> {
     pub(super) scenario: &'a Scenario,
     pub(super) plant: &'a LinearPlant,
@@ -22,19 +22,11 @@ pub(super) struct Asked<'a> {
 impl Asked<'_> {
     /// The margins, or why they are none.
     pub(super) fn borne(&self, margins: Margins) -> Result<Result<Margins, Absent>, SimError> {
-        if !self.has_changing_ages()? {
-            return Ok(Ok(margins));
-        }
         let within = match self.gain_not_borne(&margins)? {
             Some(gain_db) => Some(WithinMargins::GainDb(gain_db)),
             None => self.delay_not_borne(&margins)?.map(WithinMargins::DelayS),
         };
         Ok(within.map_or(Ok(margins), |within| Err(Absent::AgesAsTheyCome { within })))
-    }
-
-    fn has_changing_ages(&self) -> Result<bool, SimError> {
-        let Some(side) = self.rest.sides.first() else { return Ok(false) };
-        Ok(side.model(self.scenario, self.plant, self.controller)?.has_changing_ages())
     }
 
     /// The smallest of some gains within the margins with which the loop grows.

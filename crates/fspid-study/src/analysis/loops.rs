@@ -227,12 +227,15 @@ impl RestLoop {
         controller: &Controller,
         point: BreakPoint,
     ) -> Result<Vec<Self>, SimError> {
-        let of_side = |side: &Side| {
+        let mut has_changing_ages = false;
+        let mut of_side = |side: &Side| {
             let model = side.model(scenario, plant, controller)?;
+            has_changing_ages |= model.has_changing_ages();
             let open = model.sharpened(scenario, plant)?.open(side.gains, point)?;
             Self::of(rest.at, side.gains, open)
         };
-        let mut sides = rest.sides.iter().map(of_side).collect::<Result<Vec<Self>, SimError>>()?;
+        let mut sides =
+            rest.sides.iter().map(&mut of_side).collect::<Result<Vec<Self>, SimError>>()?;
         // Whether a rest holds is said of all its sides at once, as flights and requirements are told it.
         match verdict_of(scenario, plant, rest, controller)? {
             Err(reason) => {
@@ -253,7 +256,9 @@ impl RestLoop {
                         Err(Absent::Unstable { spectral_radius }) => {
                             Err(Absent::OldestAge { spectral_radius })
                         }
-                        Ok(margins) if point == BreakPoint::Command => asked.borne(margins)?,
+                        Ok(margins) if has_changing_ages && point == BreakPoint::Command => {
+                            asked.borne(margins)?
+                        }
                         other => other,
                     };
                 }
