@@ -1,5 +1,6 @@
 //! What is held in each mode, written by hand, and the places of which the trims of the aircraft know by themselves.
 
+mod air;
 mod limits;
 
 use fspid_aircraft::trim::{Held, Path, Power};
