@@ -89,8 +89,12 @@ fn a_turn_is_asked_where_nothing_ends_it_within_half_a_minute() {
         assert_eq!(found[0].leg == Leg::Turn, is_asked, "{at_s}");
     }
     let late = from(Mode { bank_rad: 0.8, ..mode("late", &[VERTICAL_SPEED]) }, 50.0, &[]);
-    let found = led(loops(), vec![mode("free", &[]), late], 1);
+    let found = led(loops(), vec![mode("free", &[]), late.clone()], 1);
     assert_eq!(found[0].leg, Leg::Turn);
+    for (at_s, is_asked) in [(70.0, false), (90.0, true)] {
+        let found = led(loops(), vec![mode("free", &[]), late.clone(), then(at_s, &[])], 1);
+        assert_eq!(found[0].leg == Leg::Turn, is_asked, "{at_s}");
+    }
     // Pitch that holds the airspeed holds it in a turn as well.
     let by_pitch = Mode { bank_rad: 0.8, ..mode("by pitch", &[SPEED_BY_PITCH]) };
     let found = led(loops(), vec![by_pitch], 0);
@@ -135,6 +139,39 @@ fn a_way_lasts_as_long_as_its_loop_lets_it() {
             None => gain * left_m,
         };
         assert!((climb_m_s - commanded_m_s).abs() < 1e-6, "{climb_m_s} {commanded_m_s}");
+    }
+}
+
+/// By a path or by the pitch itself, and with an integral at the end of what is allowed.
+#[test]
+fn a_way_is_as_steep_as_the_loop_below_lets_it() {
+    let start = navion();
+    let base_rad = pitch_rad(start.trim());
+    for (moves, below, end) in
+        [(Moves::Loop(FLIGHT_PATH), Some(FLIGHT_PATH), 0.03), (Moves::Pitch, None, 0.02)]
+    {
+        for (left_m, gains) in [
+            (600.0, [0.01, 0.0, 0.0]),
+            (-600.0, [0.01, 0.0, 0.0]),
+            (600.0, [1e-6, 1e-6, 0.0]),
+            (-600.0, [1e-6, 1e-6, 0.0]),
+        ] {
+            let mut loops = loops();
+            let mut config = PidConfig::sampled_every(DT_S);
+            limited(&mut config, [-end, end]);
+            loops[ALTITUDE].controller = pid(gains, config);
+            loops[ALTITUDE].moves = moves;
+            let engaged: Vec<usize> = [ALTITUDE, THROTTLE].into_iter().chain(below).collect();
+            let target = [(Quantity::Altitude, ALTITUDE_M + left_m)];
+            let found = led(loops, vec![to_hold(mode("to", &engaged), &target)], 0);
+            let way = found.iter().find(|it| it.leg == Leg::OnTheWay).expect("it lasts");
+            let trim = way.there.as_ref().expect("it flies").trim;
+            let found = match below {
+                Some(_) => trim.target.flight_path_rad,
+                None => pitch_rad(&trim) - base_rad,
+            };
+            assert!((found - end * left_m.signum()).abs() < 1e-6, "{moves:?} {left_m} {found}");
+        }
     }
 }
 

@@ -228,6 +228,11 @@ fn a_throttle_that_does_not_bring_back_an_overshoot_is_at_its_end() {
     let at_its_end = Ok(AtLimits { throttle: true, pitch: false });
     assert_eq!(level_at(to_m_s, from_m_s, [0.5, overshot - 0.01]), at_its_end);
     assert_eq!(level_at(to_m_s, from_m_s, [0.5, overshot + 0.01]), Ok(AtLimits::default()));
+    // Who speeds up on the back side overshoots to where less throttle would do.
+    let fastest = takes(42.0 + 0.5 * (42.0 - 34.0));
+    assert!(fastest < takes(42.0) - 0.002, "{fastest}");
+    assert_eq!(level_at(42.0, 34.0, [fastest + 0.001, 1.5]), at_its_end);
+    assert_eq!(level_at(42.0, 34.0, [fastest - 0.001, 1.5]), Ok(AtLimits::default()));
     // Who is there already overshoots nothing.
     assert_eq!(level_at(to_m_s, to_m_s, [0.5, overshot - 0.01]), Ok(AtLimits::default()));
 }
