@@ -62,7 +62,7 @@ impl fmt::Display for Led {
             ),
             None => write!(
                 f,
-                " leads {when} to no straight flight within the limits of the aircraft's data, its controls and its loops, with the throttle as it is where nobody moves it"
+                " leads {when} to no steady flight within the limits of the aircraft's data, its controls and its loops, with the throttle as it is where nobody moves it"
             ),
         }
     }

@@ -49,7 +49,7 @@ impl Scenario {
     }
 
     /// Least and largest load of what the loop can come to rest under, with its sign: the command, rad and nose up positive, that
-    /// disturbances, biases and offsets of the pitch sensor ask for, each as far as it goes and nothing among it.
+    /// disturbances, biases and offsets of the pitch sensor ask for, each as far as it goes; zero lies between them.
     #[must_use]
     pub fn resting_loads_rad(&self, plant: &LinearPlant) -> [f64; 2] {
         let end_s = self.timing.end_s();
@@ -107,7 +107,7 @@ impl Scenario {
         least.abs().max(most)
     }
 
-    /// Least and largest sum of the disturbances that enter at some places, noise left out; nothing lies between them.
+    /// Least and largest sum of the disturbances that enter at some places, noise left out; zero lies between them.
     fn ends(&self, entries: &[Entry], counts: impl Fn(&Shape) -> bool) -> [f64; 2] {
         let entering = self.disturbances.iter().filter(|one| entries.contains(&one.entry()));
         let parts = entering.map(Disturbance::part).filter(|(_, shape)| counts(shape));

@@ -47,7 +47,7 @@ pub(crate) use flight::{
 pub use forces::Forces;
 pub use leveller::{LEVELLING_TIME_S, WingLeveller, YawDamper};
 pub use linear::AfterBurning;
-pub(crate) use standing::{Change, Standing};
+pub(crate) use standing::{Change, Standing, pitch_rad};
 
 use fspid_aircraft::{Aircraft, Spool, Trim, TrimTarget};
 

@@ -7,6 +7,11 @@ use super::{AircraftPlant, Changing, Forces};
 use crate::plant::{Away, Plant};
 use crate::scenario::Scenario;
 
+/// Pitch angle of a trim, rad.
+pub(crate) fn pitch_rad(trim: &Trim) -> f64 {
+    trim.point.alpha_rad + trim.target.flight_path_rad
+}
+
 /// An aircraft that stays as it is, at its trim at the speed and altitude of the start.
 #[derive(Clone, Debug)]
 pub(crate) struct Standing {
@@ -75,7 +80,6 @@ impl AircraftPlant {
     /// How far its trim is from the one that is counted from.
     pub(crate) fn away(&self) -> Away {
         let [here, start] = [&self.trim, &self.counted_from];
-        let pitch_rad = |trim: &Trim| trim.point.alpha_rad + trim.target.flight_path_rad;
         Away {
             // The trailing edge goes up where the command turns the nose up.
             command_rad: start.point.elevator_rad - here.point.elevator_rad,

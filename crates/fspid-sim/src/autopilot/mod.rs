@@ -62,7 +62,7 @@ pub(crate) struct AtLimits {
 }
 
 /// A controller in the place of another that answers nothing.
-fn at_rest(controller: &Controller) -> Controller {
+fn silent(controller: &Controller) -> Controller {
     let config = PidConfig::sampled_every(controller.config().dt_s);
     Pid::new(Gains { kp: 0.0, ki: 0.0, kd: 0.0 }, config).map_or(*controller, Controller::Fixed)
 }
@@ -187,7 +187,7 @@ impl Autopilot {
                 (at_limits.pitch, &mut total.distribution),
             ];
             for (_, mover) in movers.into_iter().filter(|(is_at_limit, _)| *is_at_limit) {
-                *mover = at_rest(mover);
+                *mover = silent(mover);
             }
         }
         other

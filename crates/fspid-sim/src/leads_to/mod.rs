@@ -101,11 +101,6 @@ fn places_of(walk: &Walk<'_>, standings: &[Standing]) -> Vec<Place> {
     all
 }
 
-/// Pitch angle, rad.
-fn pitch_rad(trim: &Trim) -> f64 {
-    trim.point.alpha_rad + trim.target.flight_path_rad
-}
-
 fn is_same(one: &TrimTarget, other: &TrimTarget) -> bool {
     (one.airspeed_m_s / other.airspeed_m_s - 1.0).abs() <= SAME
         && (one.flight_path_rad - other.flight_path_rad).abs() <= SAME

@@ -10,8 +10,8 @@ use fspid_core::{ControllerSetting, Limits, PidConfig};
 use super::targets::{Targets, true_ones};
 use super::walk::{Engaged, Walk};
 use super::wanted::{Air, Nowhere, Seeker, There, Wanted, Way};
-use super::{Place, is_same, pitch_rad, places};
-use crate::aircraft::{AircraftPlant, Change, Standing};
+use super::{Place, is_same, places};
+use crate::aircraft::{AircraftPlant, Change, Standing, pitch_rad};
 use crate::autopilot::{
     AtLimits, Autopilot, Condition, Engagement, Entry, GlideSlope, Mode, Moves, OuterLoop,
     Quantity, Side, TotalEnergy, Units,

@@ -5,8 +5,8 @@ use fspid_aircraft::{Trim, TrimTarget};
 
 use super::targets::{Targets, true_ones, written};
 use super::wanted::{Air, Nowhere, Seeker, There, Wanted, Way};
-use super::{Place, is_same, pitch_rad};
-use crate::aircraft::{AircraftPlant, Standing};
+use super::{Place, is_same};
+use crate::aircraft::{AircraftPlant, Standing, pitch_rad};
 use crate::autopilot::{AtLimits, Autopilot, Mode, Moves, OuterLoop, Quantity, Side};
 use crate::controller::Controller;
 use crate::led::{Led, Leg};
@@ -64,7 +64,7 @@ impl<'a> Walk<'a> {
         Self {
             scenario,
             start,
-            base_rad: super::pitch_rad(&start) + pitch_rad,
+            base_rad: crate::aircraft::pitch_rad(&start) + pitch_rad,
             air: Air::of(scenario),
             written: autopilot.map(written).unwrap_or_default(),
             targets: autopilot.map(true_ones).unwrap_or_default(),

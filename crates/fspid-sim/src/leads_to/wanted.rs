@@ -4,8 +4,8 @@
 use fspid_aircraft::trim::{Held, Path, Power};
 use fspid_aircraft::{ForceModel, Trim};
 
-use super::{SAME, pitch_rad};
-use crate::aircraft::AircraftPlant;
+use super::SAME;
+use crate::aircraft::{AircraftPlant, pitch_rad};
 use crate::autopilot::AtLimits;
 use crate::math::sin_cos;
 use crate::scenario::Scenario;

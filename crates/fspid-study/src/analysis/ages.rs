@@ -10,6 +10,8 @@ use crate::metrics::{Absent, WithinMargins};
 const PARTS: [f64; 4] = [0.999, 0.75, 0.5, 0.25];
 /// Margins above are asked up to this, dB.
 const MOST_DB: f64 = 40.0;
+/// Most samples of a dead time that is asked: one that is longer is no question of ages.
+const MOST_SAMPLES: f64 = 50.0;
 
 /// A loop at rest with a sensor whose values change their age.
 pub(super) struct Asked<'a> {
@@ -51,7 +53,6 @@ impl Asked<'_> {
         let most = PARTS[0] * margins.delay_margin_s / dt_s;
         let own = self.scenario.actuator.delay_samples();
         let mut asked = PARTS.map(|part| (part / PARTS[0] * most).floor()).to_vec();
-        // A dead time that is as long as that is no question of ages.
         asked.retain(|samples| *samples >= 1.0 && *samples <= MOST_SAMPLES);
         asked.dedup();
         let mut found = None;
@@ -71,6 +72,3 @@ impl Asked<'_> {
         Ok(matches!(stand, Stand::Grows { .. } | Stand::Undecided(Doubt::ChangingAge)))
     }
 }
-
-/// Most samples of a dead time that is asked.
-const MOST_SAMPLES: f64 = 50.0;
