@@ -431,3 +431,19 @@ fn what_is_drawn_of_loads_is_named_beside_a_family() {
     let compared = ["certify", "--check", "c/pid.certificate.json", "--against", "drawn.toml"];
     assert_eq!(code(&fspid(&compared, path)), 0);
 }
+
+/// It was PROVED IN PART with an open family, and `check` refused it.
+#[test]
+fn a_dispersion_of_what_is_not_there_is_refused_before_anything_is_proved() {
+    let folder =
+        folder(&SCENARIO.replace("actuator.time_constant_s\"", "actuator.time_constants_s\""));
+    let refused = fspid(&["certify", "drawn.toml", "--family"], folder.path());
+    assert_eq!(code(&refused), 2);
+    let told = text(&refused.stderr);
+    assert!(
+        told.contains(
+            "there is no `actuator.time_constants_s`; did you mean `actuator.time_constant_s`?"
+        ),
+        "{told}"
+    );
+}

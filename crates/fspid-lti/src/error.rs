@@ -70,7 +70,7 @@ pub enum LtiError {
     },
     /// A result beyond the range of 64-bit floating point numbers.
     #[error(
-        "a {what} lies beyond the range of 64-bit floating point numbers; rescale the time or the units"
+        "the {what} lies beyond the range of 64-bit floating point numbers; rescale the time or the units"
     )]
     OutOfRange {
         /// Which result.

@@ -31,7 +31,35 @@ pub(crate) struct Dispersed {
     /// The key that says so, for messages.
     pub(crate) key: &'static str,
     pub(crate) runs: u64,
-    pub(crate) seed: u64,
+    pub(crate) seeds: Seeds,
+}
+
+/// Of which seed a case draws.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Seeds {
+    /// All cases of one, as a campaign of the scenario with it.
+    OfAll(u64),
+    /// Each case of its own, which comes of this one and its name.
+    OfEach(u64),
+}
+
+impl Seeds {
+    /// The seed of a case; as written without a name.
+    ///
+    /// Draws that all cases share would be in the error of every case and in none of their differences. And what was tuned on the
+    /// draws of a seed is not judged on them. Of a case its seed is the first 63 bits of the SHA-256 of `contest draws`, of the
+    /// decimals of the contest's seed and of the case's name, with a line feed between each.
+    fn of(self, case: Option<&str>) -> u64 {
+        match self {
+            Self::OfAll(seed) => seed,
+            Self::OfEach(seed) => {
+                let name = case.unwrap_or_default();
+                let digest = Sha256::digest(format!("contest draws\n{seed}\n{name}"));
+                let (first, _) = digest.split_first_chunk().unwrap_or((&[0; 8], &[]));
+                u64::from_be_bytes(*first) >> 1
+            }
+        }
+    }
 }
 
 /// A case that is flown: its scenario with one controller, and what each of its runs draws.
@@ -318,8 +346,11 @@ pub(crate) fn flown_case(
                 allowed: "0 where the scenario has no [[dispersion]]".to_owned(),
             });
         }
-        // Of the whole scenario: everybody gets the same draws, and a campaign of the scenario as well.
-        runs => Some(Draws::new(whole, Sampling::LatinHypercube, runs, dispersed.seed)?),
+        // Of the whole scenario: everybody gets the same draws, and a campaign of it with this seed as well.
+        runs => {
+            let seed = dispersed.seeds.of(case.map(|it| it.name.as_str()));
+            Some(Draws::new(whole, Sampling::LatinHypercube, runs, seed)?)
+        }
     };
     let runs = match &draws {
         None => vec![Vec::new()],

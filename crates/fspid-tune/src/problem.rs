@@ -14,7 +14,9 @@ use fspid_study::output::{Names, Place};
 use crate::crew::{Crew, Part};
 use crate::design::{self, Original};
 use crate::error::TuneError;
-use crate::flights::{Asked, Dispersed, Flights, FlownCase, each_once, flown_cases, hex_digest};
+use crate::flights::{
+    Asked, Dispersed, Flights, FlownCase, Seeds, each_once, flown_cases, hex_digest,
+};
 use crate::flyer::Flyer;
 use crate::score::{FlightScore, Score};
 use crate::source::Source;
@@ -53,7 +55,11 @@ impl TuningProblem {
         }
         template.check_free(&parameters, TunedIn::Tuning)?;
         template.only(&controller)?.check_marks()?;
-        let dispersed = Dispersed { key: "tuning.runs", runs: tuning.runs, seed: tuning.run_seed };
+        let dispersed = Dispersed {
+            key: "tuning.runs",
+            runs: tuning.runs,
+            seeds: Seeds::OfAll(tuning.run_seed),
+        };
         let flyer = Flyer { controller: &controller, free: &parameters };
         let cases = flown_cases(source, flyer, &tuning.cases, dispersed)?;
         let digest = digest(&parameters, &tuning, &cases);
@@ -177,11 +183,12 @@ impl TuningProblem {
         &self.flights
     }
 
-    /// What is said of a candidate's loop at rest, as often as it differs: its gains there, and a constant load that it
-    /// does not remove.
+    /// What is said of a candidate's loop at rest, as often as it differs: its gains there, a constant load that it does not
+    /// remove, and why nobody can tell whether it is stable, there or where its flights lead, with the cases of which that is so.
     #[must_use]
     pub fn at_rest(&self, point: &[f64]) -> Vec<String> {
         let mut told: Vec<String> = Vec::new();
+        let mut doubts: Vec<(String, Vec<&str>)> = Vec::new();
         for (case, run) in self.flights.jobs() {
             let Ok(study) = self.flights.study(point, case, run) else { continue };
             let Some(named) = study.scenario.controllers.first() else { continue };
@@ -194,7 +201,25 @@ impl TuningProblem {
                     told.push(words);
                 }
             }
+            let Some(doubt) = at_rest.as_flown(&study.scenario, named).undecided_in_words() else {
+                continue;
+            };
+            let place = doubts.iter().position(|(words, _)| *words == doubt);
+            let place = place.unwrap_or_else(|| {
+                doubts.push((doubt, Vec::new()));
+                doubts.len() - 1
+            });
+            if !doubts[place].1.contains(&case.name.as_str()) {
+                doubts[place].1.push(&case.name);
+            }
         }
+        let doubted = doubts.into_iter().map(|(words, cases)| match cases.as_slice() {
+            [first, others @ ..] if !others.is_empty() => {
+                format!("{first} and {} more: {words}", others.len())
+            }
+            cases => format!("{}: {words}", cases.concat()),
+        });
+        told.extend(doubted);
         told
     }
 

@@ -385,3 +385,52 @@ fn of_a_front_of_the_worst_flights_the_design_is_said_to_be_what_it_is() {
         assert!(text.contains(words) && !text.contains("the one with the least"), "{text}");
     }
 }
+
+/// The design that was found is lost after 303 s, ten times its flights, and nothing was said of it.
+#[test]
+fn a_design_of_which_nobody_can_tell_whether_it_is_stable_is_told_so() {
+    let case = |name: &str, duration_s: u32| {
+        format!("\n[[tuning.case]]\nname = \"{name}\"\nset = [\"loop.duration_s={duration_s}\"]\n")
+    };
+    let text = HELD_BEYOND_A_LIMIT.to_owned() + &case("short", 20) + &case("long", 25);
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let path = folder.path().join("held.toml");
+    std::fs::write(&path, text).expect("a file");
+    let problem = TuningProblem::new(&Source { path, overrides: Vec::new() }, None).expect("good");
+    let told = problem.at_rest(&problem.space().start());
+    let doubts: Vec<&String> = told.iter().filter(|it| it.contains("undecided")).collect();
+    assert_eq!(doubts.len(), 1, "{told:?}");
+    let said =
+        "short and 1 more: stability at rest: undecided: the plant does not come to rest by itself";
+    assert!(doubts[0].starts_with(said), "{told:?}");
+}
+
+/// An unstable plant that a controller holds behind a limit until it is lost.
+const HELD_BEYOND_A_LIMIT: &str = r#"
+schema = 1
+name = "held beyond its limit"
+[plant]
+numerator = [1.0]
+denominator = [1.0, 0.95, -0.05]
+elevator_sign = "nose-up-positive"
+[actuator]
+time_constant_s = 0.05
+[loop]
+sample_period_s = 0.02
+duration_s = 20.0
+[setpoint]
+kind = "step"
+amplitude_deg = 10.0
+[[controller]]
+name = "B"
+kind = "pid"
+kp = { tune = [0.6, 1.2], start = 0.8 }
+ki = 0.0
+kd = 0.5
+setpoint_weights = { proportional = 0.9375, derivative = 0.0 }
+output_limits_deg = [-0.49, 5.0]
+[tuning]
+constant_load = "ignored"
+[[tuning.objective]]
+measure = "iae_deg_s"
+"#;

@@ -17,7 +17,7 @@ use fspid_certify::{
     NotWritable, Question, Subject, Wrong, check_text,
 };
 use fspid_diagnostics::lines;
-use fspid_scenario::file::{self, Study, Template};
+use fspid_scenario::file::{self, Problems, Study, Template};
 use fspid_study::{output, shell};
 use fspid_tune::problems_of_certified;
 
@@ -116,6 +116,11 @@ fn prove(path: &Path, arguments: &Arguments) -> Result<(), Failure> {
     if let Some(name) = only.filter(|name| !names.contains(name)) {
         let known = file::known_words(name, &names);
         return Err(Failure::input(format_args!("there is no controller `{name}`{known}")));
+    }
+    if arguments.family {
+        // A dispersion that draws nothing of the scenario is a mistake, and no answer about a family.
+        let wrong = |it: Problems| Failure::of_input(&it, Some(it.to_json()));
+        template.check_dispersions().map_err(wrong)?;
     }
     let telling = Telling::for_standard_error();
     if let Some(which) = arguments.cases {

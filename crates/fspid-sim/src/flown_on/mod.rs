@@ -1,11 +1,13 @@
-//! Extended simulation of a flight behind limits that has not come to rest, or ends in a limit cycle: does it settle when the
-//! simulation continues past the end of the flight?
+//! Extended simulation of a flight behind limits, or with gains that move, that has not come to rest, or ends in a limit cycle:
+//! does it settle when the simulation continues past the end of the flight?
 //!
 //! Around a rest that limits leave, small motions decay; a swing that meets limits may grow from there on, or stay. Of such a
 //! flight nothing at rest speaks, so that it is flown on: with what is held at its end, and with what swings, and once without
-//! what moves it, which would hide a swing that stays. A sample guard is a limit too: beyond it a command is held for good.
+//! what moves it, which would hide a swing that stays. A sample guard is a limit too: beyond it a command is held for good. So
+//! are gains that move: around a rest they are those there.
 
 mod moved;
+mod moving_gains;
 mod pieces;
 #[cfg(test)]
 mod tests;
@@ -22,6 +24,7 @@ use crate::scenario::Scenario;
 use crate::signal::{Disturbance, Entry};
 use crate::trace::{EndCause, Outcome, Trace};
 use moved::{Afterwards, Moved, changes_late, has_swings, held_on, is_noisy};
+use moving_gains::MovingGains;
 use pieces::{Pieces, Shown};
 
 /// So many times as long a flight is flown on.
@@ -36,7 +39,8 @@ const LEAST_FIFTH: usize = 10;
 const PERIODS: f64 = 2.0;
 
 /// Why a flight behind limits is in doubt: it is lost, or it has not come to rest, and flown on is lost, or still meets limits in
-/// a swing that does not shrink, or is held by its sample guard.
+/// a swing that does not shrink, or is held by its sample guard. One with gains that move, limits or none, has to come back
+/// towards its rest as well.
 ///
 /// A nonlinear aircraft that is flown on is asked for a swing that stays at limits alone, for it has slow motions beside: what it
 /// comes to without one is told by where its flight leads. In moving air, which is that of a way that ends with the flight, and of
@@ -50,7 +54,8 @@ pub(crate) fn doubt(
     let rows = scenario.timing.rows();
     let ends = Ends::of(scenario, controller);
     let is_free = ends.are_none() && scenario.autopilot.is_none();
-    if is_free && !sample_guard::is_set(controller) {
+    let gains = MovingGains::of(scenario, controller);
+    if is_free && gains.is_none() && !sample_guard::is_set(controller) {
         return None;
     }
     let is_linear = scenario.plant.linear().is_some();
@@ -61,8 +66,9 @@ pub(crate) fn doubt(
             let moved = moved_in_flight(scenario);
             let swings_itself = moves().is_some_and(|moves| pieces.swings_on(moved, moves));
             is_lost(trace.outcome, swings_itself, &pieces)
+                || gains.is_some() && diverged(trace.outcome)
         };
-        return is_of_limits.then_some(Doubt::SwingAtLimits);
+        return is_of_limits.then(|| of_limits_or_gains(gains, &pieces));
     }
     if has_come_to_rest(scenario, &pieces, trace) {
         return None;
@@ -76,14 +82,18 @@ pub(crate) fn doubt(
     // One that is as long as that is its own answer.
     if !flies_on || rows > SAMPLES[1] {
         let is_asked_for_rest = is_linear && flies_on;
-        let goes_on =
-            if is_asked_for_rest { pieces.goes_on(moved, moves) } else { swings_itself() };
-        return goes_on.then_some(Doubt::SwingAtLimits);
+        let goes_on = if is_asked_for_rest {
+            pieces.goes_on(moved, moves) || have_left(gains, &pieces, moved)
+        } else {
+            swings_itself()
+        };
+        return goes_on.then(|| of_limits_or_gains(gains, &pieces));
     }
     // At a limit that it has met once, noise may carry a plant that runs away over the edge; any other that still meets them.
     let meets = if moves == Moves::Away { pieces.whole().meets() } else { pieces.tail().meets() };
-    // An aircraft that no longer meets limits is on its way to the rest that holds.
-    if !(is_linear || meets || changes_late) {
+    // An aircraft that no longer meets limits, with the gains of its rest, is on its way to the rest that holds.
+    let wanders = gains.is_some() && !MovingGains::stand(&pieces);
+    if !(is_linear || meets || changes_late || wanders) {
         return None;
     }
     let swings_itself = !is_linear && swings_itself();
@@ -94,7 +104,8 @@ pub(crate) fn doubt(
     ];
     let mut asked = ways.into_iter().filter(|(_, is_asked)| *is_asked);
     asked.find_map(|(afterwards, _)| {
-        doubt_flown_on(scenario, controller, &ends, Asked { afterwards, moves, swings_itself })
+        let asked = Asked { afterwards, moves, gains, swings_itself };
+        doubt_flown_on(scenario, controller, &ends, asked)
     })
 }
 
@@ -149,9 +160,14 @@ fn has_come_to_rest(scenario: &Scenario, pieces: &Pieces<'_>, trace: &Trace) -> 
 /// True where a flight holds some periods of everything that swings.
 fn has_shown_its_swings(scenario: &Scenario) -> bool {
     let end_s = scenario.timing.end_s();
-    let of_disturbances = scenario.disturbances.iter().filter_map(Disturbance::period_s);
-    let mut periods = of_disturbances.chain(scenario.setpoint.period_s());
+    let mut periods = periods_s(scenario);
     periods.all(|(from_s, period_s)| from_s > end_s || from_s + PERIODS * period_s <= end_s)
+}
+
+/// From when on, and with what period, set-point and disturbances swing, s.
+fn periods_s(scenario: &Scenario) -> impl Iterator<Item = (f64, f64)> {
+    let of_disturbances = scenario.disturbances.iter().filter_map(Disturbance::period_s);
+    of_disturbances.chain(scenario.setpoint.period_s())
 }
 
 /// How many samples a flight of so many is flown on to, and how many are a piece of that.
@@ -165,6 +181,7 @@ fn lengths(rows: usize) -> [usize; 2] {
 struct Asked {
     afterwards: Afterwards,
     moves: Moves,
+    gains: Option<MovingGains>,
     /// It is that of an aircraft, and ends in a swing at limits; whoever flies on without it has left it behind.
     swings_itself: bool,
 }
@@ -174,7 +191,7 @@ fn doubt_flown_on(
     scenario: &Scenario,
     controller: &Controller,
     ends: &Ends,
-    Asked { afterwards, moves, swings_itself }: Asked,
+    Asked { afterwards, moves, gains, swings_itself }: Asked,
 ) -> Option<Doubt> {
     let of_its_own = swings_itself.then_some(Doubt::SwingAtLimits);
     let rows = scenario.timing.rows();
@@ -207,13 +224,34 @@ fn doubt_flown_on(
         || moved == Moved::ByNoise && own.is_some_and(|own| pieces.has_doubled_since(own));
     let goes_on = || match scenario.plant.linear() {
         Some(_) => outcome != Outcome::Completed || pieces.goes_on(moved, moves) || has_grown(),
-        None => pieces.swings_on(moved, moves) || is_lost(outcome, swings_itself, &pieces),
+        None => {
+            pieces.swings_on(moved, moves)
+                || is_lost(outcome, swings_itself, &pieces)
+                || gains.is_some() && diverged(outcome)
+        }
     };
+    let is_in_doubt = || goes_on() || have_left(gains, &pieces, moved);
     match (is_held, rested) {
         (true, _) => Some(Doubt::HeldByGuard),
         (false, true) => None,
-        (false, false) => goes_on().then_some(Doubt::SwingAtLimits),
+        (false, false) => is_in_doubt().then(|| of_limits_or_gains(gains, &pieces)),
     }
+}
+
+fn have_left(gains: Option<MovingGains>, pieces: &Pieces<'_>, moved: Moved) -> bool {
+    gains.is_some_and(|it| it.have_left(pieces, moved))
+}
+
+/// By what a flight is in doubt that has not come back to its rest: by gains that move, where no limit is met near its end.
+fn of_limits_or_gains(gains: Option<MovingGains>, pieces: &Pieces<'_>) -> Doubt {
+    match gains {
+        Some(_) if !pieces.tail().meets() => Doubt::AwayFromRest,
+        _ => Doubt::SwingAtLimits,
+    }
+}
+
+fn diverged(outcome: Outcome) -> bool {
+    matches!(outcome, Outcome::EndedEarly(end) if end.cause == EndCause::Diverged)
 }
 
 /// True of an aircraft that ends early out of a swing at limits, or on its back at them; without either it comes down to the ground

@@ -93,7 +93,7 @@ impl Span {
         met: 0,
     };
 
-    fn and(self, other: Self) -> Self {
+    pub(super) fn and(self, other: Self) -> Self {
         Self {
             error: self.error.and(other.error),
             way_rad: self.way_rad + other.way_rad,
@@ -109,13 +109,21 @@ impl Span {
         self.met > 0
     }
 
+    pub(super) fn error_size_rad(self) -> f64 {
+        self.error.size_rad()
+    }
+
+    pub(super) const fn samples(self) -> usize {
+        self.samples
+    }
+
     /// True where a limit was met for so long that what moves is a swing at it.
     const fn is_at_limits(self) -> bool {
         self.met * AT_LIMITS >= self.samples
     }
 
     /// True where the error went there and back: what drifts one way at a limit is no swing.
-    fn turns(self) -> bool {
+    pub(super) fn turns(self) -> bool {
         self.way_rad >= TURNS * self.error.size_rad()
     }
 
@@ -210,13 +218,25 @@ impl<'a> Pieces<'a> {
 
     /// True where little is left of a beginning, under noise.
     pub(super) fn is_quiet(&self) -> bool {
-        self.tail().error.size_rad() <= QUIET * self.whole().error.size_rad()
+        self.has_moved_by_at_most(QUIET)
     }
 
     /// The flight in five parts.
     fn fifths(&self) -> [Span; 5] {
         let pieces = self.all.len();
         std::array::from_fn(|part| Span::of(&self.all[part * pieces / 5..(part + 1) * pieces / 5]))
+    }
+
+    /// The last two of five parts; none of fewer pieces than that.
+    pub(super) fn last_fifths(&self) -> Option<[Span; 2]> {
+        let [.., fourth, fifth] = self.fifths();
+        (self.all.len() >= 5).then_some([fourth, fifth])
+    }
+
+    /// True where the error moves near the end by no more than a share of all its movement, or than its sensor sees.
+    pub(super) fn has_moved_by_at_most(&self, share: f64) -> bool {
+        let moves_rad = self.tail().error.size_rad();
+        moves_rad <= self.unseen_rad.max(share * self.whole().error.size_rad())
     }
 
     /// True where limits are still met near the end of a flight that was flown on, and the error moves there as one does that

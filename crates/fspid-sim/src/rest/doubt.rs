@@ -172,6 +172,11 @@ pub enum Doubt {
         "limits are met, and the flight does not settle, nor when it is flown on (in still air, for ten times as long): it swings on between them or is lost, as a longer flight shows; wider limits, smaller or slower commands, or lower gains may hold it"
     )]
     SwingAtLimits,
+    /// A flight whose gains move is lost or, flown on, does not come back to the rest around which the loop holds.
+    #[error(
+        "around its rest the loop holds, with the gains there; this flight, flown on (in still air, for ten times as long), is lost or swings on, for away from the rest the gains are others: smaller commands, smaller output scales, or gain_limits that keep the gains where the loop holds (ki above 0 first of all) bring it back"
+    )]
+    AwayFromRest,
 }
 
 /// A spectral radius; who leaves a rest within the few samples that were flown has none that is a number.
@@ -183,7 +188,7 @@ fn in_words(spectral_radius: f64) -> String {
 }
 
 impl Doubt {
-    /// True for what a limit makes of a flight: small motions, and their margins, say nothing of it.
+    /// True for what limits, or gains that move, make of a flight: small motions, and their margins, say nothing of it.
     #[must_use]
     pub const fn is_of_limits(self) -> bool {
         matches!(
@@ -193,6 +198,7 @@ impl Doubt {
                 | Self::BeyondLimits
                 | Self::RunsAway
                 | Self::SwingAtLimits
+                | Self::AwayFromRest
         )
     }
 
@@ -224,7 +230,8 @@ impl Doubt {
             | Self::HeldByGuard
             | Self::BeyondLimits
             | Self::RunsAway
-            | Self::SwingAtLimits => true,
+            | Self::SwingAtLimits
+            | Self::AwayFromRest => true,
         }
     }
 

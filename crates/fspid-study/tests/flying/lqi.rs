@@ -116,7 +116,7 @@ fn what_is_not_above_zero_is_refused_at_its_key() {
         "controller.LQI.design.elevator_power_per_s2=1e-300",
         "controller.LQI.weights.integral=1e300",
     ]);
-    assert!(text.contains("controller[0].design: a gain of the regulator lies beyond"), "{text}");
+    assert!(text.contains("controller[0].design: the gain of the regulator lies beyond"), "{text}");
     // What a PID has and a regulator cannot: its integral is the state that was weighted.
     let text = problems(&["controller.LQI.rate_gain=1.0"]);
     assert!(text.contains("rate_gain: belongs to kind"), "{text}");

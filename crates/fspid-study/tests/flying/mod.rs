@@ -4,6 +4,7 @@
 mod about_trims;
 mod agreement;
 mod at_rest;
+mod away_from_rest;
 mod beyond_limits;
 mod configurations;
 mod control_law;

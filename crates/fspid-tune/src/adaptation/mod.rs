@@ -56,7 +56,7 @@ pub use treatment::Treatment;
 
 use crate::crew::Part;
 use crate::error::TuneError;
-use crate::flights::{Asked, Dispersed, Flights, FlownCase, each_once, flown_cases};
+use crate::flights::{Asked, Dispersed, Flights, FlownCase, Seeds, each_once, flown_cases};
 use crate::flyer::Flyer;
 use crate::source::Source;
 use crate::space::Space;
@@ -406,14 +406,16 @@ fn cases<'a>(study: &'a Study, options: &Options) -> (&'a [Case], Dispersed) {
     let key = "--runs";
     if let Some(contest) = &study.contest {
         let runs = runs.unwrap_or(contest.runs);
-        return (&contest.cases, Dispersed { key, runs, seed: contest.run_seed });
+        return (&contest.cases, Dispersed { key, runs, seeds: Seeds::OfEach(contest.run_seed) });
     }
     match &study.tuning {
         Some(tuning) => {
             let runs = runs.unwrap_or(tuning.runs);
-            (&tuning.cases, Dispersed { key, runs, seed: tuning.run_seed })
+            (&tuning.cases, Dispersed { key, runs, seeds: Seeds::OfAll(tuning.run_seed) })
         }
-        None => (&[], Dispersed { key, runs: runs.unwrap_or(0), seed: options.seed }),
+        None => {
+            (&[], Dispersed { key, runs: runs.unwrap_or(0), seeds: Seeds::OfAll(options.seed) })
+        }
     }
 }
 

@@ -8,7 +8,7 @@ use fspid_scenario::tuning::{Contest as Rules, Tuning};
 use super::{Contest, Entrant, Options, flight, mirror, twins};
 use crate::crew::Part;
 use crate::error::{TuneError, WrongCase};
-use crate::flights::{Asked, Dispersed, Flights, FlownCase, flown_case};
+use crate::flights::{Asked, Dispersed, Flights, FlownCase, Seeds, flown_case};
 use crate::flyer::Flyer;
 use crate::problem::{TuningProblem, tunable_parameters_of};
 use crate::search::Effort;
@@ -125,7 +125,8 @@ fn entrant(
         true => None,
         false => Some(TuningProblem::new(source, Some(name))?),
     };
-    let dispersed = Dispersed { key: "contest.runs", runs: rules.runs, seed: rules.run_seed };
+    let dispersed =
+        Dispersed { key: "contest.runs", runs: rules.runs, seeds: Seeds::OfEach(rules.run_seed) };
     let flyer = Flyer { controller: name, free: &parameters };
     let flown = cases
         .iter()

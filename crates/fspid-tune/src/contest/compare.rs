@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use serde::Serialize;
 
-use super::judged::{Contestant, Judged, Quantity};
+use super::judged::{Contestant, Count, Judged, Quantity};
 use super::signed_rank::SignedRank;
 use super::two_way::{TwoWay, holm, mean};
 
@@ -31,6 +31,8 @@ pub(crate) enum Bar {
     AllFail,
     /// A larger share of its flights is of loops that are unstable at rest.
     Unstable,
+    /// The same with those of which nobody can tell.
+    Undecided,
     /// It fails more flights, by the signed ranks of the shares that fail of each case.
     FailsMore,
 }
@@ -47,6 +49,9 @@ pub(crate) fn barred(judged: &Judged, one: usize, other: usize) -> Option<Bar> {
     }
     if mine.compared(theirs, |it| it.unstable).is_gt() {
         return Some(Bar::Unstable);
+    }
+    if mine.compared(theirs, Count::not_stable).is_gt() {
+        return Some(Bar::Undecided);
     }
     let share = |it: &Contestant, case: usize| judged.count(it, &[case]).failed_share();
     let differences: Vec<f64> =

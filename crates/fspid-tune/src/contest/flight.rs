@@ -54,6 +54,15 @@ fn are_alike(one: Option<f64>, other: Option<f64>) -> bool {
     }
 }
 
+/// Measures of a linear loop that grow with its command: errors, their integrals and the way of the elevator. All others stay.
+const GROWS: [Measure; 5] = [
+    Measure::ErrorIntegral,
+    Measure::TimedErrorIntegral,
+    Measure::ElevatorTravel,
+    Measure::LargestError,
+    Measure::RmsError,
+];
+
 /// Largest error beyond which a flight is lost, deg. A loop with limits oscillates instead of diverging; beyond a
 /// right angle there is no pitch hold left whose error could be compared.
 const LOST_DEG: f64 = 90.0;
@@ -89,6 +98,9 @@ pub struct Flight {
     /// True for a loop that is unstable at rest, with the gains that it has there. It is judged by its error as it
     /// flew, and counts as failed: a calm window proves nothing.
     pub unstable: bool,
+    /// True where nobody can tell whether the loop is stable, at rest or where its flight leads. It fails nothing by itself, and
+    /// who has one does not win.
+    pub undecided: bool,
     /// True for a flight that has failed.
     pub failed: bool,
     /// True for a loop that does not remove a constant load at the servo within the flight, with the gains that it has at
@@ -110,6 +122,23 @@ impl Flight {
         is_flown && !other.lost && pairs.all(|(one, other)| are_alike(one, other))
     }
 
+    /// How many times as large as another flight's the errors of this one are.
+    pub(super) fn size_beside(&self, other: &Self) -> Option<f64> {
+        let [mine, theirs] = [self, other].map(|it| it.measures[IAE]);
+        Some(mine? / theirs?).filter(|size| size.is_finite() && *size > 0.0)
+    }
+
+    /// True for a flight that is the other in another size: so many times as large in all that grows with a command, and alike
+    /// in all else, as of a loop that is linear in both. It shows nothing that the other does not.
+    pub(super) fn is_copy_in_size(&self, other: &Self, size: f64) -> bool {
+        let grown = |place: usize| {
+            let times = if GROWS.contains(&MEASURES[place]) { size } else { 1.0 };
+            other.measures[place].map(|it| times * it)
+        };
+        let theirs = Self { measures: std::array::from_fn(grown), ..other.clone() };
+        self.failed == other.failed && self.has_measures_of(&theirs)
+    }
+
     /// True for a flight that shows nothing that the other does not: lost as it is, or with measures that are alike.
     pub(super) fn is_copy_of(&self, other: &Self) -> bool {
         let is_lost_alike = || {
@@ -128,6 +157,7 @@ impl Flight {
             verdict: rows::REFUSED.to_owned(),
             lost: true,
             unstable: false,
+            undecided: false,
             load_left: false,
             load_stays: false,
             gains: None,
@@ -161,6 +191,7 @@ impl Flight {
             verdict: verdict_of(flight, is_far),
             lost: is_lost,
             unstable: is_unstable(flight),
+            undecided: flight.at_rest.undecided.is_some() && !is_unstable(flight),
             gains: flight.at_rest.gains_in_words(),
             load_left: flight.at_rest.load.is_some_and(|load| !load.is_removed()),
             load_stays: flight.at_rest.load.is_some_and(|load| load.stays()),

@@ -122,13 +122,17 @@ pub(super) fn beside_first(outcome: &Outcome) -> Option<String> {
     Some(format!("Beside {}, which is first: {}.", cut(name(outcome, first), 60), all.join(", ")))
 }
 
-/// What keeps the first from winning, whatever its error: loops that are unstable at rest, flights that all fail, or
-/// more that fail than of another.
+/// What keeps the first from winning, whatever its error: loops that are unstable at rest, or of which nobody can tell, flights
+/// that all fail, or more that fail than of another.
 fn bar_of_first(outcome: &Outcome, first: usize) -> Option<String> {
     let (judged, count) = (&outcome.judged, outcome.summaries.get(first)?.whole.count);
     if count.unstable > 0 {
         let some = some_of(count.unstable, count.of);
         return Some(format!("{some} of loops that are unstable at rest"));
+    }
+    if count.undecided > 0 {
+        let some = some_of(count.undecided, count.of);
+        return Some(format!("{some} of loops of which nobody can tell whether they are stable"));
     }
     let others = (0..judged.contestants.len()).filter(|place| *place != first);
     let bars = others.filter(|place| barred(judged, first, *place).is_some());

@@ -59,7 +59,17 @@ pub struct Judged {
     pub twin_of: Vec<Option<usize>>,
     /// Of each controller and case the name of one of the tuning that it flies alike, if there is one; empty
     /// of a controller that was not tuned.
-    pub trained_as: Vec<Vec<Option<String>>>,
+    pub trained_as: Vec<Vec<Option<Trained>>>,
+}
+
+/// A case of the tuning that a controller flies as one of the contest.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Trained {
+    /// Its name.
+    pub case: String,
+    /// It is flown in another size, as a linear loop flies a step of another size: who is linear was tuned on it, and it is no
+    /// evidence where everybody who was tuned is.
+    pub in_another_size: bool,
 }
 
 /// What controllers are compared in.
@@ -119,6 +129,8 @@ pub struct Count {
     pub failed: u64,
     /// Flights of a loop that is unstable at rest.
     pub unstable: u64,
+    /// Flights of a loop of which nobody can tell whether it is stable.
+    pub undecided: u64,
     /// Flights of a loop that does not remove a constant load within the flight.
     #[serde(rename = "constant_load_left")]
     pub load_left: u64,
@@ -140,14 +152,19 @@ impl Count {
         self.failed as f64 / self.of.max(1) as f64
     }
 
+    /// Flights of loops that are not known to be stable.
+    pub(crate) const fn not_stable(self) -> u64 {
+        self.unstable + self.undecided
+    }
+
     /// Which of two controllers loses the larger share, without rounding.
     pub(crate) fn cmp_lost(self, other: Self) -> Ordering {
         self.compared(other, |it| it.lost)
     }
 
     /// Which of two controllers has the larger share of some flights, without rounding.
-    pub(crate) fn compared(self, other: Self, some: fn(&Self) -> u64) -> Ordering {
-        let crossed = |one: Self, other: Self| u128::from(some(&one)) * u128::from(other.of);
+    pub(crate) fn compared(self, other: Self, some: fn(Self) -> u64) -> Ordering {
+        let crossed = |one: Self, other: Self| u128::from(some(one)) * u128::from(other.of);
         crossed(self, other).cmp(&crossed(other, self))
     }
 }
@@ -182,27 +199,48 @@ impl Judged {
         training: &[(String, Vec<Vec<Flight>>)],
     ) {
         let designs = self.contestants.get(contestant).map_or(&[][..], |it| &it.designs);
-        let is_alike = |case: usize, flights: &[Vec<Flight>]| {
-            designs.len() == flights.len()
-                && designs.iter().zip(flights).all(|(design, theirs)| {
-                    let mine = self.flights(design, case);
-                    mine.len() == theirs.len()
-                        && mine.iter().zip(theirs).all(|(a, b)| a.has_measures_of(b))
-                })
-        };
         let alike = |case: usize| {
-            let mut all = training.iter();
-            all.find(|(_, flights)| is_alike(case, flights)).map(|(name, _)| name.clone())
+            let found = training.iter().filter_map(|(name, flights)| {
+                let [mine, theirs] = self.beside(designs, case, flights)?;
+                let is_same = mine.iter().zip(&theirs).all(|(a, b)| a.has_measures_of(b));
+                let is_one = is_same || alike::are_in_another_size(&mine, &theirs);
+                is_one.then(|| Trained { case: name.clone(), in_another_size: !is_same })
+            });
+            found.min_by_key(|it| it.in_another_size)
         };
-        let trained_as: Vec<Option<String>> = (0..self.cases.len()).map(alike).collect();
+        let trained_as: Vec<Option<Trained>> = (0..self.cases.len()).map(alike).collect();
         if let Some(mine) = self.trained_as.get_mut(contestant) {
             *mine = trained_as;
         }
     }
 
-    /// The name of a case of the tuning that somebody flies as a case of the contest.
+    /// The flights of a case by some designs, and others of theirs, one by one; none where there are more of one.
+    fn beside<'a>(
+        &self,
+        designs: &'a [Design],
+        case: usize,
+        others: &'a [Vec<Flight>],
+    ) -> Option<[Vec<&'a Flight>; 2]> {
+        let mine: Vec<&[Flight]> = designs.iter().map(|it| self.flights(it, case)).collect();
+        let are_as_many = mine.iter().map(|it| it.len()).eq(others.iter().map(Vec::len));
+        are_as_many
+            .then(|| [mine.into_iter().flatten().collect(), others.iter().flatten().collect()])
+    }
+
+    /// The name of a case of the tuning that somebody flies as a case of the contest, or everybody who was tuned in another size.
     pub(crate) fn trained_name(&self, case: usize) -> Option<&str> {
-        self.trained_as.iter().find_map(|it| it.get(case)?.as_deref())
+        let everybody: Vec<usize> = (0..self.contestants.len()).collect();
+        self.trained_among(&everybody, case).map(|it| it.case.as_str())
+    }
+
+    /// The same of some controllers by their places.
+    fn trained_among(&self, places: &[usize], case: usize) -> Option<&Trained> {
+        let all = places.iter().filter_map(|place| self.trained_as.get(*place));
+        let tuned: Vec<Option<&Trained>> =
+            all.filter_map(|it| it.get(case)).map(Option::as_ref).collect();
+        let mut found = tuned.iter().flatten();
+        let everybody_is = tuned.iter().all(Option::is_some);
+        found.find(|it| everybody_is || !it.in_another_size).copied()
     }
 
     /// Cases that are evidence: those that everybody flies as an earlier one, or somebody as one of the tuning, are not.
@@ -218,10 +256,7 @@ impl Judged {
     pub(crate) fn evidence_between(&self, places: &[usize]) -> Vec<usize> {
         let some = places.iter().filter_map(|place| self.contestants.get(*place));
         let twin_of = alike::twins(self, &some.collect::<Vec<_>>());
-        let is_trained = |case: usize| {
-            let mut theirs = places.iter().filter_map(|place| self.trained_as.get(*place));
-            theirs.any(|it| it.get(case).is_some_and(Option::is_some))
-        };
+        let is_trained = |case: usize| self.trained_among(places, case).is_some();
         let is_own = |case: &usize| twin_of[*case].is_none() && !is_trained(*case);
         self.all().into_iter().filter(is_own).collect()
     }
@@ -310,6 +345,7 @@ impl Judged {
                 count.lost += u64::from(flight.lost);
                 count.failed += u64::from(flight.failed);
                 count.unstable += u64::from(flight.unstable);
+                count.undecided += u64::from(flight.undecided);
                 count.load_left += u64::from(flight.load_left);
                 count.load_stays += u64::from(flight.load_stays);
                 count.of += 1;

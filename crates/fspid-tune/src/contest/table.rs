@@ -59,6 +59,7 @@ fn push(table: &mut ColumnTable, head: &[Cell<'_>], flight: &Flight) -> Result<(
         Cell::Text(short(&flight.verdict)),
         Cell::Boolean(flight.lost),
         Cell::Boolean(flight.unstable),
+        Cell::Boolean(flight.undecided),
         Cell::Boolean(flight.failed),
         if reasons.is_empty() { Cell::Absent } else { Cell::Text(short(&reasons)) },
         number(flight.cost),
@@ -88,6 +89,8 @@ fn schema() -> Result<Schema, TuneError> {
         column("unstable", Kind::Boolean).meaning(
             "the loop is unstable at rest, with the gains that it has there; such a flight counts as failed",
         ),
+        column("undecided", Kind::Boolean)
+            .meaning("nobody can tell whether the loop is stable, at rest or where its flight leads"),
         column("failed", Kind::Boolean).meaning(format!("it {FAILED}")),
         column("reasons", Kind::Text).meaning("why it failed or has no cost"),
         column("cost", Kind::Float)

@@ -325,6 +325,7 @@ pub(super) fn standing(found: &Comparison) -> String {
         (Standing::Barred, ..) => match found.bar {
             Some((true, Bar::AllFail)) => "not better, for all its flights fail",
             Some((true, Bar::Unstable)) => "not better, for it is unstable at rest",
+            Some((true, Bar::Undecided)) => "not better, for nobody can tell whether it is stable",
             Some((true, Bar::FailsMore)) => "not better, for more of its flights fail",
             _ => "not worse, for what it is compared with fails",
         },

@@ -83,8 +83,10 @@ pub struct Unsuccessful {
     pub lost: u64,
     /// Those that fail, lost ones among them.
     pub failed: u64,
-    /// Those of loops that are unstable at rest, or of which nobody can tell.
+    /// Those of loops that are unstable at rest.
     pub unstable: u64,
+    /// Those of loops of which nobody can tell whether they are stable.
+    pub undecided: u64,
     /// All flights.
     pub of: u64,
 }
@@ -199,7 +201,7 @@ impl Pair<'_> {
         let judged = &self.everywhere.together;
         let count = judged.count(&judged.contestants[place], &judged.all());
         let (lost, failed, unstable) = (count.lost, count.failed, count.unstable);
-        Unsuccessful { lost, failed, unstable, of: count.of }
+        Unsuccessful { lost, failed, unstable, undecided: count.undecided, of: count.of }
     }
 }
 

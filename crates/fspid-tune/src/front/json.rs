@@ -64,6 +64,8 @@ fn of_band(band: &Band) -> Value {
         "failed_of_against": against.failed,
         "lost": own.lost,
         "lost_of_against": against.lost,
+        "undecided": own.undecided,
+        "undecided_of_against": against.undecided,
         "unstable": own.unstable,
         "unstable_of_against": against.unstable,
     })

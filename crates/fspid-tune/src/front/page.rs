@@ -74,7 +74,7 @@ fn notes() -> Vec<String> {
     vec![
         format!("Bands: the mean ± its error times a quantile of the largest deviation along the front. The error at each place is that of a contest, with a part for cases and one for the seeds of each controller, and Student's distribution by its degrees of freedom; the quantile comes of {DRAWS} draws of deviations that move along the front as cases and seeds do, with Bonferroni's correction for the number of controllers."),
         "The signed ranks of the cases have to agree at every place, as in a contest, with a case of which one loses more flights as its largest defeat: with n cases no p-value is below 2^(1\u{2212}n). Weights of cases count in means and in no test.".to_owned(),
-        "Barred from being better: a controller all of whose flights fail, of which one is unstable at rest, or that loses more or, significantly by the signed ranks of the cases, fails more than the other, at an effort or over all of them.".to_owned(),
+        "Barred from being better: a controller all of whose flights fail, of which one is unstable at rest or undecided, or that loses more or, significantly by the signed ranks of the cases, fails more than the other, at an effort or over all of them.".to_owned(),
         format!("Assumed: cases and seeds are like draws of those that matter, and between two efforts error over travel is near a straight line in logarithms. With fewer than {FEWEST_SEEDS} seeds or {FEWEST_CASES} cases without lost flights and with a common range of travel, there is no band and nothing is claimed."),
     ]
 }
@@ -130,8 +130,16 @@ fn differences(outcome: &FrontOutcome) -> Svg {
 }
 
 fn standings(outcome: &FrontOutcome) -> DataTable {
-    let head =
-        ["controller", "standing", "cases", "lost cases", "lost", "failed", "unstable at rest"];
+    let head = [
+        "controller",
+        "standing",
+        "cases",
+        "lost cases",
+        "lost",
+        "failed",
+        "unstable at rest",
+        "undecided",
+    ];
     let row = |band: &super::Band| {
         let [own, against] = band.flights;
         let both = |one: u64, other: u64| Datum::Number(format!("{one}, {other}"));
@@ -143,6 +151,7 @@ fn standings(outcome: &FrontOutcome) -> DataTable {
             both(own.lost, against.lost),
             both(own.failed, against.failed),
             both(own.unstable, against.unstable),
+            both(own.undecided, against.undecided),
         ]
     };
     DataTable {

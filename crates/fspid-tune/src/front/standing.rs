@@ -32,8 +32,10 @@ pub enum Dominance {
 pub enum FrontBar {
     /// Every flight of it fails.
     AllFail,
-    /// A flight of it is of a loop that is unstable at rest, or of which nobody can tell.
+    /// A flight of it is of a loop that is unstable at rest.
     Unstable,
+    /// A flight of it is of a loop of which nobody can tell whether it is stable.
+    Undecided,
     /// It loses a larger share of its flights.
     LosesMore,
     /// It fails more flights, by the signed ranks of the shares that fail of each case.
@@ -65,6 +67,9 @@ impl Dominance {
                 "not better, for all its flights at some effort fail"
             }
             Self::Barred(FrontBar::Unstable) => "not better, for it is unstable at rest",
+            Self::Barred(FrontBar::Undecided) => {
+                "not better, for nobody can tell whether it is stable"
+            }
             Self::Barred(FrontBar::LosesMore) => "not better, for it loses more flights",
             Self::Barred(FrontBar::FailsMore) => "not better, for more of its flights fail",
             Self::OtherBarred(FrontBar::LosesMore) => {
@@ -115,8 +120,9 @@ fn bar(judged: &Judged, one: usize, other: usize) -> Option<FrontBar> {
         Some(Bar::AllFail) => Some(FrontBar::AllFail),
         // Who has one does not win, also where the other has as many.
         _ if count(mine).unstable > 0 => Some(FrontBar::Unstable),
+        _ if count(mine).undecided > 0 => Some(FrontBar::Undecided),
         _ if count(mine).cmp_lost(count(theirs)).is_gt() => Some(FrontBar::LosesMore),
         Some(Bar::FailsMore) => Some(FrontBar::FailsMore),
-        Some(Bar::Unstable) | None => None,
+        Some(Bar::Unstable | Bar::Undecided) | None => None,
     }
 }

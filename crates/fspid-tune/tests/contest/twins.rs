@@ -7,7 +7,7 @@ use super::{LOOP, cases, marked, pid, place};
 /// Fourteen copies of a case made a winner of whom nobody was.
 #[test]
 fn copies_of_a_case_are_refused_however_they_are_written() {
-    let copy = "\n[[contest.case]]\nname = \"copy\"\nset = [\"setpoint.amplitude_deg=2.00\"]\n";
+    let copy = "\n[[contest.case]]\nname = \"copy\"\nset = [\"setpoint.amplitude_deg=2.00\", \"actuator.time_constant_s=0.040\"]\n";
     let told = place(&(marked() + copy)).refused(&Options::default());
     let expected = "case \"copy\" flies what case \"2 deg\" flies, and would count twice";
     assert!(told.contains(expected), "{told}");
@@ -19,7 +19,7 @@ fn copies_of_a_case_are_refused_however_they_are_written() {
 fn cases_that_are_flown_alike_are_evidence_once_and_those_of_the_tuning_never() {
     let idle = |place: usize| {
         format!(
-            "\n[[contest.case]]\nname = \"idle {place}\"\nset = [\"setpoint.amplitude_deg=1.0\", \"actuator.position_limit_deg={}\"]\n",
+            "\n[[contest.case]]\nname = \"idle {place}\"\nset = [\"setpoint.amplitude_deg=1.0\", \"actuator.time_constant_s=0.06\", \"actuator.position_limit_deg={}\"]\n",
             40 + place
         )
     };
@@ -32,7 +32,10 @@ fn cases_that_are_flown_alike_are_evidence_once_and_those_of_the_tuning_never() 
     assert_eq!(judged.twin_of[at("idle 0")], None);
     assert_eq!(judged.twin_of[at("idle 1")], Some(at("idle 0")));
     assert_eq!(judged.twin_of[at("idle 2")], Some(at("idle 0")));
-    assert_eq!(judged.trained_as[0][at("trained")].as_deref(), Some("as written"));
+    assert_eq!(
+        judged.trained_as[0][at("trained")].as_ref().map(|it| it.case.as_str()),
+        Some("as written")
+    );
     assert_eq!(judged.trained_as[0][at("idle 0")], None);
     let said = held.text();
     assert!(said.contains("\"idle 1\" as \"idle 0\""), "{said}");

@@ -170,6 +170,7 @@ fn failures(outcome: &Outcome) -> DataTable {
             Datum::Number(format!("{} of {}", count.failed, count.of)),
             Datum::Number(percent(summary.failed)),
             Datum::Number(format!("{} of {}", count.unstable, count.of)),
+            Datum::Number(format!("{} of {}", count.undecided, count.of)),
             Datum::Number(spread(whole, it.designs.len())),
         ]
     });
@@ -181,10 +182,11 @@ fn failures(outcome: &Outcome) -> DataTable {
         "failed",
         "probability of a failure",
         "unstable at rest",
+        "undecided",
         "IAE on all cases [deg s]",
     ];
     let caption = format!(
-        "A flight is lost that {LOST}. A flight fails that {FAILED}. Intervals are those of Clopper and Pearson at {} with each case as one flight, for draws and seeds of a case fail together: for other cases like these, and the designs as they were found. Loops that are unstable at rest are judged by their error as they flew, and who has one does not win. A mean with a lost flight is \"lost\". Nobody lost a flight of {}.",
+        "A flight is lost that {LOST}. A flight fails that {FAILED}. Intervals are those of Clopper and Pearson at {} with each case as one flight, for draws and seeds of a case fail together: for other cases like these, and the designs as they were found. Loops that are unstable at rest, and those of which nobody can tell (undecided), are judged by their error as they flew, and who has one does not win. A mean with a lost flight is \"lost\". Nobody lost a flight of {}.",
         per_cent(),
         match without {
             kept if kept == outcome.judged.cases.len() => "any case".to_owned(),

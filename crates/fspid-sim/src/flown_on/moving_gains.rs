@@ -1,0 +1,80 @@
+//! Flights whose gains move with an error: when they have left the rest around which the loop holds, limits or none.
+//!
+//! The rest is that of the gains there. A flight that is further off than that flies with others, of which it tells nothing.
+
+use super::moved::Moved;
+use super::periods_s;
+use super::pieces::Pieces;
+use crate::controller::Controller;
+use crate::scenario::Scenario;
+
+/// With nothing that moves it, an error that shrinks by less than a hundredth from one fifth of a flight to the next stays: where
+/// no limit is met, nothing but a swing does, and slow motions that shrink are told from it.
+const STAYS: f64 = 0.99;
+/// What widths of actuator or sensors keep swinging grows where it moves so many times as much.
+const GROWN: f64 = 1.05;
+/// Of a fifth that holds so many periods of what swings, the size is that of the next but for growth.
+const PERIODS: f64 = 2.0;
+/// What is moved by something has grown where it has doubled.
+const DOUBLED: f64 = 2.0;
+/// An aircraft's error or pitch that moves at the end by no more than this share of all its movement moves no gains.
+const STANDS: f64 = 0.02;
+
+/// How a flight is judged whose gains move.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct MovingGains {
+    /// By what factor an error has to move in the last fifth to stay, or grow.
+    stays_times: f64,
+    /// The slowest of what swings, s; 0 for none.
+    longest_period_s: f64,
+    dt_s: f64,
+    /// Speed and height drift beside; only what turns back is a swing.
+    has_to_turn: bool,
+}
+
+impl MovingGains {
+    /// None where all gains are fixed: those of the controller, and of outer loops that a mode engages.
+    pub(super) fn of(scenario: &Scenario, controller: &Controller) -> Option<Self> {
+        let tunes = |it: &Controller| matches!(it, Controller::SelfTuning(_));
+        let mut outer = scenario.autopilot.iter().flat_map(|it| it.loops());
+        if !(tunes(controller) || outer.any(|it| tunes(&it.controller))) {
+            return None;
+        }
+        let stays_times = if has_widths(scenario) { GROWN } else { STAYS };
+        let longest_period_s =
+            periods_s(scenario).map(|(_, period_s)| period_s).fold(0.0, f64::max);
+        let dt_s = scenario.timing.dt_s();
+        let has_to_turn = scenario.plant.linear().is_none();
+        Some(Self { stays_times, longest_period_s, dt_s, has_to_turn })
+    }
+
+    /// True where the error at the end of a flight does not shrink.
+    ///
+    /// Under what swings a fifth has to hold some periods of it, for otherwise each fifth is another part of one.
+    pub(super) fn have_left(self, pieces: &Pieces<'_>, moved: Moved) -> bool {
+        let Some([fourth, fifth]) = pieces.last_fifths() else { return false };
+        let (times, is_seen) = match moved {
+            Moved::Nothing => (self.stays_times, true),
+            Moved::BySwings => {
+                let fifth_s = fifth.samples() as f64 * self.dt_s;
+                (DOUBLED, PERIODS * self.longest_period_s <= fifth_s)
+            }
+            Moved::ByNoise => (DOUBLED, true),
+        };
+        let turns = !self.has_to_turn || fourth.and(fifth).turns();
+        is_seen && turns && fifth.error_size_rad() >= times * fourth.error_size_rad()
+    }
+
+    /// True where an aircraft's flight ends so near a rest that its gains are those of the rest.
+    pub(super) fn stand(pieces: &Pieces<'_>) -> bool {
+        pieces.has_moved_by_at_most(STANDS)
+    }
+}
+
+/// True where a width keeps a loop swinging by itself: a deadband, play, or the steps of a sensor.
+fn has_widths(scenario: &Scenario) -> bool {
+    let sensors = [scenario.surroundings.pitch_sensor, scenario.surroundings.rate_sensor];
+    scenario.actuator.deadband_rad() > 0.0
+        || scenario.actuator.play_rad() > 0.0
+        || sensors.iter().flatten().any(|it| it.model().resolution > 0.0)
+}

@@ -1,0 +1,191 @@
+//! Flights of gains that move, without limits: those that do not come back to the rest around which the loop holds.
+
+use fspid_sim::{Doubt, EarlyEnd, EndCause};
+use fspid_study::metrics::Verdict;
+use fspid_study::simulation::ControllerResult;
+
+use super::{Draw, doubt, result};
+
+/// A step of a plant with an integrator, whose self-tuner has no limit of any kind.
+const FREE: &str = r#"
+schema = 1
+name = "gains that move"
+[plant]
+numerator = [2.0, 1.0]
+denominator = [1.0, 1.2, 2.0, 0.0]
+elevator_sign = "nose-up-positive"
+[loop]
+sample_period_s = 0.02
+duration_s = 20.0
+[setpoint]
+kind = "step"
+amplitude_deg = 5.0
+[[controller]]
+name = "C"
+kind = "fspid"
+nominal = { kp = 1.0, ki = 0.4, kd = 0.2 }
+derivative_filter_s = 0.05
+[controller.supervisor]
+table = "mirrored"
+range = 5.0
+error_scale = 2.0
+change_scale = 1.0
+output_scale = { kp = 0.1, ki = 0.04, kd = 0.02 }
+"#;
+
+/// A larger step, whose rules lower kp where the error is large: it diverges after 39 s.
+const AWAY: &[&str] = &[
+    "setpoint.amplitude_deg=8.0",
+    "controller.C.supervisor.output_scale={kp=-0.15, ki=0.2, kd=0.02}",
+];
+
+/// A Navion that climbs to a height and captures it; the self-tuner of its vertical speed has an integral whose gain is negative
+/// where the error is large.
+const CAPTURE: &str = r#"
+schema = 1
+name = "holds 1300 ft, and flies away from it"
+aircraft = { name = "navion", airspeed_ft_s = 176.0, altitude_ft = 1000.0 }
+engine = { kind = "first-order", time_constant_s = 1.0 }
+actuator = { time_constant_s = 0.1 }
+loop = { sample_period_s = 0.02, duration_s = 60.0 }
+setpoint = { kind = "step", amplitude_deg = 0.0 }
+mode = [{ name = "level", engage = ["altitude", "vertical speed", "autothrottle"] }, { name = "climb", at_s = 5.0, engage = ["vertical speed", "autothrottle"], target = { vertical_speed_ft_min = 500.0 } }, { name = "capture", when = { altitude_above_ft = 1230.0 }, engage = ["altitude", "vertical speed", "autothrottle"], target = { altitude_ft = 1300.0 } }]
+controller = [{ name = "PID", kind = "pid", kp = 0.82, ki = 0.43, kd = 0.165, derivative_filter_s = 0.05 }]
+requirement = [{ measure = "stable" }]
+[[outer_loop]]
+name = "altitude"
+kind = "pid"
+holds = "altitude"
+moves = "vertical speed"
+kp = 0.4
+[[outer_loop]]
+name = "vertical speed"
+kind = "fspid"
+holds = "vertical-speed"
+moves = "pitch"
+nominal = { kp = 0.5, ki = 0.5 }
+[outer_loop.supervisor]
+table = "mirrored"
+range = 5.0
+error_scale = 16.0
+change_scale = 40.0
+output_scale = { kp = 0.0, ki = 0.12, kd = 0.0 }
+[[outer_loop]]
+name = "autothrottle"
+kind = "pid"
+holds = "airspeed"
+moves = "throttle"
+kp = 0.2
+ki = 0.02
+"#;
+
+fn is_lost(flown: &ControllerResult) -> bool {
+    matches!(flown.metrics.verdict, Verdict::EndedEarly(EarlyEnd { cause: EndCause::Diverged, .. }))
+}
+
+/// How far the error moves in the last fifth of a flight, and in the fifth before it, deg.
+fn moves_deg(flown: &ControllerResult) -> [f64; 2] {
+    let errors = flown.trace.setpoint_rad.iter().zip(&flown.trace.theta_rad);
+    let errors: Vec<f64> = errors.map(|(r, y)| (r - y).to_degrees()).collect();
+    let fifth = errors.len() / 5;
+    let size = |part: &[f64]| {
+        let most = part.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        most - part.iter().copied().fold(f64::INFINITY, f64::min)
+    };
+    [size(&errors[4 * fifth..]), size(&errors[3 * fifth..4 * fifth])]
+}
+
+fn drawn(draw: &mut Draw) -> (Vec<String>, f64) {
+    let nominal =
+        [draw.between(0.2, 4.0), draw.of(&[0.0, 0.2, 0.8, 2.0]), draw.of(&[0.0, 0.1, 0.6])];
+    let sizes = nominal.map(|gain: f64| {
+        let gain = if gain == 0.0 { 0.3 * nominal[0] } else { gain };
+        gain * draw.between(0.02, 0.6) * draw.of(&[0.2, 0.4, 0.9, -0.4])
+    });
+    let duration_s = draw.between(8.0, 30.0);
+    let set = vec![
+        format!(
+            "plant.denominator=[1.0, {:?}, {:?}{}]",
+            draw.between(0.3, 4.0),
+            draw.between(0.3, 8.0),
+            draw.of(&["", ", 0.0"]),
+        ),
+        format!("setpoint.amplitude_deg={:?}", draw.between(1.0, 10.0)),
+        format!("loop.duration_s={duration_s:?}"),
+        format!(
+            "controller.C.nominal={{kp={:?}, ki={:?}, kd={:?}}}",
+            nominal[0], nominal[1], nominal[2]
+        ),
+        format!(
+            "controller.C.supervisor.output_scale={{kp={:?}, ki={:?}, kd={:?}}}",
+            sizes[0], sizes[1], sizes[2]
+        ),
+        format!("controller.C.supervisor.error_scale={:?}", draw.between(0.2, 8.0)),
+        format!("controller.C.supervisor.change_scale={:?}", draw.between(0.1, 4.0)),
+        format!("controller.C.supervisor.table={}", draw.of(&["printed", "mirrored"])),
+        format!("controller.C.integral={}", draw.of(&["literal", "bumpless"])),
+    ];
+    (set, duration_s)
+}
+
+/// Of 1750 such flights that were `stable`, a fortieth diverged within ten times their length.
+#[test]
+fn flights_of_drawn_gains_that_move_and_are_called_stable_come_back_in_ten_times_their_length() {
+    let mut draw = Draw::seeded(146);
+    let (mut stable, mut lost, mut swings) = (0, 0, 0);
+    for number in 0..350 {
+        let (set, duration_s) = drawn(&mut draw);
+        let set: Vec<&str> = set.iter().map(String::as_str).collect();
+        let flown = result(FREE, &set);
+        let long = format!("loop.duration_s={:?}", f64::max(10.0 * duration_s, 200.0));
+        let flown_on = || result(FREE, &[&set[..], &[long.as_str()]].concat());
+        if doubt(&flown) == Some(Doubt::AwayFromRest) {
+            let flown_on = flown_on();
+            let [last, before] = moves_deg(&flown_on);
+            lost += usize::from(is_lost(&flown_on));
+            swings += usize::from(!is_lost(&flown_on));
+            assert!(is_lost(&flown_on) || last > 0.9 * before, "{number}: {set:?}");
+        } else if flown.at_rest.stability_word() == Some("stable") {
+            stable += 1;
+            let flown_on = flown_on();
+            let [last, before] = moves_deg(&flown_on);
+            assert!(!is_lost(&flown_on), "{number}: {set:?}");
+            // What moves by less than a thousandth of all its movement is at rest.
+            let at_rest_deg = 1e-3 * flown_on.trace.setpoint_rad[0].to_degrees();
+            let comes_back = last < before || last < at_rest_deg;
+            assert!(comes_back, "{number}: {last} after {before} deg, {set:?}");
+        }
+    }
+    assert!(stable > 100 && lost > 3 && swings > 1, "{stable} {lost} {swings}");
+}
+
+/// An aircraft that holds its height by a vertical speed whose self-tuner drives large errors away: it was `stable` for the minute
+/// of its scenario, met every requirement, and was lost a minute later.
+#[test]
+fn an_aircraft_whose_outer_gains_drive_it_away_after_its_flight_is_undecided() {
+    let flown = result(CAPTURE, &[]);
+    assert_eq!(flown.metrics.verdict, Verdict::Flown);
+    assert!(matches!(doubt(&flown), Some(Doubt::AwayFromRest | Doubt::SwingAtLimits)));
+    assert!(is_lost(&result(CAPTURE, &["loop.duration_s=240.0"])));
+    // Rules that leave the integral its sign bring it back.
+    let held = result(CAPTURE, &["outer_loop.vertical speed.supervisor.output_scale.ki=0.02"]);
+    assert_eq!(doubt(&held), None);
+}
+
+/// With the noise of a sensor, and in steps of one: what moves a flight for ever, or keeps it from standing still, is not taken for
+/// gains that leave the rest, and does not hide those that do.
+#[test]
+fn noise_swings_and_widths_neither_hide_what_leaves_the_rest_nor_are_taken_for_it() {
+    let noise = "[[disturbance]]\nkind = \"noise\"\nenters_at = \"measurement\"\nstandard_deviation_deg = 0.02\nseed = 1\n";
+    let sine = "[[disturbance]]\nkind = \"sine\"\nenters_at = \"servo\"\namplitude_deg = 0.2\nfrequency_hz = 0.4\n";
+    let slow = "[[disturbance]]\nkind = \"sine\"\nenters_at = \"servo\"\namplitude_deg = 0.2\nfrequency_hz = 0.003\n";
+    let play = "[actuator]\ntime_constant_s = 0.05\nbacklash_deg = 0.2\n";
+    let steps = "[sensor]\npreset = \"ideal\"\n[sensor.pitch]\nresolution_deg = 0.05\n";
+    for moves in ["", noise, sine, slow, play, steps] {
+        let text = format!("{FREE}{moves}");
+        assert_eq!(doubt(&result(&text, &[])), None, "{moves}");
+        let away = doubt(&result(&text, AWAY));
+        assert_eq!(away, Some(Doubt::AwayFromRest), "{moves}");
+        assert!(is_lost(&result(&text, &[AWAY, &["loop.duration_s=400.0"]].concat())), "{moves}");
+    }
+}
