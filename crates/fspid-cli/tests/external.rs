@@ -312,6 +312,7 @@ fn flown(controller: &Controller, folder: &Path) -> Vec<Trace> {
         points: 0,
         digest: "drawn",
         elevator: None,
+        its_loop: None,
         evidence: false,
     };
     let exported = export(controller, &request).expect("nothing that is drawn is refused");

@@ -18,6 +18,7 @@ use fspid_core::Controller;
 use fspid_numeric::Real;
 use sha2::{Digest, Sha256};
 
+use crate::export::LoopWord;
 use crate::file::File;
 use crate::program::Program;
 use crate::vectors::Vector;
@@ -32,6 +33,8 @@ pub(crate) struct Subject<'a, R> {
     pub(crate) prefix: &'a str,
     pub(crate) heading: &'a Heading<'a>,
     pub(crate) vectors: &'a [Vector<R>],
+    /// What is known of the loop.
+    pub(crate) its_loop: Option<&'a LoopWord>,
     /// The files of the export.
     pub(crate) code: &'a [File],
 }
@@ -61,23 +64,26 @@ pub(crate) fn files<R: Real>(subject: &Subject<'_, R>) -> Vec<File> {
         .iter()
         .map(|file| File { name: format!("code/{}", file.name), bytes: file.bytes.clone() })
         .collect();
-    files.push(File::text("code.sha256", digests(subject.code)));
+    files.push(File::text("code.sha256", digests(&files)));
+    let code = files.len();
     files.extend(pack::tables(&findings));
     files.push(File::text("coverage.csv", pack::coverage(subject, &judge, &base.branches)));
     files.extend(proof::files(subject));
     files.extend(scripts::files(subject));
+    // But for the page, whose first line the script writes.
+    files.push(File::text("pack.sha256", digests(&files[code..])));
     files.push(File::text("README.md", pack::front(subject, &judge, &findings, &base)));
     files
 }
 
-/// The code as exported, as `sha256sum -c` reads it.
-fn digests(code: &[File]) -> String {
-    let mut lines: Vec<String> = code
+/// Files as they were written, as `sha256sum -c` reads them.
+fn digests(files: &[File]) -> String {
+    let mut lines: Vec<String> = files
         .iter()
         .map(|file| {
             let digest = Sha256::digest(&file.bytes);
             let digits: String = digest.iter().map(|byte| format!("{byte:02x}")).collect();
-            format!("{digits}  code/{}\n", file.name)
+            format!("{digits}  {}\n", file.name)
         })
         .collect();
     lines.sort_unstable();
@@ -202,6 +208,7 @@ mod tests {
             program: &program,
             controller,
             prefix: "fspid",
+            its_loop: None,
             heading: &heading,
             vectors,
             code: &[],
@@ -266,6 +273,7 @@ mod tests {
                 program: &program,
                 controller: &controller,
                 prefix: "fspid",
+                its_loop: None,
                 heading: &heading,
                 vectors: &[],
                 code: &[],

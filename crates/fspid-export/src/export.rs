@@ -36,8 +36,19 @@ pub struct Request<'a> {
     pub digest: &'a str,
     /// For which elevator it was designed, in a sentence that every file gets; none where nobody knows.
     pub elevator: Option<String>,
+    /// What is known of its loop; none where nobody asked.
+    pub its_loop: Option<LoopWord>,
     /// Data for a review is asked for, which takes a minute; C has it.
     pub evidence: bool,
+}
+
+/// What is known of the loop that a controller was exported from: the same bits say nothing of it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LoopWord {
+    /// In words, as "stable at rest".
+    pub words: String,
+    /// It is not known to be stable.
+    pub is_in_doubt: bool,
 }
 
 /// Why there is no export.
@@ -128,7 +139,10 @@ fn exported<R: Real>(
     let vectors = drawn(controller, request.angles, SEED, request.samples);
     let mut notes = Vec::from_iter(renamed(request.name, prefix));
     notes.extend(way(controller));
-    notes.push(NOT_JUDGED.to_owned());
+    notes.push(match request.its_loop.as_ref().filter(|it| it.is_in_doubt) {
+        Some(it) => format!("warning: of the loop of this scenario: {}; {NOT_JUDGED}", it.words),
+        None => NOT_JUDGED.to_owned(),
+    });
     if request.precision == Precision::Single {
         notes.push(SINGLE.to_owned());
     }
@@ -155,6 +169,7 @@ fn exported<R: Real>(
         prefix,
         heading: &heading,
         vectors: &vectors,
+        its_loop: request.its_loop.as_ref(),
         code: &files,
     };
     let has_evidence = request.evidence && request.target == Target::C;

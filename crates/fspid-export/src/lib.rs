@@ -20,7 +20,7 @@ pub mod write;
 mod zip;
 
 pub use compose::{Angles, Refusal, precision_of, program};
-pub use export::{Export, ExportError, Request, export, export_called};
+pub use export::{Export, ExportError, LoopWord, Request, export, export_called};
 pub use file::File;
 pub use fspid_core::Controller;
 pub use names::{identifier, prefix, prefixes};

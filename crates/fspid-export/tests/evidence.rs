@@ -5,7 +5,7 @@ use std::process::Command;
 
 use fspid_core::{AntiWindup, Controller, ControllerSetting, Gains, Limits, Pid, PidConfig};
 use fspid_export::program::Precision;
-use fspid_export::{Angles, Export, Request, Target, export};
+use fspid_export::{Angles, Export, LoopWord, Request, Target, export};
 
 fn controller() -> Controller<f64> {
     let mut config = PidConfig::sampled_every(0.01);
@@ -26,6 +26,7 @@ fn exported() -> Export {
         points: fspid_export::table::POINTS,
         digest: "0",
         elevator: None,
+        its_loop: Some(LoopWord { words: "unstable at rest".to_owned(), is_in_doubt: true }),
         evidence: true,
     };
     export(&controller(), &request).expect("nothing is refused")
@@ -58,6 +59,33 @@ fn every_number_of_the_design_has_its_lines_and_a_vector_that_fails_without_it()
     }
     let different = "2500, 0 are answered otherwise";
     assert!(text(&export, "README.md").contains(different), "the program answers its vectors");
+}
+
+/// The page said nothing of the loop, and the script compared the code alone with what was exported.
+#[test]
+fn the_page_tells_of_the_loop_and_every_file_beside_it_has_its_digest() {
+    let export = exported();
+    let page = text(&export, "README.md");
+    assert!(
+        page.contains(
+            "## The loop\n\nOf the loop of that scenario the program says: unstable at rest."
+        ),
+        "{page}"
+    );
+    assert!(page.contains("nothing of whether the design is good"), "{page}");
+    assert!(
+        export
+            .notes
+            .iter()
+            .any(|it| it.starts_with("warning: of the loop of this scenario: unstable at rest;"))
+    );
+    let digests = [text(&export, "code.sha256"), text(&export, "pack.sha256")].concat();
+    let mut named: Vec<&str> = digests.lines().filter_map(|it| it.split("  ").nth(1)).collect();
+    named.extend(["README.md", "code.sha256", "pack.sha256"]);
+    named.sort_unstable();
+    let mut all: Vec<&str> = export.evidence.iter().map(|it| it.name.as_str()).collect();
+    all.sort_unstable();
+    assert_eq!(named, all.into_iter().collect::<Vec<_>>());
 }
 
 #[test]

@@ -37,6 +37,7 @@ fn called(
         points: fspid_export::table::POINTS,
         digest: "0",
         elevator: None,
+        its_loop: None,
         evidence: false,
     };
     let exported = export(controller, &request).expect("nothing here is refused");

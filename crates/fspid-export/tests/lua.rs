@@ -130,6 +130,7 @@ fn a_controller_that_is_called_like_a_library_gets_another_name_and_answers() {
         points: 25,
         digest: "0",
         elevator: None,
+        its_loop: None,
         evidence: false,
     };
     let exported = export(&crate::common::paper(), &request).expect("nothing here is refused");

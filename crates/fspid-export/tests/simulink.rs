@@ -46,6 +46,7 @@ proptest! {
             points: 7,
             digest: "0",
             elevator: None,
+            its_loop: None,
             evidence: false,
         };
         let folder = tempfile::tempdir().expect("a temporary folder");

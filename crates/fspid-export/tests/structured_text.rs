@@ -230,6 +230,7 @@ fn the_check_for_a_plc_notices_each_number_of_a_design_that_is_turned() {
         points: 25,
         digest: "0",
         elevator: None,
+        its_loop: None,
         evidence: false,
     };
     let controller = limited().rounded::<f64>().expect("the same numbers");

@@ -3,11 +3,15 @@
 use fspid_diagnostics::digits::to_six_decimals;
 use fspid_diagnostics::listed;
 use fspid_export::program::Precision;
-use fspid_export::{Angles, Export, Request, Target, export_called, prefix, prefixes};
+use fspid_export::{Angles, Export, LoopWord, Request, Target, export_called, prefix, prefixes};
 use fspid_scenario::file::{Study, known_words};
 use fspid_scenario::tuning::TunableParameter;
 use fspid_scenario::units::degrees;
+use fspid_sim::stability::Unstable;
 use fspid_sim::{Controller, ElevatorSign, NamedController, Plant};
+
+use crate::analysis::AtRest;
+use crate::metrics::Verdict;
 
 /// What is asked for.
 #[derive(Clone, Copy, Debug)]
@@ -125,10 +129,27 @@ pub fn export(study: &Study, asked: &Question<'_>) -> Result<Export, ExportError
         points: asked.points,
         digest: &study.digest,
         elevator: elevator_in_words(study, &named.controller, asked.angles),
+        its_loop: Some(loop_in_words(study, named)),
         evidence: asked.evidence,
     };
     let called = asked.prefix.map_or_else(|| called(study, &named.name), str::to_owned);
     Ok(export_called(&named.controller, &request, &called)?)
+}
+
+/// What is known of a controller's loop: whether it is stable at rest, and where its flight leads.
+fn loop_in_words(study: &Study, named: &NamedController) -> LoopWord {
+    let at_rest = AtRest::of(&study.scenario, &named.controller);
+    let at_rest = at_rest.as_flown(&study.scenario, named);
+    let words = match at_rest.unstable {
+        Some(Unstable { spectral_radius, doubling_s, .. }) => {
+            Verdict::Unstable { spectral_radius, doubling_s }.to_string()
+        }
+        None => at_rest
+            .undecided_in_words()
+            .or_else(|| at_rest.not_asked_in_words())
+            .unwrap_or_else(|| "stable at rest, and where its flight leads".to_owned()),
+    };
+    LoopWord { words, is_in_doubt: at_rest.stability_word() != Some("stable") }
 }
 
 /// For which elevator a controller was designed: the way that it turns, and who limits it. None where another simulator has
@@ -204,6 +225,24 @@ kd = 0.15
         let set: Vec<String> = set.iter().map(|&it| it.to_owned()).collect();
         let study = file::parse(DESIGN, "design.toml", None, &set).expect("a design");
         export(&study, &Question { samples: 3, ..Question::of(target) }).expect("it can leave")
+    }
+
+    #[test]
+    fn what_is_not_known_to_hold_leaves_with_a_warning() {
+        let warned = |set: &[&str]| {
+            let notes = exported(Target::C, set).notes;
+            notes.into_iter().find(|it| it.starts_with("warning: of the loop of this scenario: "))
+        };
+        assert_eq!(warned(&[]), None);
+        let unstable = warned(&["controller.PID.kp=40.0"]).expect("it is unstable");
+        assert!(unstable.contains("unstable at rest (doubles every"), "{unstable}");
+        let slow = [
+            "plant.denominator=[1.0, 5.3, -24.7]",
+            "setpoint.amplitude_deg=60.0",
+            "controller.PID.kp=4.0",
+        ];
+        let undecided = warned(&slow).expect("it takes more than there is");
+        assert!(undecided.contains("undecided"), "{undecided}");
     }
 
     /// The text of every file without what marks a comment and where lines are broken.

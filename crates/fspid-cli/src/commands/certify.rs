@@ -120,7 +120,7 @@ fn prove(path: &Path, arguments: &Arguments) -> Result<(), Failure> {
     if arguments.family {
         // A dispersion that draws nothing of the scenario is a mistake, and no answer about a family.
         let wrong = |it: Problems| Failure::of_input(&it, Some(it.to_json()));
-        template.check_dispersions().map_err(wrong)?;
+        template.check_paths_of_dispersions().map_err(wrong)?;
     }
     let telling = Telling::for_standard_error();
     if let Some(which) = arguments.cases {

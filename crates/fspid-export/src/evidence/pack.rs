@@ -165,6 +165,7 @@ pub(super) fn front<R: Real>(
     if let Some(elevator) = subject.heading.elevator {
         let _ = writeln!(text, "\n{elevator}");
     }
+    let _ = writeln!(text, "\n{}", of_the_loop(subject));
     let _ = write!(
         text,
         "\n## Changes that the vectors find\n\nMeasured here by the interpreter of the program from which the C is \
@@ -183,6 +184,18 @@ pub(super) fn front<R: Real>(
     text += &ways(subject, judge, &base.branches);
     text += FILES;
     text
+}
+
+/// What is known of the loop, and that nothing else here speaks of it.
+fn of_the_loop<R: Real>(subject: &Subject<'_, R>) -> String {
+    let known = match subject.its_loop {
+        Some(it) => format!("Of the loop of that scenario the program says: {}.", it.words),
+        None => "Nobody asked here how its loop stands.".to_owned(),
+    };
+    format!(
+        "## The loop\n\n{known} Everything below says that the code is the design, and nothing of whether the design is good: \
+         `fspid verify`, `fspid analyse` and `fspid certify` of the scenario with the SHA-256 above do."
+    )
 }
 
 type Kind = (&'static str, fn(&Finding) -> bool);
@@ -279,7 +292,7 @@ const FILES: &str = "
 | file | from | what it is |
 | --- | --- | --- |
 | `code/` | fspid | the export, with its vectors and the program that asks for them |
-| `code.sha256` | fspid | digests of all files of the export, which the script compares first |
+| `code.sha256`, `pack.sha256` | fspid | digests of all files of the export, and of the pack but this page, which the script compares first |
 | `trace.csv` | fspid | element of the design or the code, its lines in the C, for each change the first vector that fails |
 | `lines.csv`, `by-vector.csv` | fspid | the same the other ways: from a line, and from a vector that is the first to fail, to elements |
 | `mutants.csv` | fspid | every change: the line of the C as it then is, and the first vector that fails |

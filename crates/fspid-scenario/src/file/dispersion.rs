@@ -354,6 +354,19 @@ impl Template {
         report.finish(self.name()).map(|_| nominal)
     }
 
+    /// Refuses dispersions whose paths are nowhere in the scenario, and nothing else of what
+    /// [`check_dispersions`](Self::check_dispersions) does.
+    ///
+    /// # Errors
+    /// The first of each such dispersion.
+    pub fn check_paths_of_dispersions(&self) -> Result<(), Problems> {
+        let mut report = self.report();
+        for (index, dispersion) in self.study().dispersions.iter().enumerate() {
+            self.told_misspelt(&mut report, &format!("dispersion[{index}]"), dispersion);
+        }
+        report.finish(self.name()).map(drop)
+    }
+
     /// Tells of the first path of a dispersion at `at` that is nowhere in the scenario: no limit mends that. False without one.
     fn told_misspelt(&self, report: &mut Report, at: &str, dispersion: &Dispersion) -> bool {
         let rows = self.rows();

@@ -2,6 +2,9 @@
 //!
 //! The rest is that of the gains there. A flight that is further off than that flies with others, of which it tells nothing.
 
+#[cfg(test)]
+mod tests;
+
 use super::moved::Moved;
 use super::periods_s;
 use super::pieces::Pieces;
@@ -11,7 +14,8 @@ use crate::scenario::Scenario;
 /// With nothing that moves it, an error that shrinks by less than a hundredth from one fifth of a flight to the next stays: where
 /// no limit is met, nothing but a swing does, and slow motions that shrink are told from it.
 const STAYS: f64 = 0.99;
-/// What widths of actuator or sensors keep swinging grows where it moves so many times as much.
+/// What widths of actuator or sensors keep swinging, and what creeps one way, grows where it moves so many times as much: a slow
+/// motion towards a rest has the same pace for long.
 const GROWN: f64 = 1.05;
 /// Of a fifth that holds so many periods of what swings, the size is that of the next but for growth.
 const PERIODS: f64 = 2.0;
@@ -23,7 +27,7 @@ const STANDS: f64 = 0.02;
 /// How a flight is judged whose gains move.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct MovingGains {
-    /// By what factor an error has to move in the last fifth to stay, or grow.
+    /// By what factor an error that turns back has to move in the last fifth to stay, or grow.
     stays_times: f64,
     /// The slowest of what swings, s; 0 for none.
     longest_period_s: f64,
@@ -53,16 +57,18 @@ impl MovingGains {
     /// Under what swings a fifth has to hold some periods of it, for otherwise each fifth is another part of one.
     pub(super) fn have_left(self, pieces: &Pieces<'_>, moved: Moved) -> bool {
         let Some([fourth, fifth]) = pieces.last_fifths() else { return false };
+        let turns = fourth.and(fifth).turns();
         let (times, is_seen) = match moved {
-            Moved::Nothing => (self.stays_times, true),
+            Moved::Nothing if turns => (self.stays_times, true),
+            Moved::Nothing => (GROWN, true),
             Moved::BySwings => {
                 let fifth_s = fifth.samples() as f64 * self.dt_s;
                 (DOUBLED, PERIODS * self.longest_period_s <= fifth_s)
             }
             Moved::ByNoise => (DOUBLED, true),
         };
-        let turns = !self.has_to_turn || fourth.and(fifth).turns();
-        is_seen && turns && fifth.error_size_rad() >= times * fourth.error_size_rad()
+        let is_swing = turns || !self.has_to_turn;
+        is_seen && is_swing && fifth.error_size_rad() >= times * fourth.error_size_rad()
     }
 
     /// True where an aircraft's flight ends so near a rest that its gains are those of the rest.

@@ -4,7 +4,7 @@ use fspid_core::{Gains, Law};
 use fspid_diagnostics::digits::to_six_decimals;
 use fspid_sim::load::{ConstantLoad, constant_load};
 use fspid_sim::stability::{GrowthAtRest, Undecided, Unstable, doubt_when_flown, growth_at_rest};
-use fspid_sim::{Controller, Doubt, NamedController, RestPoint, Scenario, SimError};
+use fspid_sim::{Controller, Doubt, NamedController, Plant, RestPoint, Scenario, SimError};
 
 use super::equilibrium::{Equilibrium, added_at_rest, equilibrium};
 use fspid_scenario::units::degrees;
@@ -105,10 +105,11 @@ pub struct AtRest {
 
 impl AtRest {
     /// The same with what the controller's flight says of it, flown here for who has not flown it; as it is where it is unstable or
-    /// undecided already.
+    /// undecided already, and of another simulator's aircraft, which nobody starts for this.
     #[must_use]
     pub fn as_flown(self, scenario: &Scenario, named: &NamedController) -> Self {
-        let is_open = self.unstable.is_none() && self.undecided.is_none();
+        let is_own = !matches!(scenario.plant, Plant::External(_));
+        let is_open = is_own && self.unstable.is_none() && self.undecided.is_none();
         match is_open.then(|| doubt_when_flown(scenario, named)).flatten() {
             Some(doubt) => self.doubted(doubt),
             None => self,

@@ -1,0 +1,155 @@
+//! What is told of the end of a flight whose gains move, of which every sample is known.
+
+use fspid_core::{Fspid, Gains, InputScale, Pid, PidConfig, SelfTuner, TunerSettings, paper};
+use fspid_fuzzy::{Defuzzifier, OutOfRange, Supervisor};
+
+use super::super::pieces::Shown;
+use super::*;
+use crate::actuator::Actuator;
+use crate::held_limits::Ends;
+use crate::plant::{ElevatorSign, LinearPlant};
+use crate::signal::{Disturbance, Entry, Profile, Shape};
+use crate::timing::Timing;
+
+/// Samples of a period of what swings here; it is a piece.
+const PERIOD: usize = 20;
+const DT_S: f64 = 0.01;
+
+fn scenario() -> Scenario {
+    let plant = LinearPlant::new(&[1.0], &[1.0, 1.0, 0.0], ElevatorSign::NoseUpPositive);
+    let timing = Timing::new(DT_S, 2.0).expect("allowed");
+    let step = Profile::new(0.1, Shape::Step { at_s: 0.0 }).expect("allowed");
+    Scenario::new("gains", plant.expect("proper"), timing, step)
+}
+
+fn self_tuner() -> Controller {
+    let settings = TunerSettings {
+        input_scale: InputScale { error_per_rad: 1.0, change_per_rad: 1.0 },
+        output_scale: Gains { kp: 0.1, ki: 0.0, kd: 0.0 },
+        ..TunerSettings::literal()
+    };
+    let supervisor = Supervisor::new(&paper::rules(), 5.0, Defuzzifier::Exact, OutOfRange::Clamp);
+    let nominal = Gains { kp: 2.0, ki: 0.0, kd: 1.0 };
+    let tuner = SelfTuner::new(nominal, supervisor.expect("allowed"), settings).expect("allowed");
+    Controller::SelfTuning(Fspid::new(tuner, PidConfig::sampled_every(DT_S)).expect("allowed"))
+}
+
+/// Ten periods of an error whose size changes by a factor with each, so that from a fifth to the next it changes by its square.
+fn changing<'a>(ends: &'a Ends, scenario: &Scenario, factor: f64) -> Pieces<'a> {
+    let mut pieces = Pieces::new(scenario, ends, PERIOD);
+    let mut size_rad = 0.1;
+    for _ in 0..10 {
+        for k in 0..PERIOD {
+            let moving_rad = if k < PERIOD / 2 { size_rad } else { -size_rad };
+            let (at_servo_rad, elevator_rad, autopilot_is_limited) = (0.0, 0.0, false);
+            let command_rad = moving_rad;
+            pieces.push(Shown {
+                moving_rad,
+                command_rad,
+                at_servo_rad,
+                elevator_rad,
+                autopilot_is_limited,
+            });
+        }
+        size_rad *= factor;
+    }
+    pieces
+}
+
+fn have_left(scenario: &Scenario, factor: f64, moved: Moved) -> bool {
+    let controller = self_tuner();
+    let ends = Ends::of(scenario, &controller);
+    let gains = MovingGains::of(scenario, &controller).expect("they move");
+    gains.have_left(&changing(&ends, scenario, factor), moved)
+}
+
+#[test]
+fn an_error_that_nothing_moves_stays_where_it_shrinks_by_less_than_a_hundredth_in_a_fifth() {
+    let plain = scenario();
+    for (factor, wanted) in [(1.01, true), (0.998, true), (0.99, false)] {
+        assert_eq!(have_left(&plain, factor, Moved::Nothing), wanted, "{factor}");
+    }
+    // What a width keeps swinging has to grow.
+    let lag = || Actuator::first_order(0.05).expect("allowed");
+    for actuator in [lag().with_play(0.01), lag().with_deadband(0.01)] {
+        let wide = Scenario { actuator: actuator.expect("allowed"), ..scenario() };
+        for (factor, wanted) in [(1.03, true), (1.01, false), (0.998, false)] {
+            assert_eq!(have_left(&wide, factor, Moved::Nothing), wanted, "{factor}");
+        }
+    }
+}
+
+/// A slow motion towards a rest has the same pace for long.
+#[test]
+fn what_creeps_one_way_stays_where_it_grows() {
+    let scenario = scenario();
+    let controller = self_tuner();
+    let ends = Ends::of(&scenario, &controller);
+    let gains = MovingGains::of(&scenario, &controller).expect("they move");
+    for (factor, wanted) in [(1.03, true), (1.01, false), (0.998, false)] {
+        let mut pieces = Pieces::new(&scenario, &ends, PERIOD);
+        let (mut moving_rad, mut pace_rad) = (0.1_f64, 1e-3);
+        for k in 0..10 * PERIOD {
+            pace_rad *= if (k + 1).is_multiple_of(PERIOD) { factor } else { 1.0 };
+            moving_rad += pace_rad;
+            let (command_rad, at_servo_rad, elevator_rad) = (moving_rad, 0.0, 0.0);
+            pieces.push(Shown {
+                moving_rad,
+                command_rad,
+                at_servo_rad,
+                elevator_rad,
+                autopilot_is_limited: false,
+            });
+        }
+        assert_eq!(gains.have_left(&pieces, Moved::Nothing), wanted, "{factor}");
+    }
+}
+
+#[test]
+fn what_is_moved_has_to_double_in_fifths_that_hold_two_periods() {
+    for moved in [Moved::BySwings, Moved::ByNoise] {
+        for (factor, wanted) in [(1.42, true), (1.40, false)] {
+            assert_eq!(have_left(&scenario(), factor, moved), wanted, "{factor} {moved:?}");
+        }
+    }
+    // A fifth is 0.4 s long.
+    for (frequency_hz, wanted) in [(5.1, true), (4.9, false)] {
+        let shape = Shape::Sine { at_s: 0.0, frequency_hz };
+        let swing = Disturbance::new(Entry::Servo, 0.01, shape).expect("allowed");
+        let swung = Scenario { disturbances: vec![swing], ..scenario() };
+        assert_eq!(have_left(&swung, 1.5, Moved::BySwings), wanted, "{frequency_hz}");
+        assert!(have_left(&swung, 1.5, Moved::ByNoise), "noise has no period");
+    }
+}
+
+#[test]
+fn nothing_is_said_of_fixed_gains_and_of_fewer_pieces_than_fifths() {
+    let scenario = scenario();
+    let gains = Gains { kp: 2.0, ki: 0.0, kd: 1.0 };
+    let fixed = Pid::new(gains, PidConfig::sampled_every(DT_S)).expect("allowed");
+    assert_eq!(MovingGains::of(&scenario, &Controller::Fixed(fixed)), None);
+    let controller = self_tuner();
+    let ends = Ends::of(&scenario, &controller);
+    let gains = MovingGains::of(&scenario, &controller).expect("they move");
+    let mut few = Pieces::new(&scenario, &ends, PERIOD);
+    for _ in 0..4 * PERIOD {
+        let (moving_rad, command_rad, at_servo_rad, elevator_rad) = (0.1, 0.1, 0.0, 0.0);
+        few.push(Shown {
+            moving_rad,
+            command_rad,
+            at_servo_rad,
+            elevator_rad,
+            autopilot_is_limited: false,
+        });
+    }
+    assert!(!gains.have_left(&few, Moved::Nothing));
+}
+
+#[test]
+fn gains_stand_where_a_flight_moves_at_its_end_by_a_fiftieth_at_most() {
+    let scenario = scenario();
+    let ends = Ends::of(&scenario, &self_tuner());
+    // The last two of ten periods are 0.5^8 and 0.62^8 of the first.
+    assert!(MovingGains::stand(&changing(&ends, &scenario, 0.5)));
+    assert!(!MovingGains::stand(&changing(&ends, &scenario, 0.62)));
+}
