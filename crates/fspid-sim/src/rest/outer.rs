@@ -1,6 +1,6 @@
 //! Steady state of a self-tuning outer loop around the pitch loop: the gains and slopes that it rests with.
 
-use fspid_core::{Fspid, Gains, IntegralForm, SecondInput, SelfTuner, TunerSettings};
+use fspid_core::{Fspid, Gains, IntegralForm, SecondInput};
 
 use super::{
     Held, Holding, Rest, RestPoint, Side, integrates, is_the_same_everywhere, leakage_per_s,
@@ -47,22 +47,6 @@ impl Rest {
         let holding = Holding { fspid, command_per_pitch: 0.0, gains, leakage_per_s };
         let is_silent = holding.is_silent([0.0; 2]);
         Some(holding.around(RestPoint::TRIM, (gains, held), [0.0; 2], is_silent))
-    }
-
-    /// The same without the dead zone that a self-tuner may have; none without one.
-    pub(crate) fn of_outer_loop_beyond_dead_zone(
-        fspid: &Fspid<f64>,
-        gains: Gains<f64>,
-        held: [f64; 2],
-    ) -> Option<Self> {
-        let settings = *fspid.tuner().settings();
-        settings.dead_zone?;
-        let (nominal, supervisor) = (fspid.tuner().nominal(), *fspid.tuner().supervisor());
-        let settings = TunerSettings { dead_zone: None, ..settings };
-        let tuner = SelfTuner::new_unchecked(nominal, supervisor, settings);
-        let own = Fspid::new(tuner, *fspid.config()).ok()?;
-        let rest = Self::of_outer_loop(&own, gains, held)?;
-        Some(Self { is_beyond_dead_zone: true, ..rest })
     }
 
     /// True where nothing is added to these gains.

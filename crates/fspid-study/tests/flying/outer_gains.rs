@@ -1,7 +1,7 @@
 //! Gains of outer loops that move with their error multiply what the loops hold, as those of the pitch loop do.
 
 use fspid_sim::Doubt;
-use fspid_study::analysis::{Analysis, Question, Stability};
+use fspid_study::analysis::{Analysis, AtRest, Question, Stability};
 use fspid_study::simulation::ControllerResult;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -161,3 +161,116 @@ fn a_mode_is_asked_with_the_gains_that_a_self_tuner_around_the_pitch_loop_comes_
     assert!(flight.at_rest.unstable.is_none());
     assert_eq!(doubt(&flight), Some(Doubt::OuterGains));
 }
+
+/// The rules of the middle make the throttle's loop unstable, and a millionth of a metre a second around it lie in a dead zone:
+/// `stable`, `certified` and "HOLDS, AND IS WHAT FLIES" of an airspeed that swings by 4.8 m/s for ever.
+#[test]
+fn a_dead_zone_of_an_outer_loop_hides_no_rest_that_is_unstable_without_it() {
+    let at_rest = |set: &[&str]| {
+        let study = study(ZONED, set);
+        AtRest::of(&study.scenario, &study.scenario.controllers[0].controller)
+    };
+    for zone in ["1e-9", "1e-6", "0.01"] {
+        let zone = format!(
+            "outer_loop.autothrottle.dead_zone={{ error_deg = {zone}, change_deg_s = {zone} }}"
+        );
+        let found = at_rest(&[&zone]).undecided.expect("nobody can tell");
+        assert_eq!(found.doubt, Doubt::OuterGains, "{zone}");
+    }
+    let without = ZONED.replace("dead_zone = { error_deg = 1e-06, change_deg_s = 1e-06 }\n", "");
+    let grows = AtRest::of(
+        &study(&without, &[]).scenario,
+        &study(&without, &[]).scenario.controllers[0].controller,
+    );
+    assert!(grows.unstable.is_some());
+    // Rules that hold without it leave no doubt.
+    let calm = "outer_loop.autothrottle.supervisor.output_scale={ kp = 0.1, ki = 0.1, kd = 0.0 }";
+    assert_eq!(at_rest(&[calm]).stability_word(), Some("stable"));
+    let swings = result(ZONED, &["loop.duration_s=180.0"]);
+    let airspeed_m_s = column(&swings.trace, "airspeed_m_s");
+    let last = &airspeed_m_s[airspeed_m_s.len() - 1500..];
+    let most = last.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    assert!(most - last.iter().copied().fold(f64::INFINITY, f64::min) > 2.0);
+}
+
+/// A Navion whose throttle is moved by a self-tuner with rules in the middle of its range alone.
+const ZONED: &str = r#"
+schema = 1
+name = "Navion, altitude capture"
+
+[aircraft]
+name = "navion"
+airspeed_ft_s = 176.0
+altitude_ft = 1000.0
+thrust = "with-speed"
+
+[engine]
+kind = "first-order"
+time_constant_s = 1.0
+
+[actuator]
+time_constant_s = 0.1
+
+[loop]
+sample_period_s = 0.02
+duration_s = 60.0
+
+[setpoint]
+kind = "step"
+amplitude_deg = 0.0
+
+[[outer_loop]]
+name = "altitude"
+kind = "pid"
+holds = "altitude"
+moves = "vertical speed"
+kp = 0.15
+least = -2.54
+most = 2.54
+most_per_s = 1.0
+
+[[outer_loop]]
+name = "vertical speed"
+kind = "pid"
+holds = "vertical-speed"
+moves = "pitch"
+kp = 0.5
+ki = 0.5
+least = -10.0
+most = 10.0
+most_per_s = 2.0
+
+[[outer_loop]]
+name = "autothrottle"
+kind = "fspid"
+holds = "airspeed"
+moves = "throttle"
+nominal = { kp = 0.2, ki = 0.02, kd = 0.0 }
+law = "memoryless"
+dead_zone = { error_deg = 1e-06, change_deg_s = 1e-06 }
+[outer_loop.supervisor]
+range = 1.0
+numbers = { delta_kp = [[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, -0.19, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]], delta_ki = [[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.03, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]], delta_kd = [[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]] }
+error_scale = 0.05
+change = "rate"
+change_scale = 0.05
+output_scale = { kp = 1.0, ki = 1.0, kd = 0.0 }
+
+[[mode]]
+name = "level"
+engage = ["altitude", "vertical speed", "autothrottle"]
+
+[[mode]]
+name = "climb"
+at_s = 5.0
+engage = ["altitude", "vertical speed", "autothrottle"]
+target = { altitude_ft = 1010.0 }
+
+[[controller]]
+name = "PID"
+kind = "pid"
+kp = 0.82
+ki = 0.43
+kd = 0.165
+derivative_filter_s = 0.05
+"#;

@@ -8,6 +8,7 @@
 //! until all ages have come, or the largest age is taken, or the smallest ([`Seeing`]). Every target is what the trim has; a beam is level there. The actuator is its lag and its
 //! delay.
 
+mod dead_zones;
 mod moving;
 mod numbers;
 mod still;
@@ -15,6 +16,7 @@ mod still;
 use fspid_core::{Gains, State};
 use fspid_lti::{Complex, Matrix, eigenvalues, modulus};
 
+use self::dead_zones::holds_beyond_dead_zones;
 use self::moving::{Sides, sides};
 use self::numbers::{Ended, Flying, Place, is_of_the_wings, places};
 use self::still::{on_its_way, settling_samples, still, still_alone, unlimited};
@@ -168,6 +170,10 @@ pub(crate) fn poles_of_mode(
     let dt_s = scenario.timing.dt_s();
     let poles = found.iter().filter(|z| modulus(**z) > GONE).map(|z| in_s(*z, dt_s)).collect();
     let spectral_radius = a_sample(largest, small.samples);
+    // Within the dead zones it holds.
+    if spectral_radius <= MODE_RADIUS && !holds_beyond_dead_zones(&asked)? {
+        return Ok(ModePoles::undecided(mode, Doubt::OuterGains));
+    }
     Ok(ModePoles { mode, from_s: 0.0, poles, spectral_radius, doubt: None })
 }
 

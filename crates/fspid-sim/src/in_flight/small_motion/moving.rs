@@ -127,10 +127,7 @@ fn acting_loop<'a>(
         }
     }
     let rests = targets.iter().map(|target| Rest::of_outer_loop(fspid, gains, [*target, command]));
-    let mut rests = rests.collect::<Option<Vec<Rest>>>()?;
-    rests.extend(targets.iter().filter_map(|target| {
-        Rest::of_outer_loop_beyond_dead_zone(fspid, gains, [*target, command])
-    }));
+    let rests = rests.collect::<Option<Vec<Rest>>>()?;
     Some(Acting { number, controller: &outer.controller, gains, rests })
 }
 
@@ -189,10 +186,6 @@ fn reach(
 fn of_one_loop(small: &Small<'_>, acting: &Acting<'_>, reach: &Reach) -> Result<Sides, SimError> {
     let mut found: Option<Sides> = None;
     for rest in &acting.rests {
-        let grows = found.as_ref().is_some_and(|it| matches!(it.stand, Stand::Grows { .. }));
-        if rest.is_beyond_dead_zone && grows {
-            continue;
-        }
         let closed: Vec<Vec<Vec<f64>>> =
             rest.sides.iter().map(|side| closed(small, &[(reach, side, acting.gains)])).collect();
         let asked = closed.iter().map(|rows| radius(rows));
@@ -204,11 +197,7 @@ fn of_one_loop(small: &Small<'_>, acting: &Acting<'_>, reach: &Reach) -> Result<
         };
         let found_of: Vec<Found> = asked.iter().map(|(radius, _)| of_radius(*radius)).collect();
         let seen = seen(small, reach, rest);
-        let stand = match stand_of_sides(&found_of, Some(|| rest.growth_through(closed, seen))) {
-            // Within the dead zone it holds.
-            Stand::Grows { .. } if rest.is_beyond_dead_zone => Sides::undecided().stand,
-            stand => stand,
-        };
+        let stand = stand_of_sides(&found_of, Some(|| rest.growth_through(closed, seen)));
         let here = Sides { stand, eigenvalues, largest };
         found = Some(match found {
             Some(before) => before.and(here),
