@@ -154,7 +154,7 @@ pub enum Doubt {
     FastMotion,
     /// Gains of a loop around the pitch loop move with its error and multiply what it holds, and what comes of that may grow.
     #[error(
-        "gains of a loop around the pitch loop move with its error and multiply what it holds (a set-point weight other than 1, the literal integral, no integral), and what comes of that may grow"
+        "gains of a loop around the pitch loop move with its error and multiply what it holds (a set-point weight other than 1, the literal integral, no integral), or are others beyond its dead zone, and what comes of that may grow"
     )]
     OuterGains,
     /// What is held at the end of the flight takes more than a limit leaves, of a plant that does not come to rest by itself.

@@ -33,10 +33,9 @@ pub(super) fn holds_beyond_dead_zones(asked: &Asked<'_>) -> Result<bool, SimErro
     for part in 1..1_usize << zoned.len() {
         let chosen = zoned.iter().enumerate().filter(|(place, _)| part >> place & 1 == 1);
         let autopilot = chosen.fold(asked.autopilot.clone(), |autopilot, (_, (number, other))| {
-            autopilot.with_controller(*number, other.clone())
+            autopilot.with_controller(*number, *other)
         });
-        if !holds(&Asked { autopilot: &autopilot, controller: asked.controller.clone(), ..*asked })?
-        {
+        if !holds(&Asked { autopilot: &autopilot, ..*asked })? {
             return Ok(false);
         }
     }
