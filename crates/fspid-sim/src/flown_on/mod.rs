@@ -60,15 +60,15 @@ pub(crate) fn doubt(
     }
     let is_linear = scenario.plant.linear().is_some();
     let pieces = pieces_of(scenario, &ends, trace);
+    let in_doubt = |is_in_doubt: bool| is_in_doubt.then(|| of_limits_or_gains(gains, &pieces));
     if trace.rows() < rows {
-        // Without limits a loop that holds at rest holds; what else ends an aircraft's flight is told by its verdict.
-        let is_of_limits = is_linear || {
-            let moved = moved_in_flight(scenario);
-            let swings_itself = moves().is_some_and(|moves| pieces.swings_on(moved, moves));
-            is_lost(trace.outcome, swings_itself, &pieces)
-                || gains.is_some() && diverged(trace.outcome)
-        };
-        return is_of_limits.then(|| of_limits_or_gains(gains, &pieces));
+        let swings = |moves| pieces.swings_on(moved_in_flight(scenario), moves);
+        let swings_itself = || moves().is_some_and(swings);
+        // With fixed gains and without limits a loop that holds at rest holds; what else ends an aircraft's flight its verdict tells.
+        let is_of_limits = is_linear
+            || is_lost(trace.outcome, swings_itself(), &pieces)
+            || gains.is_some() && diverged(trace.outcome);
+        return in_doubt(is_of_limits);
     }
     if has_come_to_rest(scenario, &pieces, trace) {
         return None;
@@ -81,13 +81,10 @@ pub(crate) fn doubt(
     let swings_itself = || !changes_late && pieces.swings_on(moved, moves);
     // One that is as long as that is its own answer.
     if !flies_on || rows > SAMPLES[1] {
-        let is_asked_for_rest = is_linear && flies_on;
-        let goes_on = if is_asked_for_rest {
-            pieces.goes_on(moved, moves) || have_left(gains, &pieces, moved)
-        } else {
-            swings_itself()
-        };
-        return goes_on.then(|| of_limits_or_gains(gains, &pieces));
+        return in_doubt(match is_linear && flies_on {
+            true => pieces.goes_on(moved, moves) || have_left(gains, &pieces, moved),
+            false => swings_itself(),
+        });
     }
     // At a limit that it has met once, noise may carry a plant that runs away over the edge; any other that still meets them.
     let meets = if moves == Moves::Away { pieces.whole().meets() } else { pieces.tail().meets() };

@@ -476,8 +476,26 @@ pub(super) fn cautions(outcome: &Outcome) -> Vec<String> {
             ));
         }
     }
+    notes.extend((0..judged.contestants.len()).filter_map(|place| undecided(outcome, place)));
     notes.extend((0..judged.contestants.len()).filter_map(|place| loads_left(outcome, place)));
     notes
+}
+
+/// In how many flights of a controller nobody can tell whether its loop is stable, if in any, and where to ask why.
+fn undecided(outcome: &Outcome, place: usize) -> Option<String> {
+    let (judged, count) = (&outcome.judged, outcome.summaries.get(place)?.whole.count);
+    let designs = &judged.contestants.get(place)?.designs;
+    let is_undecided = |case: usize| {
+        designs.iter().flat_map(|it| judged.flights(it, case)).any(|flight| flight.undecided)
+    };
+    let first = judged.cases.get(judged.all().into_iter().find(|case| is_undecided(*case))?)?;
+    Some(format!(
+        "{}: of the loops of {} of its {} flights nobody can tell whether they are stable; `fspid simulate` with the changes of their case, the first of which is \"{}\", says why.",
+        cut(name(outcome, place), 60),
+        count.undecided,
+        count.of,
+        first.name
+    ))
 }
 
 /// In how many flights of a controller much of a constant load is left, if in any.

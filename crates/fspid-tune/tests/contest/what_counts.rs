@@ -1,8 +1,8 @@
 //! What a contest counts as evidence, and what keeps a smaller error from winning.
 
-use fspid_tune::contest::Outcome;
+use fspid_tune::contest::{Outcome, Quantity};
 
-use super::{LOOP, MARKED, TUNING, pid, place};
+use super::{LOOP, MARKED, TUNING, cases, pid, place};
 
 /// An unstable plant that a controller holds behind a limit until it is lost, after ten times its flight.
 const HELD_BEYOND_A_LIMIT: &str = r#"
@@ -53,8 +53,8 @@ fn who_flies_loops_of_which_nobody_can_tell_whether_they_are_stable_does_not_win
             &format!("\"setpoint.amplitude_deg={amplitude:.1}\", \"loop.duration_s={duration}\""),
         )
     };
-    let cases: String = (0..10).map(longer).collect();
-    let place = place(&format!("{HELD_BEYOND_A_LIMIT}{cases}"));
+    let all: String = (0..10).map(longer).collect();
+    let place = place(&format!("{HELD_BEYOND_A_LIMIT}{all}"));
     let outcome = place.held();
     let told = outcome.text();
     let first = "B is first, and nobody wins: 10 of its 10 flights are of loops of which nobody can tell whether they are stable";
@@ -66,6 +66,7 @@ fn who_flies_loops_of_which_nobody_can_tell_whether_they_are_stable_does_not_win
     assert_eq!(outcome.summaries[0].whole.count.undecided, 0);
     assert!(told.contains("not better, for nobody can tell whether it is stable"), "{told}");
     let page = std::fs::read_to_string(place.out().join("contest.html")).expect("a page");
+    assert!(told.contains("the first of which is \"c0\", says why"), "{told}");
     assert!(page.contains("undecided") && page.contains("nobody can tell whether"));
 }
 
@@ -135,4 +136,42 @@ fn each_case_draws_its_own_aircraft_and_none_of_the_tuning() {
     // Another seed draws others.
     let again = text.replace("runs = 2\n\n[[contest", "runs = 2\nrun_seed = 2\n\n[[contest");
     assert_ne!(errors(&place(&again).held(), 0), one);
+}
+
+#[test]
+fn an_unstable_loop_that_does_not_diverge_is_judged_as_it_flew_and_failed() {
+    let oscillating =
+        "\n[[contest.case]]\nname = \"late\"\nset = [\"actuator.delay_samples=40\"]\n";
+    let text = format!(
+        "{LOOP}{}{}{}",
+        pid("calm", "kp = 0.2\nki = 0.1\nkd = 0.05"),
+        pid("brisk", "kp = 0.8\nki = 0.4\nkd = 0.16"),
+        cases(oscillating)
+    );
+    let outcome = place(&text).held();
+    let count = outcome.summaries[1].whole.count;
+    assert_eq!((count.lost, count.unstable), (0, 1));
+    assert!(count.failed >= 1, "{count:?}");
+    let late = outcome.summaries[1].cases[8].spread(Quantity::ERROR).expect("an error");
+    assert!(late.median.is_finite());
+}
+
+#[test]
+fn a_self_tuner_that_is_unstable_at_rest_fails_though_its_case_asks_nothing_of_it() {
+    let gains = "nominal = { kp = 5.9, ki = 0.43, kd = 0.0 }\nlaw = \"memoryless\"\nsupervisor = { table = \"mirrored\", range = 5.0, output_scale = { kp = 0.0, ki = 0.0, kd = 0.0 } }";
+    let still = format!("\n[[controller]]\nname = \"still\"\nkind = \"fspid\"\n{gains}\n");
+    let asked = |words: &str| {
+        let requirement =
+            format!("\n[[requirement]]\nmeasure = \"sensitivity_peak\"\nmost = 5.0\n{words}\n");
+        let fixed = pid("fixed", "kp = 5.9\nki = 0.43\nkd = 0.0");
+        let text = format!("{LOOP}{fixed}{still}{requirement}{}", cases(""));
+        let outcome = place(&text).held();
+        [0, 1].map(|place| outcome.summaries[place].whole.count)
+    };
+    let [fixed, tuned] = asked("");
+    assert!(fixed.unstable > 0 && fixed.lost < fixed.of, "{fixed:?}");
+    assert_eq!((tuned.unstable, tuned.failed), (fixed.unstable, fixed.failed));
+    let [fixed, tuned] = asked("not_in = [\"commands\", \"plants\"]");
+    assert_eq!((tuned.unstable, tuned.failed), (fixed.unstable, fixed.failed));
+    assert!(tuned.failed > 0);
 }
