@@ -47,16 +47,16 @@ impl Seeds {
     /// The seed of a case; as written without a name.
     ///
     /// Draws that all cases share would be in the error of every case and in none of their differences. And what was tuned on the
-    /// draws of a seed is not judged on them. Of a case its seed is the first 63 bits of the SHA-256 of `contest draws`, of the
+    /// draws of a seed is not judged on them. Of a case its seed is the first 53 bits of the SHA-256 of `contest draws`, of the
     /// decimals of the contest's seed and of the case's name, with a line feed between each.
-    fn of(self, case: Option<&str>) -> u64 {
+    pub(crate) fn of(self, case: Option<&str>) -> u64 {
         match self {
             Self::OfAll(seed) => seed,
             Self::OfEach(seed) => {
                 let name = case.unwrap_or_default();
                 let digest = Sha256::digest(format!("contest draws\n{seed}\n{name}"));
                 let (first, _) = digest.split_first_chunk().unwrap_or((&[0; 8], &[]));
-                u64::from_be_bytes(*first) >> 1
+                u64::from_be_bytes(*first) >> 11
             }
         }
     }

@@ -23,7 +23,8 @@ use fspid_study::export::{Question, chosen, export};
 /// Write a controller or a fuzzy system in another language: the same bits as the simulator, with vectors that show it.
 ///
 /// The folder holds the code, `vectors.csv` with drawn samples, good and bad ones, and their answers, and a program that asks
-/// the code for the answers and counts those with other bits. Whether the loop is good is not asked: `verify` and `certify` do.
+/// the code for the answers and counts those with other bits. A loop that is not known to be stable is told; whether it is good
+/// `verify` and `certify` say.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Examples:\n  fspid export pitch.toml --controller FSPID --to c --out flight\n  fspid export tip.toml --to c --out tip\n  cc -std=c99 -O2 -ffp-contract=off flight/*.c -o check && ./check"

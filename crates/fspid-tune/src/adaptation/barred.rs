@@ -95,6 +95,7 @@ pub(super) fn bar(own: Flier, other: Option<Flier>) -> Option<String> {
         set: Vec::new(),
         weight: 1.0,
         runs: 1,
+        draws_seed: None,
         mirror_of: None,
     };
     let cases = vec![case; own.flights.len()];

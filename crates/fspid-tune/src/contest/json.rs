@@ -14,10 +14,11 @@ use super::summary::{Spread, Summary};
 const SCHEMA: u32 = 1;
 
 /// Why keys of the answer are null.
-const NULLS: [(&str, &str); 6] = [
+const NULLS: [(&str, &str); 7] = [
     ("winner", "none is known to be better than all others; `why` says more"),
     ("compared", "it is the one that all others are compared with"),
     ("mirror", "no case is another's mirror image"),
+    ("draws_seed", "nothing is drawn"),
     ("mirror_of", "the case is no other's mirror image"),
     ("tuning", "nothing was tuned"),
     ("against", "there is none to compare with"),
@@ -103,6 +104,7 @@ fn cases(outcome: &Outcome) -> Vec<Value> {
             "group": case.group,
             "set": case.set,
             "runs": case.runs,
+            "draws_seed": case.draws_seed,
             "mirror_of": case.mirror_of.map(|it| judged.cases[it].name.as_str()),
             "iae_deg_s": errors,
         })

@@ -21,6 +21,8 @@ pub struct Case {
     pub weight: f64,
     /// How often each design flies it.
     pub runs: usize,
+    /// Of which seed a campaign with the changes of the case draws the same aircraft; none where nothing is drawn.
+    pub draws_seed: Option<u64>,
     /// Place of the case that it is the mirror image of.
     pub mirror_of: Option<usize>,
 }

@@ -67,7 +67,7 @@ pub(crate) use words::some_of;
 
 use crate::crew::Crew;
 use crate::error::TuneError;
-use crate::flights::{Flights, each_once};
+use crate::flights::{Flights, Seeds, each_once};
 use crate::problem::TuningProblem;
 use crate::search::Effort;
 use crate::source::{Source, in_commands};
@@ -315,6 +315,8 @@ impl Contest {
             set: case.set.clone(),
             weight: case.weight,
             runs: runs(index),
+            draws_seed: (self.rules.runs > 0)
+                .then(|| Seeds::OfEach(self.rules.run_seed).of(Some(&case.name))),
             mirror_of: case.mirror_of.as_ref().and_then(place),
         });
         cases.collect()

@@ -133,6 +133,10 @@ fn each_case_draws_its_own_aircraft_and_none_of_the_tuning() {
         assert!((mine / theirs - 1.0).abs() > 1e-3, "{one:?} {other:?}");
     }
     assert_eq!(outcome.comparison(1).map(|it| it.evidence), Some(3));
+    // A campaign draws the same aircraft of the seed that is told.
+    let cases = &outcome.json()["cases"];
+    let told = cases[0]["draws_seed"].as_u64().expect("a seed");
+    assert!(told < 1 << 53 && cases[1]["draws_seed"].as_u64().is_some_and(|it| it != told));
     // Another seed draws others.
     let again = text.replace("runs = 2\n\n[[contest", "runs = 2\nrun_seed = 2\n\n[[contest");
     assert_ne!(errors(&place(&again).held(), 0), one);

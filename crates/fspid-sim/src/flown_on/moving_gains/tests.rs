@@ -8,7 +8,9 @@ use super::*;
 use crate::actuator::Actuator;
 use crate::held_limits::Ends;
 use crate::plant::{ElevatorSign, LinearPlant};
+use crate::sensor::{RATE, Sensor, SensorModel};
 use crate::signal::{Disturbance, Entry, Profile, Shape};
+use crate::surroundings::Surroundings;
 use crate::timing::Timing;
 
 /// Samples of a period of what swings here; it is a piece.
@@ -71,8 +73,19 @@ fn an_error_that_nothing_moves_stays_where_it_shrinks_by_less_than_a_hundredth_i
     }
     // What a width keeps swinging has to grow.
     let lag = || Actuator::first_order(0.05).expect("allowed");
-    for actuator in [lag().with_play(0.01), lag().with_deadband(0.01)] {
-        let wide = Scenario { actuator: actuator.expect("allowed"), ..scenario() };
+    let moved_by = |actuator: Actuator| Scenario { actuator, ..scenario() };
+    let seen_by = |resolution: f64| {
+        let model = SensorModel { resolution, ..SensorModel::default() };
+        let rate_sensor = Some(Sensor::new(model, 1, RATE).expect("allowed"));
+        let surroundings = Surroundings { rate_sensor, ..Surroundings::default() };
+        Scenario { surroundings, ..scenario() }
+    };
+    assert!(have_left(&seen_by(0.0), 0.998, Moved::Nothing));
+    for wide in [
+        moved_by(lag().with_play(0.01).expect("allowed")),
+        moved_by(lag().with_deadband(0.01).expect("allowed")),
+        seen_by(0.01),
+    ] {
         for (factor, wanted) in [(1.03, true), (1.01, false), (0.998, false)] {
             assert_eq!(have_left(&wide, factor, Moved::Nothing), wanted, "{factor}");
         }

@@ -45,6 +45,7 @@ fn contest(contestants: Vec<Contestant>) -> Judged {
         set: Vec::new(),
         weight: if place + 1 == count { 3.0 } else { 1.0 },
         runs: 1,
+        draws_seed: None,
         mirror_of: None,
     };
     Judged::new(contestants, (0..count).map(case).collect(), 0)

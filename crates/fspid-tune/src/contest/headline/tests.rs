@@ -34,6 +34,7 @@ fn judged(controllers: &[(&str, Vec<Flight>)], runs: usize, against: usize) -> J
         set: Vec::new(),
         weight: 1.0,
         runs,
+        draws_seed: None,
         mirror_of: None,
     };
     let count = controllers.first().map_or(0, |it| it.1.len()) / runs;

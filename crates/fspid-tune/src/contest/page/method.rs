@@ -73,6 +73,7 @@ fn case_table(outcome: &Outcome) -> fspid_page::analysis::DataTable {
             Datum::Text(group(&case.group).to_owned()),
             Datum::Code(cut(&case.set.join(" "), 300)),
             Datum::Number(case.runs.to_string()),
+            Datum::Number(case.draws_seed.map_or(String::new(), |it| it.to_string())),
             Datum::Number(number(case.weight)),
             Datum::Text(mirrored.map_or(String::new(), |it| cut(&it.name, 60))),
         ]
@@ -82,6 +83,7 @@ fn case_table(outcome: &Outcome) -> fspid_page::analysis::DataTable {
         "group",
         "what it changes",
         "flights of a design",
+        "seed of its draws",
         "weight in means",
         "mirror image of",
     ];

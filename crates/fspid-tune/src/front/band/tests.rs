@@ -184,6 +184,7 @@ impl<F: Fn(usize, usize, usize, usize, usize) -> Flight> Ladder<F> {
             set: Vec::new(),
             weight: (self.weight)(place),
             runs: self.runs,
+            draws_seed: None,
             mirror_of: None,
         };
         let contestants = vec![contestant(0), contestant(1)];
