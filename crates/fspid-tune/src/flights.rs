@@ -44,7 +44,7 @@ pub(crate) enum Seeds {
 }
 
 impl Seeds {
-    /// The seed of a case; as written without a name.
+    /// The seed of a case, by the name that it [draws by](drawn_as); as written without a name.
     ///
     /// Draws that all cases share would be in the error of every case and in none of their differences. And what was tuned on the
     /// draws of a seed is not judged on them. Of a case its seed is the first 53 bits of the SHA-256 of `contest draws`, of the
@@ -60,6 +60,11 @@ impl Seeds {
             }
         }
     }
+}
+
+/// By which name a case draws: its own, or that of the case that it mirrors, whose aircraft it flies.
+pub(crate) fn drawn_as(case: &Case) -> &str {
+    case.mirror_of.as_ref().unwrap_or(&case.name)
 }
 
 /// A case that is flown: its scenario with one controller, and what each of its runs draws.
@@ -348,7 +353,7 @@ pub(crate) fn flown_case(
         }
         // Of the whole scenario: everybody gets the same draws, and a campaign of it with this seed as well.
         runs => {
-            let seed = dispersed.seeds.of(case.map(|it| it.name.as_str()));
+            let seed = dispersed.seeds.of(case.map(drawn_as));
             Some(Draws::new(whole, Sampling::LatinHypercube, runs, seed)?)
         }
     };

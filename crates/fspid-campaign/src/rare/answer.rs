@@ -69,9 +69,10 @@ impl Rare {
         (target, undecided): (&Target<'_>, u64),
         mut found: Found,
     ) -> Self {
-        let independent = match &found.subset {
-            Some(subset) => (TEAMS * subset.teams.count) as f64,
-            None => question.flights as f64,
+        let independent = match (&found.subset, &found.importance) {
+            (Some(subset), _) => (TEAMS * subset.teams.count) as f64,
+            (None, Some(importance)) => importance.independent,
+            (None, None) => question.flights as f64,
         };
         let study = campaign.template().study();
         let hardly_flown = Seldom::of(&study.dispersions, independent);

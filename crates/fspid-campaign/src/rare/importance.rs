@@ -80,6 +80,8 @@ pub struct Importance {
     pub likeliest: Option<Point>,
     /// Points that were asked for in all.
     pub asked: u64,
+    /// Those of them that are drawn as flights are, independent of all others: the first round, and a tenth of what is counted.
+    pub independent: f64,
 }
 
 impl Aim {
@@ -173,7 +175,8 @@ pub fn importance<L: LimitState>(
     } else if let Known::Below { most, .. } = &mut found.known {
         *most = plain;
     }
-    Ok(Importance { aim, levels, asked, ..found })
+    let independent = each as f64 + PLAIN * count as f64;
+    Ok(Importance { aim, levels, asked, independent, ..found })
 }
 
 /// Points of a round with their scores: the first ones of the standard normal distribution, as many as their share asks for.
@@ -233,5 +236,6 @@ fn weighed(drawn: &[(Point, f64)], aim: &Aim) -> Importance {
         largest_share: if sum > 0.0 { largest / sum } else { 0.0 },
         likeliest,
         asked: 0,
+        independent: 0.0,
     }
 }

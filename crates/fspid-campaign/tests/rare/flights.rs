@@ -148,6 +148,18 @@ fn a_value_that_is_hardly_ever_chosen_counts_as_if_it_always_failed() {
     assert!(of("[1, 0]").hardly_flown.share.abs() < 1e-18);
 }
 
+/// Of 8000 flights of importance sampling alone a tenth or so is drawn as flights are, and all were taken for that: "at most
+/// 3.8e-6" of 6e-4.
+#[test]
+fn a_value_that_importance_sampling_hardly_meets_counts_as_if_it_always_failed() {
+    let drawn = "distribution = \"normal\"\nmean = 1.0\nstandard_deviation = 0.1";
+    let choice = "distribution = \"choice\"\nvalues = [1.0, 2.0]\nweights = [997, 3]";
+    let text = STEP.replace(drawn, choice);
+    assert_ne!(text, STEP);
+    let found = asked(&text, &question(Method::Importance, 8000)).expect("answered");
+    assert!((found.hardly_flown.share - 0.003).abs() < 1e-15 && found.at_most() >= 0.003);
+}
+
 /// Two choices that are harmless each, and unstable together: 9e-4 of all flights. Each comes often enough, and "at most 1e-12"
 /// was told of both.
 const TOGETHER: &str = r#"

@@ -14,18 +14,20 @@ mod tests;
 
 use core::ops::ControlFlow;
 
+use crate::autopilot::Quantity;
 use crate::closed_loop::fly;
 use crate::controller::Controller;
 use crate::held_limits::{Ends, Moves};
+use crate::instant::Instant;
 use crate::plant::Plant;
 use crate::rest::Doubt;
 use crate::sample_guard;
 use crate::scenario::Scenario;
 use crate::signal::{Disturbance, Entry};
 use crate::trace::{EndCause, Outcome, Trace};
-use moved::{Afterwards, Moved, changes_late, has_swings, held_on, is_noisy};
+use moved::{Afterwards, Moved, changes_late, has_swings, held_on, is_noisy, swings_by_command};
 use moving_gains::MovingGains;
-use pieces::{Pieces, Shown};
+use pieces::{Outer, Pieces, Shown};
 
 /// So many times as long a flight is flown on.
 const TIMES: usize = 10;
@@ -67,10 +69,14 @@ pub(crate) fn doubt(
         // With fixed gains and without limits a loop that holds at rest holds; what else ends an aircraft's flight its verdict tells.
         let is_of_limits = is_linear
             || is_lost(trace.outcome, swings_itself(), &pieces)
-            || gains.is_some() && diverged(trace.outcome);
+            || gains.is_some()
+                && (diverged(trace.outcome)
+                    || MovingGains::leave_what_is_held(&pieces, moved_in_flight(scenario)));
         return in_doubt(is_of_limits);
     }
-    if has_come_to_rest(scenario, &pieces, trace) {
+    let has_rested = has_come_to_rest(scenario, &pieces, gains, trace);
+    let is_stilled = gains.is_some() && (has_swings(scenario) || swings_by_command(scenario));
+    if has_rested && !is_stilled {
         return None;
     }
     let moves = moves()?;
@@ -95,9 +101,10 @@ pub(crate) fn doubt(
     }
     let swings_itself = !is_linear && swings_itself();
     let ways = [
-        (Afterwards::Swings, true),
-        (Afterwards::Quiet, has_swings(scenario)),
-        (Afterwards::Noise, is_noisy(scenario) && meets),
+        (Afterwards::Swings, !has_rested),
+        (Afterwards::Quiet, !has_rested && has_swings(scenario)),
+        (Afterwards::Noise, !has_rested && is_noisy(scenario) && meets),
+        (Afterwards::Still, is_stilled),
     ];
     let mut asked = ways.into_iter().filter(|(_, is_asked)| *is_asked);
     asked.find_map(|(afterwards, _)| {
@@ -118,6 +125,7 @@ fn moved_in_flight(scenario: &Scenario) -> Moved {
 fn pieces_of<'a>(scenario: &Scenario, ends: &'a Ends, trace: &Trace) -> Pieces<'a> {
     let at_servo = scenario.loads_rad(Entry::Servo);
     let mut pieces = Pieces::new(scenario, ends, (trace.rows() / 5).max(1));
+    let outer = outer_of(trace);
     for k in 0..trace.rows() {
         pieces.push(Shown {
             moving_rad: moving_rad(scenario, trace.setpoint_rad[k], trace.theta_rad[k]),
@@ -125,9 +133,35 @@ fn pieces_of<'a>(scenario: &Scenario, ends: &'a Ends, trace: &Trace) -> Pieces<'
             at_servo_rad: at_servo.as_ref().and_then(|it| it.get(k)).copied().unwrap_or(0.0),
             elevator_rad: trace.elevator_rad[k],
             autopilot_is_limited: trace.autopilot_limited.get(k) == Some(&true),
+            outer: outer(k),
         });
     }
     pieces
+}
+
+/// What the loops around the pitch loop hold at each sample of a flight; nothing without them.
+fn outer_of(trace: &Trace) -> impl Fn(usize) -> Outer {
+    let held = [["altitude_m", "altitude_target_m"], ["airspeed_m_s", "airspeed_target_m_s"]];
+    let held = held.map(|names| names.map(|name| trace.column(name)));
+    let modes = trace.column("mode");
+    move |k| {
+        let at = |column: Option<&[f64]>| column.and_then(|it| it.get(k)).copied();
+        let off = held.map(|[is, wanted]| Some(at(is)? - at(wanted)?));
+        Outer { off: off.map(Option::unwrap_or_default), mode: at(modes).unwrap_or_default() }
+    }
+}
+
+/// The same of a sample that is being flown.
+fn outer_at(instant: &Instant) -> Outer {
+    let (Some(aircraft), Some(autopilot)) = (instant.aircraft, instant.autopilot) else {
+        return Outer::default();
+    };
+    let wanted = |quantity: Quantity| autopilot.targets[quantity.place()];
+    let off = [
+        aircraft.altitude_m - wanted(Quantity::Altitude),
+        aircraft.airspeed_m_s - wanted(Quantity::Airspeed),
+    ];
+    Outer { off, mode: f64::from(autopilot.mode) }
 }
 
 /// What comes to rest, or swings: the error of the pitch loop; with an autopilot, whose swings move the set-point, the pitch itself.
@@ -140,14 +174,20 @@ fn moving_rad(scenario: &Scenario, setpoint_rad: f64, theta_rad: f64) -> f64 {
 
 /// True where the flight itself has come to rest; or where something moves it for ever, what it does, without limits, once its
 /// beginning has died out.
-fn has_come_to_rest(scenario: &Scenario, pieces: &Pieces<'_>, trace: &Trace) -> bool {
+fn has_come_to_rest(
+    scenario: &Scenario,
+    pieces: &Pieces<'_>,
+    gains: Option<MovingGains>,
+    trace: &Trace,
+) -> bool {
     let has_ended = || match moved_in_flight(scenario) {
         Moved::Nothing => pieces.rests(),
         Moved::BySwings => {
             !pieces.tail().meets() && pieces.repeats() && has_shown_its_swings(scenario)
         }
         Moved::ByNoise => {
-            !pieces.whole().meets() && pieces.is_quiet() && has_shown_its_swings(scenario)
+            let is_quiet = pieces.is_quiet(gains.is_some());
+            !pieces.whole().meets() && is_quiet && has_shown_its_swings(scenario)
         }
     };
     // Of a few samples nothing is said.
@@ -205,6 +245,7 @@ fn doubt_flown_on(
             at_servo_rad: at_servo.copied().unwrap_or(0.0),
             elevator_rad: instant.elevator_rad,
             autopilot_is_limited: instant.autopilot.is_some_and(|it| it.is_limited),
+            outer: outer_at(&instant),
         });
         if instant.k + 1 == rows {
             own = Some(pieces.whole());
@@ -236,7 +277,9 @@ fn doubt_flown_on(
 }
 
 fn have_left(gains: Option<MovingGains>, pieces: &Pieces<'_>, moved: Moved) -> bool {
-    gains.is_some_and(|it| it.have_left(pieces, moved))
+    gains.is_some_and(|it| {
+        it.have_left(pieces, moved) || MovingGains::leave_what_is_held(pieces, moved)
+    })
 }
 
 /// By what a flight is in doubt that has not come back to its rest: by gains that move, where no limit is met near its end.

@@ -20,6 +20,8 @@ pub(super) enum Moved {
 /// is what is commanded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Afterwards {
+    /// Nothing, and set-points that swing stand where they are: what swings on then does so by itself.
+    Still,
     /// Neither noise nor swings of disturbances: what swings on then does so by itself.
     Quiet,
     /// Swings without noise, which would hide a swing that stays.
@@ -35,7 +37,11 @@ impl Moved {
         match afterwards {
             Afterwards::Noise if is_noisy => Self::ByNoise,
             Afterwards::Noise | Afterwards::Swings if swings => Self::BySwings,
-            _ if swings_by_command(scenario) => Self::BySwings,
+            Afterwards::Noise | Afterwards::Swings | Afterwards::Quiet
+                if swings_by_command(scenario) =>
+            {
+                Self::BySwings
+            }
             _ => Self::Nothing,
         }
     }
@@ -57,7 +63,7 @@ pub(super) fn has_swings(scenario: &Scenario) -> bool {
     swings.any(|it| it.acts_by(end_s))
 }
 
-fn swings_by_command(scenario: &Scenario) -> bool {
+pub(super) fn swings_by_command(scenario: &Scenario) -> bool {
     let setpoint = &scenario.setpoint;
     let end_s = scenario.timing.end_s();
     let has_size = setpoint.ends_rad().iter().any(|it| *it != 0.0);
@@ -109,7 +115,7 @@ pub(super) fn held_on(
     let mut prepared = own.prepare().ok()?;
     let after = match &scenario.setpoint {
         noise if noise.is_noise() => After::of_noise(afterwards),
-        swing if swing.goes_on() => After::GoesOn,
+        swing if swing.goes_on() && afterwards != Afterwards::Still => After::GoesOn,
         _ => After::Holds,
     };
     hold(&mut prepared.setpoint_rad, before, after);
@@ -150,7 +156,7 @@ impl After {
         match (disturbance, afterwards) {
             (noise, _) if noise.is_noise() => Self::of_noise(afterwards),
             (load, _) if !load.goes_on() => Self::Holds,
-            (_, Afterwards::Quiet) => Self::Ends,
+            (_, Afterwards::Quiet | Afterwards::Still) => Self::Ends,
             (_, Afterwards::Swings | Afterwards::Noise) => Self::GoesOn,
         }
     }

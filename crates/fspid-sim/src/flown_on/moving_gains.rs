@@ -7,9 +7,10 @@ mod tests;
 
 use super::moved::Moved;
 use super::periods_s;
-use super::pieces::Pieces;
+use super::pieces::{Pieces, Span};
 use crate::controller::Controller;
 use crate::scenario::Scenario;
+use crate::sensor::Sensor;
 
 /// With nothing that moves it, an error that shrinks by less than a hundredth from one fifth of a flight to the next stays: where
 /// no limit is met, nothing but a swing does, and slow motions that shrink are told from it.
@@ -23,12 +24,18 @@ const PERIODS: f64 = 2.0;
 const DOUBLED: f64 = 2.0;
 /// An aircraft's error or pitch that moves at the end by no more than this share of all its movement moves no gains.
 const STANDS: f64 = 0.02;
+/// A swing that is so many times as wide as the widths of actuator and sensors is none of theirs.
+const WIDTHS: f64 = 10.0;
+/// What a step of a rate gyro is of pitch: that of a second.
+const RATE_S: f64 = 1.0;
+/// Altitude, m, and airspeed, m/s, that are nearer to what they are to be are there.
+const NEAR: [f64; 2] = [3.0, 0.5];
 
 /// How a flight is judged whose gains move.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct MovingGains {
-    /// By what factor an error that turns back has to move in the last fifth to stay, or grow.
-    stays_times: f64,
+    /// All widths that keep a loop swinging by themselves, rad: a deadband, play, the steps of a sensor.
+    width_rad: f64,
     /// The slowest of what swings, s; 0 for none.
     longest_period_s: f64,
     dt_s: f64,
@@ -44,12 +51,12 @@ impl MovingGains {
         if !(tunes(controller) || outer.any(|it| tunes(&it.controller))) {
             return None;
         }
-        let stays_times = if has_widths(scenario) { GROWN } else { STAYS };
+        let width_rad = width_rad(scenario);
         let longest_period_s =
             periods_s(scenario).map(|(_, period_s)| period_s).fold(0.0, f64::max);
         let dt_s = scenario.timing.dt_s();
         let has_to_turn = scenario.plant.linear().is_none();
-        Some(Self { stays_times, longest_period_s, dt_s, has_to_turn })
+        Some(Self { width_rad, longest_period_s, dt_s, has_to_turn })
     }
 
     /// True where the error at the end of a flight does not shrink.
@@ -59,7 +66,9 @@ impl MovingGains {
         let Some([fourth, fifth]) = pieces.last_fifths() else { return false };
         let turns = fourth.and(fifth).turns();
         let (times, is_seen) = match moved {
-            Moved::Nothing if turns => (self.stays_times, true),
+            Moved::Nothing if turns && fifth.error_size_rad() > WIDTHS * self.width_rad => {
+                (STAYS, true)
+            }
             Moved::Nothing => (GROWN, true),
             Moved::BySwings => {
                 let fifth_s = fifth.samples() as f64 * self.dt_s;
@@ -68,19 +77,38 @@ impl MovingGains {
             Moved::ByNoise => (DOUBLED, true),
         };
         let is_swing = turns || !self.has_to_turn;
-        is_seen && is_swing && fifth.error_size_rad() >= times * fourth.error_size_rad()
+        // What is seen in steps is as large but for one.
+        let last_rad = fifth.error_size_rad() + if times < 1.0 { self.width_rad } else { 0.0 };
+        is_seen && is_swing && last_rad >= times * fourth.error_size_rad()
+    }
+
+    /// True where altitude or airspeed goes away from what a mode holds, or does not come back to it, with an error that does not
+    /// stand: at a limit of an outer loop the pitch stands while they go.
+    pub(super) fn leave_what_is_held(pieces: &Pieces<'_>, moved: Moved) -> bool {
+        let Some([fourth, fifth]) = pieces.last_fifths() else { return false };
+        let [before, last, all] = [fourth, fifth, pieces.whole()].map(Span::off);
+        let times = if moved == Moved::Nothing { STAYS } else { DOUBLED };
+        let goes = |place: usize| {
+            let [[_, before], [moves, last], [_, all]] = [before, last, all].map(|it| it[place]);
+            last > NEAR[place] && last >= times * before && moves > STANDS * all
+        };
+        fourth.and(fifth).is_of_one_mode() && (0..NEAR.len()).any(goes)
     }
 
     /// True where an aircraft's flight ends so near a rest that its gains are those of the rest.
     pub(super) fn stand(pieces: &Pieces<'_>) -> bool {
-        pieces.has_moved_by_at_most(STANDS)
+        let [tail, all] = [pieces.tail(), pieces.whole()].map(Span::off);
+        let stands = |place: usize| tail[place][0] <= NEAR[place].max(STANDS * all[place][1]);
+        pieces.has_moved_by_at_most(STANDS) && (0..NEAR.len()).all(stands)
     }
 }
 
-/// True where a width keeps a loop swinging by itself: a deadband, play, or the steps of a sensor.
-fn has_widths(scenario: &Scenario) -> bool {
-    let sensors = [scenario.surroundings.pitch_sensor, scenario.surroundings.rate_sensor];
-    scenario.actuator.deadband_rad() > 0.0
-        || scenario.actuator.play_rad() > 0.0
-        || sensors.iter().flatten().any(|it| it.model().resolution > 0.0)
+/// All widths of actuator and sensors, rad.
+fn width_rad(scenario: &Scenario) -> f64 {
+    let resolution = |sensor: Option<Sensor>| sensor.map_or(0.0, |it| it.model().resolution);
+    let surroundings = &scenario.surroundings;
+    scenario.actuator.deadband_rad()
+        + scenario.actuator.play_rad()
+        + resolution(surroundings.pitch_sensor)
+        + RATE_S * resolution(surroundings.rate_sensor)
 }

@@ -18,6 +18,8 @@ const ALIKE: f64 = 1e-3;
 const UNSEEN: f64 = 2.0;
 /// Under noise an error that moves in the last two fifths by no more than this share of all its movement has come to an end.
 const QUIET: f64 = 0.2;
+/// The same where gains move with the error: what moves by more may swing by itself.
+const QUIET_GAINS: f64 = 0.05;
 /// A swing at limits of an aircraft meets them at one of so many samples at least.
 const AT_LIMITS: usize = 4;
 /// What goes so many times as far as it is large turns back in between.
@@ -25,7 +27,7 @@ const TURNS: f64 = 1.5;
 /// A limit of rate is met a thousandth before it, for rounding.
 const AT_RATE: f64 = 0.999;
 
-/// Least and largest of a quantity, rad.
+/// Least and largest of a quantity, rad, or in its own unit.
 #[derive(Clone, Copy, Debug)]
 struct Reach {
     least_rad: f64,
@@ -68,6 +70,16 @@ pub(super) struct Shown {
     pub(super) at_servo_rad: f64,
     pub(super) elevator_rad: f64,
     pub(super) autopilot_is_limited: bool,
+    pub(super) outer: Outer,
+}
+
+/// What the loops around the pitch loop hold.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Outer {
+    /// How far altitude, m, and airspeed, m/s, are from what they are to be; 0 of what nobody holds.
+    pub(super) off: [f64; 2],
+    /// Number of the mode.
+    pub(super) mode: f64,
 }
 
 /// What error, command and elevator do over some samples, and whether a limit was met in them.
@@ -78,6 +90,9 @@ pub(super) struct Span {
     way_rad: f64,
     command: Reach,
     elevator: Reach,
+    /// Of [`Outer::off`], and of the modes.
+    off: [Reach; 2],
+    modes: Reach,
     samples: usize,
     /// At how many of them a limit was met.
     met: usize,
@@ -89,6 +104,8 @@ impl Span {
         way_rad: 0.0,
         command: Reach::NONE,
         elevator: Reach::NONE,
+        off: [Reach::NONE; 2],
+        modes: Reach::NONE,
         samples: 0,
         met: 0,
     };
@@ -99,6 +116,8 @@ impl Span {
             way_rad: self.way_rad + other.way_rad,
             command: self.command.and(other.command),
             elevator: self.elevator.and(other.elevator),
+            off: [0, 1].map(|place| self.off[place].and(other.off[place])),
+            modes: self.modes.and(other.modes),
             samples: self.samples + other.samples,
             met: self.met + other.met,
         }
@@ -111,6 +130,16 @@ impl Span {
 
     pub(super) fn error_size_rad(self) -> f64 {
         self.error.size_rad()
+    }
+
+    /// How far altitude, m, and airspeed, m/s, move from what they are to be, and how far they are at most.
+    pub(super) fn off(self) -> [[f64; 2]; 2] {
+        self.off.map(|it| [it.size_rad(), it.least_rad.abs().max(it.most_rad.abs())])
+    }
+
+    /// True where one mode flew all of it.
+    pub(super) fn is_of_one_mode(self) -> bool {
+        self.modes.size_rad() == 0.0
     }
 
     pub(super) const fn samples(self) -> usize {
@@ -157,10 +186,9 @@ impl<'a> Pieces<'a> {
 
     /// Takes a sample.
     pub(super) fn push(&mut self, shown: Shown) {
-        let Shown { moving_rad, command_rad, at_servo_rad, elevator_rad, autopilot_is_limited } =
-            shown;
+        let Shown { moving_rad, command_rad, at_servo_rad, elevator_rad, .. } = shown;
         let before = self.before.unwrap_or(shown);
-        let meets = autopilot_is_limited
+        let meets = shown.autopilot_is_limited
             || self.ends.are_met(command_rad, at_servo_rad)
             || self.ends.are_met_by_moving(
                 AT_RATE,
@@ -172,6 +200,8 @@ impl<'a> Pieces<'a> {
             way_rad: (moving_rad - before.moving_rad).abs(),
             command: Reach::at(command_rad),
             elevator: Reach::at(elevator_rad),
+            off: shown.outer.off.map(Reach::at),
+            modes: Reach::at(shown.outer.mode),
             samples: 1,
             met: usize::from(meets),
         };
@@ -216,9 +246,9 @@ impl<'a> Pieces<'a> {
         }
     }
 
-    /// True where little is left of a beginning, under noise.
-    pub(super) fn is_quiet(&self) -> bool {
-        self.has_moved_by_at_most(QUIET)
+    /// True where little is left of a beginning, under noise; of gains that move with it, next to nothing.
+    pub(super) fn is_quiet(&self, gains_move: bool) -> bool {
+        self.has_moved_by_at_most(if gains_move { QUIET_GAINS } else { QUIET })
     }
 
     /// The flight in five parts.

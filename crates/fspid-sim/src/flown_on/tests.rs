@@ -32,7 +32,14 @@ fn scenario() -> (Scenario, Controller) {
 
 fn shown(moving_rad: f64, command_rad: f64) -> Shown {
     let (at_servo_rad, elevator_rad, autopilot_is_limited) = (0.0, 0.0, false);
-    Shown { moving_rad, command_rad, at_servo_rad, elevator_rad, autopilot_is_limited }
+    Shown {
+        moving_rad,
+        command_rad,
+        at_servo_rad,
+        elevator_rad,
+        autopilot_is_limited,
+        outer: Outer::default(),
+    }
 }
 
 /// A swing of the error and of the command, each of a size in rad for each of ten periods.
@@ -156,7 +163,7 @@ fn comes_to_rest(scenario: &Scenario, before_rad: f64, [error_rad, command_rad]:
     let ends = Ends::of(scenario, &self::scenario().1);
     let mut sizes_rad = [[0.1, before_rad]; 10];
     sizes_rad[6..].fill([error_rad, command_rad]);
-    has_come_to_rest(scenario, &swinging(&ends, scenario, sizes_rad), &trace_of(scenario))
+    has_come_to_rest(scenario, &swinging(&ends, scenario, sizes_rad), None, &trace_of(scenario))
 }
 
 /// The trace of the tests' controller.
@@ -176,7 +183,7 @@ fn what_nothing_moves_has_come_to_rest_where_it_stands_and_nothing_changes_late(
     for (length, wanted) in [(LEAST_FIFTH, true), (LEAST_FIFTH - 1, false)] {
         let mut pieces = Pieces::new(&own, &ends, length);
         (0..5 * length).for_each(|_| pieces.push(shown(0.0, 0.0)));
-        assert_eq!(has_come_to_rest(&own, &pieces, &trace_of(&own)), wanted, "{length}");
+        assert_eq!(has_come_to_rest(&own, &pieces, None, &trace_of(&own)), wanted, "{length}");
     }
 }
 
@@ -189,7 +196,7 @@ fn what_swings_moves_has_come_to_rest_where_it_repeats_within_limits_and_has_sho
     // A swing that grows by a hundredth does not repeat, nor one of which a part is left out.
     let (_, controller) = scenario();
     let ends = Ends::of(&swings, &controller);
-    let rests = |pieces: &Pieces<'_>| has_come_to_rest(&swings, pieces, &trace_of(&swings));
+    let rests = |pieces: &Pieces<'_>| has_come_to_rest(&swings, pieces, None, &trace_of(&swings));
     assert!(rests(&swinging(&ends, &swings, changing(1.0, 0.5))));
     assert!(rests(&swinging(&ends, &swings, changing(1.0009, 0.5))));
     assert!(!rests(&swinging(&ends, &swings, changing(1.01, 0.5))));

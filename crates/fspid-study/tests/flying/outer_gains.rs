@@ -183,6 +183,14 @@ fn a_dead_zone_of_an_outer_loop_hides_no_rest_that_is_unstable_without_it() {
         &study(&without, &[]).scenario.controllers[0].controller,
     );
     assert!(grows.unstable.is_some());
+    // Beside another loop with a zone, whose rules hold, as well.
+    let vertical = "[[outer_loop]]\nname = \"vertical speed\"\nkind = \"pid\"\nholds = \"vertical-speed\"\nmoves = \"pitch\"\nkp = 0.5\nki = 0.5\n";
+    let tuned = "[[outer_loop]]\nname = \"vertical speed\"\nkind = \"fspid\"\nholds = \"vertical-speed\"\nmoves = \"pitch\"\nnominal = { kp = 0.5, ki = 0.5, kd = 0.0 }\ndead_zone = { error_deg = 1e-06, change_deg_s = 1e-06 }\nsupervisor = { table = \"mirrored\", range = 5.0, output_scale = { kp = 0.01, ki = 0.01, kd = 0.0 } }\n";
+    let both = ZONED.replace(vertical, tuned);
+    assert_ne!(both, ZONED);
+    let both = study(&both, &[]);
+    let found = AtRest::of(&both.scenario, &both.scenario.controllers[0].controller);
+    assert_eq!(found.undecided.expect("nobody can tell").doubt, Doubt::OuterGains);
     // Rules that hold without it leave no doubt.
     let calm = "outer_loop.autothrottle.supervisor.output_scale={ kp = 0.1, ki = 0.1, kd = 0.0 }";
     assert_eq!(at_rest(&[calm]).stability_word(), Some("stable"));

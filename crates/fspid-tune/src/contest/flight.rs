@@ -31,6 +31,7 @@ pub(crate) const IAE: usize = place(Measure::ErrorIntegral);
 pub(crate) const TRAVEL: usize = place(Measure::ElevatorTravel);
 pub(crate) const OVERSHOOT: usize = place(Measure::Overshoot);
 const SETTLING: usize = place(Measure::SettlingTime);
+const RMS: usize = place(Measure::RmsError);
 
 /// Place of a measure in [`MEASURES`]; one that is missing there does not compile.
 const fn place(measure: Measure) -> usize {
@@ -55,12 +56,11 @@ fn are_alike(one: Option<f64>, other: Option<f64>) -> bool {
 }
 
 /// Measures of a linear loop that grow with its command: errors, their integrals and the way of the elevator. All others stay.
-const GROWS: [Measure; 5] = [
+const GROWS: [Measure; 4] = [
     Measure::ErrorIntegral,
     Measure::TimedErrorIntegral,
     Measure::ElevatorTravel,
     Measure::LargestError,
-    Measure::RmsError,
 ];
 
 /// Largest error beyond which a flight is lost, deg. A loop with limits oscillates instead of diverging; beyond a
@@ -116,10 +116,13 @@ pub struct Flight {
 
 impl Flight {
     /// True for a flight whose measures are alike; of what is lost nobody knows.
+    ///
+    /// The RMS error is left out, for it is over the whole flight: of one that only goes on longer it is another.
     pub(crate) fn has_measures_of(&self, other: &Self) -> bool {
         let is_flown = !self.lost && self.measures.iter().any(Option::is_some);
-        let mut pairs = self.measures.into_iter().zip(other.measures);
-        is_flown && !other.lost && pairs.all(|(one, other)| are_alike(one, other))
+        let are_alike =
+            |place: usize| place == RMS || are_alike(self.measures[place], other.measures[place]);
+        is_flown && !other.lost && (0..MEASURES.len()).all(are_alike)
     }
 
     /// How many times as large as another flight's the errors of this one are.

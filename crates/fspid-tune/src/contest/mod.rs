@@ -67,7 +67,7 @@ pub(crate) use words::some_of;
 
 use crate::crew::Crew;
 use crate::error::TuneError;
-use crate::flights::{Flights, Seeds, each_once};
+use crate::flights::{Flights, Seeds, drawn_as, each_once};
 use crate::problem::TuningProblem;
 use crate::search::Effort;
 use crate::source::{Source, in_commands};
@@ -316,7 +316,7 @@ impl Contest {
             weight: case.weight,
             runs: runs(index),
             draws_seed: (self.rules.runs > 0)
-                .then(|| Seeds::OfEach(self.rules.run_seed).of(Some(&case.name))),
+                .then(|| Seeds::OfEach(self.rules.run_seed).of(Some(drawn_as(case)))),
             mirror_of: case.mirror_of.as_ref().and_then(place),
         });
         cases.collect()

@@ -36,6 +36,11 @@ use crate::source::{Source, in_commands};
 /// A ladder that nobody gave: shares of the limit that the scenario has.
 const LADDER: [f64; 5] = [0.5, 0.7, 1.0, 1.4, 2.0];
 
+/// A travel as people write one: its folder is called by it.
+fn rounded_deg(travel_deg: f64) -> f64 {
+    libm::round(1e6 * travel_deg) / 1e6
+}
+
 /// A contest for each rung of a ladder.
 #[derive(Clone, Debug)]
 pub struct Front {
@@ -94,7 +99,7 @@ impl Front {
             let problems = vec![problem.to_owned()];
             return Err(TuneError::Contest { path, problems, wrong_cases: Vec::new() });
         };
-        let around: Vec<f64> = LADDER.iter().map(|share| share * most).collect();
+        let around: Vec<f64> = LADDER.iter().map(|share| rounded_deg(share * most)).collect();
         let mut travels = travels_deg.map_or(around, <[f64]>::to_vec);
         travels.sort_by(f64::total_cmp);
         travels.dedup_by(|one, other| (*one - *other).abs() <= 0.0);

@@ -3,7 +3,7 @@
 use fspid_core::{Fspid, Gains, InputScale, Pid, PidConfig, SelfTuner, TunerSettings, paper};
 use fspid_fuzzy::{Defuzzifier, OutOfRange, Supervisor};
 
-use super::super::pieces::Shown;
+use super::super::pieces::{Outer, Shown};
 use super::*;
 use crate::actuator::Actuator;
 use crate::held_limits::Ends;
@@ -51,6 +51,7 @@ fn changing<'a>(ends: &'a Ends, scenario: &Scenario, factor: f64) -> Pieces<'a> 
                 at_servo_rad,
                 elevator_rad,
                 autopilot_is_limited,
+                outer: Outer::default(),
             });
         }
         size_rad *= factor;
@@ -81,10 +82,14 @@ fn an_error_that_nothing_moves_stays_where_it_shrinks_by_less_than_a_hundredth_i
         Scenario { surroundings, ..scenario() }
     };
     assert!(have_left(&seen_by(0.0), 0.998, Moved::Nothing));
+    // A swing that is ten times as wide is none of its own.
+    for narrow in [moved_by(lag().with_play(1e-6).expect("allowed")), seen_by(1e-6)] {
+        assert!(have_left(&narrow, 0.998, Moved::Nothing));
+    }
     for wide in [
-        moved_by(lag().with_play(0.01).expect("allowed")),
-        moved_by(lag().with_deadband(0.01).expect("allowed")),
-        seen_by(0.01),
+        moved_by(lag().with_play(0.03).expect("allowed")),
+        moved_by(lag().with_deadband(0.03).expect("allowed")),
+        seen_by(0.03),
     ] {
         for (factor, wanted) in [(1.03, true), (1.01, false), (0.998, false)] {
             assert_eq!(have_left(&wide, factor, Moved::Nothing), wanted, "{factor}");
@@ -112,6 +117,7 @@ fn what_creeps_one_way_stays_where_it_grows() {
                 at_servo_rad,
                 elevator_rad,
                 autopilot_is_limited: false,
+                outer: Outer::default(),
             });
         }
         assert_eq!(gains.have_left(&pieces, Moved::Nothing), wanted, "{factor}");
@@ -153,6 +159,7 @@ fn nothing_is_said_of_fixed_gains_and_of_fewer_pieces_than_fifths() {
             at_servo_rad,
             elevator_rad,
             autopilot_is_limited: false,
+            outer: Outer::default(),
         });
     }
     assert!(!gains.have_left(&few, Moved::Nothing));
@@ -165,4 +172,42 @@ fn gains_stand_where_a_flight_moves_at_its_end_by_a_fiftieth_at_most() {
     // The last two of ten periods are 0.5^8 and 0.62^8 of the first.
     assert!(MovingGains::stand(&changing(&ends, &scenario, 0.5)));
     assert!(!MovingGains::stand(&changing(&ends, &scenario, 0.62)));
+}
+
+/// At a limit of an outer loop the pitch stands while the altitude goes: an altitude that goes away from what is held by a mode, or
+/// swings about it, has left; what stands beside it, comes back, or is another mode's has not.
+#[test]
+fn what_is_held_is_left_where_it_goes_away_or_swings_and_not_where_it_stands_or_comes_back() {
+    let scenario = scenario();
+    let ends = Ends::of(&scenario, &self_tuner());
+    let leaves = |off_m: fn(f64) -> f64, mode: fn(f64) -> f64| {
+        let mut pieces = Pieces::new(&scenario, &ends, PERIOD);
+        for k in 0..10 * PERIOD {
+            let along = k as f64 / (10 * PERIOD) as f64;
+            let outer = Outer { off: [off_m(along), 0.0], mode: mode(along) };
+            pieces.push(Shown { outer, ..still() });
+        }
+        MovingGains::leave_what_is_held(&pieces, Moved::Nothing)
+    };
+    let one = |_: f64| 0.0;
+    assert!(leaves(|along| 50.0 * along, one));
+    assert!(leaves(|along| 20.0 * libm::sin(60.0 * along), one));
+    assert!(!leaves(|along| 50.0 - 40.0 * along, one), "it comes back");
+    assert!(!leaves(|along| if along < 0.1 { 60.0 } else { 40.0 }, one), "it stands");
+    assert!(!leaves(|along| 2.9 * along, one), "it is there");
+    assert!(
+        !leaves(|along| 50.0 * along, |along| f64::from(u8::from(along > 0.7))),
+        "another mode"
+    );
+}
+
+fn still() -> Shown {
+    Shown {
+        moving_rad: 0.0,
+        command_rad: 0.0,
+        at_servo_rad: 0.0,
+        elevator_rad: 0.0,
+        autopilot_is_limited: false,
+        outer: Outer::default(),
+    }
 }

@@ -30,12 +30,13 @@ pub(super) fn holds_beyond_dead_zones(asked: &Asked<'_>) -> Result<bool, SimErro
     if zoned.len() > MOST_LOOPS {
         return Ok(false);
     }
-    for part in 1..1_usize << zoned.len() {
-        let chosen = zoned.iter().enumerate().filter(|(place, _)| part >> place & 1 == 1);
-        let autopilot = chosen.fold(asked.autopilot.clone(), |autopilot, (_, (number, other))| {
-            autopilot.with_controller(*number, *other)
-        });
-        if !holds(&Asked { autopilot: &autopilot, ..*asked })? {
+    let mut parts = vec![asked.autopilot.clone()];
+    for (number, other) in zoned {
+        let with: Vec<_> = parts.iter().map(|it| it.with_controller(number, other)).collect();
+        parts.extend(with);
+    }
+    for autopilot in parts.iter().skip(1) {
+        if !holds(&Asked { autopilot, ..*asked })? {
             return Ok(false);
         }
     }
