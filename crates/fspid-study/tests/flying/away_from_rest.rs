@@ -189,3 +189,100 @@ fn noise_swings_and_widths_neither_hide_what_leaves_the_rest_nor_are_taken_for_i
         assert!(is_lost(&result(&text, &[AWAY, &["loop.duration_s=400.0"]].concat())), "{moves}");
     }
 }
+
+/// Rules in rings around a middle that holds, from which a step of 7 deg swings by 6.6 deg for ever.
+const RINGS: &str = r#"
+schema = 1
+name = "rings of rules"
+plant = { numerator = [2.0, 1.0], denominator = [1.0, 3.374, 0.761, 0.0], elevator_sign = "nose-up-positive" }
+loop = { sample_period_s = 0.02, duration_s = 10.48 }
+setpoint = { kind = "step", amplitude_deg = 7.345 }
+[[controller]]
+name = "C"
+kind = "fspid"
+nominal = { kp = 3.676, ki = 2.0, kd = 0.1 }
+derivative_filter_s = 0.05
+supervisor = { numbers = { delta_kp = [[0.85, 0.85, 0.85, 0.85, 0.85, 0.85, 0.85], [0.85, -0.018, -0.018, -0.018, -0.018, -0.018, 0.85], [0.85, -0.018, -0.987, -0.987, -0.987, -0.018, 0.85], [0.85, -0.018, -0.987, 0.0, -0.987, -0.018, 0.85], [0.85, -0.018, -0.987, -0.987, -0.987, -0.018, 0.85], [0.85, -0.018, -0.018, -0.018, -0.018, -0.018, 0.85], [0.85, 0.85, 0.85, 0.85, 0.85, 0.85, 0.85]], delta_ki = [[-0.898, -0.898, -0.898, -0.898, -0.898, -0.898, -0.898], [-0.898, -0.641, -0.641, -0.641, -0.641, -0.641, -0.898], [-0.898, -0.641, 0.536, 0.536, 0.536, -0.641, -0.898], [-0.898, -0.641, 0.536, 0.0, 0.536, -0.641, -0.898], [-0.898, -0.641, 0.536, 0.536, 0.536, -0.641, -0.898], [-0.898, -0.641, -0.641, -0.641, -0.641, -0.641, -0.898], [-0.898, -0.898, -0.898, -0.898, -0.898, -0.898, -0.898]], delta_kd = [[0.423, 0.423, 0.423, 0.423, 0.423, 0.423, 0.423], [0.423, -0.914, -0.914, -0.914, -0.914, -0.914, 0.423], [0.423, -0.914, 0.87, 0.87, 0.87, -0.914, 0.423], [0.423, -0.914, 0.87, 0.0, 0.87, -0.914, 0.423], [0.423, -0.914, 0.87, 0.87, 0.87, -0.914, 0.423], [0.423, -0.914, -0.914, -0.914, -0.914, -0.914, 0.423], [0.423, 0.423, 0.423, 0.423, 0.423, 0.423, 0.423]] }, range = 5.0, error_scale = 0.556, change_scale = 1.14, output_scale = { kp = 3.492, ki = 1.9, kd = 0.095 } }
+"#;
+
+/// Beside a deadband of a millionth of a degree, a set-point that swings by as little, or noise of a billionth, it was `stable`.
+#[test]
+fn a_swing_that_stays_is_seen_behind_widths_swings_and_noise_however_small_they_are() {
+    let beside = [
+        "",
+        "[actuator]\ntime_constant_s = 0.001\ndeadband_deg = 1e-6\n",
+        "[actuator]\ntime_constant_s = 0.001\nbacklash_deg = 1e-6\n",
+        "[sensor]\npreset = \"ideal\"\n[sensor.rate]\nresolution_deg_s = 1e-7\n",
+        "[[disturbance]]\nkind = \"sine\"\nenters_at = \"servo\"\namplitude_deg = 1e-6\nfrequency_hz = 0.2\n",
+        "[[disturbance]]\nkind = \"noise\"\nenters_at = \"measurement\"\nstandard_deviation_deg = 1e-9\nseed = 1\n",
+    ];
+    for beside in beside {
+        let text = format!("{RINGS}{beside}");
+        assert_eq!(doubt(&result(&text, &[])), Some(Doubt::AwayFromRest), "{beside}");
+    }
+    let swung = RINGS.replace(
+        "setpoint = { kind = \"step\", amplitude_deg = 7.345 }",
+        "setpoint = { kind = \"square\", amplitude_deg = 7.345, half_period_s = 20.0 }",
+    );
+    assert_ne!(swung, RINGS);
+    assert_eq!(doubt(&result(&swung, &["loop.duration_s=40.0"])), Some(Doubt::AwayFromRest));
+    // Without the rules it settles, whatever stands beside it.
+    let fixed = "controller.C.supervisor.output_scale={ kp = 0.0, ki = 0.0, kd = 0.0 }";
+    assert_eq!(doubt(&result(RINGS, &[fixed])), None);
+    let [last, before] = moves_deg(&result(RINGS, &["loop.duration_s=300.0"]));
+    assert!(last > 1.0 && last > 0.99 * before, "{last} {before}");
+}
+
+/// A climb by an altitude loop whose kp the rules make negative where the error is large: at the limit of its vertical speed the
+/// pitch stands, and the altitude goes away. It was `stable`, certified, and "HOLDS, AND IS WHAT FLIES".
+const GOES_AWAY: &str = r#"
+schema = 1
+name = "climbs to 1300 ft, and flies into the ground"
+aircraft = { name = "navion", airspeed_ft_s = 176.0, altitude_ft = 1000.0 }
+engine = { kind = "first-order", time_constant_s = 1.0 }
+actuator = { time_constant_s = 0.1 }
+loop = { sample_period_s = 0.02, duration_s = 60.0 }
+setpoint = { kind = "step", amplitude_deg = 0.0 }
+mode = [{ name = "level", engage = ["altitude", "vertical speed", "autothrottle"] }, { name = "capture", at_s = 5.0, engage = ["altitude", "vertical speed", "autothrottle"], target = { altitude_ft = 1300.0 } }]
+controller = [{ name = "PID", kind = "pid", kp = 0.82, ki = 0.43, kd = 0.165, derivative_filter_s = 0.05 }]
+[[outer_loop]]
+name = "altitude"
+kind = "fspid"
+holds = "altitude"
+moves = "vertical speed"
+nominal = { kp = 0.2, ki = 0.004, kd = 0.0 }
+least = -2.54
+most = 2.54
+[outer_loop.supervisor]
+numbers = { delta_kp = [[-1, -1, -1, -1, -1, -1, -1], [-0.3, -0.3, -0.3, -0.3, -0.3, -0.3, -0.3], [0, 0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0, 0], [-0.3, -0.3, -0.3, -0.3, -0.3, -0.3, -0.3], [-1, -1, -1, -1, -1, -1, -1]], delta_ki = [[0,0,0,0,0,0,0],[0,0,0,0,0,0,0],[0,0,0,0,0,0,0],[0,0,0,0,0,0,0],[0,0,0,0,0,0,0],[0,0,0,0,0,0,0],[0,0,0,0,0,0,0]], delta_kd = [[0,0,0,0,0,0,0],[0,0,0,0,0,0,0],[0,0,0,0,0,0,0],[0,0,0,0,0,0,0],[0,0,0,0,0,0,0],[0,0,0,0,0,0,0],[0,0,0,0,0,0,0]] }
+range = 5.0
+error_scale = 0.05
+change_scale = 1.0
+output_scale = { kp = 0.3, ki = 0.0, kd = 0.0 }
+[[outer_loop]]
+name = "vertical speed"
+kind = "pid"
+holds = "vertical-speed"
+moves = "pitch"
+kp = 0.5
+ki = 0.5
+[[outer_loop]]
+name = "autothrottle"
+kind = "pid"
+holds = "airspeed"
+moves = "throttle"
+kp = 0.2
+ki = 0.02
+"#;
+
+#[test]
+fn an_altitude_that_goes_away_from_what_is_held_at_a_limit_of_its_loop_is_undecided() {
+    let flown = result(GOES_AWAY, &[]);
+    assert_eq!(flown.metrics.verdict, Verdict::Flown);
+    assert!(doubt(&flown).is_some());
+    let hits =
+        result(GOES_AWAY, &["mode.capture.target.altitude_ft=2000.0", "loop.duration_s=200.0"]);
+    assert!(doubt(&hits).is_some(), "{:?}", hits.metrics.verdict);
+    let held = "outer_loop.altitude.supervisor.output_scale.kp=0.0";
+    assert_ne!(doubt(&result(GOES_AWAY, &[held])), Some(Doubt::AwayFromRest));
+}

@@ -3,7 +3,7 @@
 use super::flight::Flight;
 use super::judged::{Contestant, Judged};
 
-/// Of each case the first earlier one that all designs of some controllers have flown alike or in one other size, if there is one. What others
+/// Of each case the first earlier one that all designs of some controllers have flown alike, or in one other size. What others
 /// make of it is no matter: a case that only a third controller can tell from another is one case between two.
 pub(super) fn twins(judged: &Judged, contestants: &[&Contestant]) -> Vec<Option<usize>> {
     let mut firsts: Vec<(usize, Vec<&Flight>)> = Vec::new();

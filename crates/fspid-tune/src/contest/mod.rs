@@ -54,6 +54,8 @@ use fspid_study::output;
 pub use crate::kept::Then;
 pub(crate) use compare::{Bar, CONFIDENCE, barred};
 pub use compare::{Comparison, Lost, Ratio, Standing};
+#[cfg(test)]
+pub(crate) use flight::OVERSHOOT;
 pub(crate) use flight::measured;
 pub use flight::{Flight, MEASURES};
 pub use judged::{Case, CaseGroup, Contestant, Count, Design, Judged, Quantity};

@@ -403,7 +403,7 @@ fn no_evidence(judged: &Judged) -> Option<String> {
     };
     (!all.is_empty()).then(|| {
         format!(
-            "{} flown to a millionth like another, and no evidence: {}{more}. They count in means and not in tests.",
+            "{} flown to a millionth like another, or as another in another size, and no evidence: {}{more}. They count in means and not in tests.",
             match all.len() {
                 1 => "One case is".to_owned(),
                 count => format!("{count} cases are"),

@@ -1,5 +1,5 @@
 use super::*;
-use crate::contest::{Case, Contestant, Design, Flight, MEASURES, Quantity, TwoWay};
+use crate::contest::{Case, Contestant, Design, Flight, MEASURES, OVERSHOOT, Quantity, TwoWay};
 use crate::draw::Draw;
 
 /// How much cases, seeds and single flights scatter, as standard deviations of the logarithm of the error.
@@ -166,8 +166,8 @@ impl<F: Fn(usize, usize, usize, usize, usize) -> Flight> Ladder<F> {
                 (0..self.runs).map(move |run| {
                     let mut flight = (self.flight)(who, rung, seed, case, run);
                     // Cases that are flown alike are one: something tells them apart.
-                    let last = flight.measures.iter_mut().last().filter(|_| !flight.lost);
-                    last.into_iter().for_each(|it| *it = Some(case as f64));
+                    let mark = flight.measures.get_mut(OVERSHOOT).filter(|_| !flight.lost);
+                    mark.into_iter().for_each(|it| *it = Some(case as f64));
                     flight
                 })
             });
@@ -314,7 +314,8 @@ fn cases_that_two_fly_alike_on_a_front_are_one_whatever_a_third_makes_of_them() 
         contestants.push(contestants[1].clone());
         // What tells cases apart is left to the third.
         let two = contestants[..2].iter_mut().flat_map(|it| &mut it.designs);
-        let marks = two.flat_map(|it| &mut it.flights).filter_map(|it| it.measures.last_mut());
+        let marks =
+            two.flat_map(|it| &mut it.flights).filter_map(|it| it.measures.get_mut(OVERSHOOT));
         marks.for_each(|mark| *mark = None);
         Judged::new(contestants, cases, 0)
     };
