@@ -136,20 +136,22 @@ pub fn export(study: &Study, asked: &Question<'_>) -> Result<Export, ExportError
     Ok(export_called(&named.controller, &request, &called)?)
 }
 
-/// What is known of a controller's loop: whether it is stable at rest, and where its flight leads.
+/// What is known of a controller's loop: whether it is stable, at rest and by its flight. Whether the flight is good is not said.
 fn loop_in_words(study: &Study, named: &NamedController) -> LoopWord {
     let at_rest = AtRest::of(&study.scenario, &named.controller);
     let at_rest = at_rest.as_flown(&study.scenario, named);
+    let is_in_doubt = at_rest.stability_word() != Some("stable");
     let words = match at_rest.unstable {
+        _ if !is_in_doubt => "stable at rest".to_owned(),
         Some(Unstable { spectral_radius, doubling_s, .. }) => {
             Verdict::Unstable { spectral_radius, doubling_s }.to_string()
         }
         None => at_rest
             .undecided_in_words()
             .or_else(|| at_rest.not_asked_in_words())
-            .unwrap_or_else(|| "stable at rest, and where its flight leads".to_owned()),
+            .unwrap_or_else(|| "stability at rest could not be asked".to_owned()),
     };
-    LoopWord { words, is_in_doubt: at_rest.stability_word() != Some("stable") }
+    LoopWord { words, is_in_doubt }
 }
 
 /// For which elevator a controller was designed: the way that it turns, and who limits it. None where another simulator has

@@ -392,7 +392,7 @@ fn a_design_of_which_nobody_can_tell_whether_it_is_stable_is_told_so() {
     let case = |name: &str, duration_s: u32| {
         format!("\n[[tuning.case]]\nname = \"{name}\"\nset = [\"loop.duration_s={duration_s}\"]\n")
     };
-    let text = HELD_BEYOND_A_LIMIT.to_owned() + &case("short", 20) + &case("long", 25);
+    let text = RUNS_AWAY.to_owned() + HELD_BEYOND_A_LIMIT + &case("short", 20) + &case("long", 25);
     let folder = tempfile::TempDir::new().expect("a folder");
     let path = folder.path().join("held.toml");
     std::fs::write(&path, text).expect("a file");
@@ -405,8 +405,8 @@ fn a_design_of_which_nobody_can_tell_whether_it_is_stable_is_told_so() {
     assert!(doubts[0].starts_with(said), "{told:?}");
 }
 
-/// An unstable plant that a controller holds behind a limit until it is lost.
-const HELD_BEYOND_A_LIMIT: &str = r#"
+/// An unstable plant, which a controller behind a limit holds until it is lost.
+pub(crate) const RUNS_AWAY: &str = r#"
 schema = 1
 name = "held beyond its limit"
 [plant]
@@ -421,6 +421,9 @@ duration_s = 20.0
 [setpoint]
 kind = "step"
 amplitude_deg = 10.0
+"#;
+
+const HELD_BEYOND_A_LIMIT: &str = r#"
 [[controller]]
 name = "B"
 kind = "pid"

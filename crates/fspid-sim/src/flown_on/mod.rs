@@ -63,26 +63,25 @@ pub(crate) fn doubt(
     let is_linear = scenario.plant.linear().is_some();
     let pieces = pieces_of(scenario, &ends, trace);
     let in_doubt = |is_in_doubt: bool| is_in_doubt.then(|| of_limits_or_gains(gains, &pieces));
+    let moved = moved_in_flight(scenario);
     if trace.rows() < rows {
-        let swings = |moves| pieces.swings_on(moved_in_flight(scenario), moves);
-        let swings_itself = || moves().is_some_and(swings);
+        let swings_itself = || moves().is_some_and(|moves| pieces.swings_on(moved, moves));
         // With fixed gains and without limits a loop that holds at rest holds; what else ends an aircraft's flight its verdict tells.
-        let is_of_limits = is_linear
-            || is_lost(trace.outcome, swings_itself(), &pieces)
-            || gains.is_some()
-                && (diverged(trace.outcome)
-                    || MovingGains::leave_what_is_held(&pieces, moved_in_flight(scenario)));
-        return in_doubt(is_of_limits);
+        return in_doubt(
+            is_linear
+                || is_lost(trace.outcome, swings_itself(), &pieces)
+                || gains.is_some() && has_gone_away(trace.outcome, &pieces, moved),
+        );
     }
+    let is_external = matches!(scenario.plant, Plant::External(_));
+    let flies_on = !is_external && !scenario.has_moving_air();
+    let swings = has_swings(scenario) || swings_by_command(scenario);
+    let is_stilled = gains.is_some() && swings && flies_on && rows <= SAMPLES[1];
     let has_rested = has_come_to_rest(scenario, &pieces, gains, trace);
-    let is_stilled = gains.is_some() && (has_swings(scenario) || swings_by_command(scenario));
     if has_rested && !is_stilled {
         return None;
     }
     let moves = moves()?;
-    let is_external = matches!(scenario.plant, Plant::External(_));
-    let flies_on = !is_external && !scenario.has_moving_air();
-    let moved = moved_in_flight(scenario);
     let changes_late = changes_late(scenario, trace);
     let swings_itself = || !changes_late && pieces.swings_on(moved, moves);
     // One that is as long as that is its own answer.
@@ -100,17 +99,25 @@ pub(crate) fn doubt(
         return None;
     }
     let swings_itself = !is_linear && swings_itself();
-    let ways = [
+    let asked_by = |afterwards| Asked { afterwards, moves, gains, swings_itself };
+    ways(scenario, has_rested, meets, is_stilled)
+        .find_map(|afterwards| doubt_flown_on(scenario, controller, &ends, asked_by(afterwards)))
+}
+
+/// What acts on after a flight, each time that it is flown on: one that has rested is asked for its swings by themselves alone.
+fn ways(
+    scenario: &Scenario,
+    has_rested: bool,
+    meets: bool,
+    is_stilled: bool,
+) -> impl Iterator<Item = Afterwards> {
+    let all = [
         (Afterwards::Swings, !has_rested),
         (Afterwards::Quiet, !has_rested && has_swings(scenario)),
         (Afterwards::Noise, !has_rested && is_noisy(scenario) && meets),
         (Afterwards::Still, is_stilled),
     ];
-    let mut asked = ways.into_iter().filter(|(_, is_asked)| *is_asked);
-    asked.find_map(|(afterwards, _)| {
-        let asked = Asked { afterwards, moves, gains, swings_itself };
-        doubt_flown_on(scenario, controller, &ends, asked)
-    })
+    all.into_iter().filter_map(|(afterwards, is_asked)| is_asked.then_some(afterwards))
 }
 
 /// What moves the flight itself; moving air does as noise.
@@ -292,6 +299,11 @@ fn of_limits_or_gains(gains: Option<MovingGains>, pieces: &Pieces<'_>) -> Doubt 
 
 fn diverged(outcome: Outcome) -> bool {
     matches!(outcome, Outcome::EndedEarly(end) if end.cause == EndCause::Diverged)
+}
+
+/// True of a flight with gains that move that is lost by them: it diverged, or went away from what is held.
+fn has_gone_away(outcome: Outcome, pieces: &Pieces<'_>, moved: Moved) -> bool {
+    diverged(outcome) || MovingGains::leave_what_is_held(pieces, moved)
 }
 
 /// True of an aircraft that ends early out of a swing at limits, or on its back at them; without either it comes down to the ground

@@ -65,21 +65,21 @@ impl MovingGains {
     pub(super) fn have_left(self, pieces: &Pieces<'_>, moved: Moved) -> bool {
         let Some([fourth, fifth]) = pieces.last_fifths() else { return false };
         let turns = fourth.and(fifth).turns();
-        let (times, is_seen) = match moved {
-            Moved::Nothing if turns && fifth.error_size_rad() > WIDTHS * self.width_rad => {
-                (STAYS, true)
+        let [before_rad, last_rad] = [fourth, fifth].map(Span::error_size_rad);
+        let stays_or_grows = match moved {
+            // What is seen in steps is as large but for one.
+            Moved::Nothing if turns && last_rad > WIDTHS * self.width_rad => {
+                last_rad + self.width_rad >= STAYS * before_rad
             }
-            Moved::Nothing => (GROWN, true),
+            Moved::Nothing => last_rad >= GROWN * before_rad,
             Moved::BySwings => {
                 let fifth_s = fifth.samples() as f64 * self.dt_s;
-                (DOUBLED, PERIODS * self.longest_period_s <= fifth_s)
+                let is_seen = PERIODS * self.longest_period_s <= fifth_s;
+                is_seen && last_rad >= DOUBLED * before_rad
             }
-            Moved::ByNoise => (DOUBLED, true),
+            Moved::ByNoise => last_rad >= DOUBLED * before_rad,
         };
-        let is_swing = turns || !self.has_to_turn;
-        // What is seen in steps is as large but for one.
-        let last_rad = fifth.error_size_rad() + if times < 1.0 { self.width_rad } else { 0.0 };
-        is_seen && is_swing && last_rad >= times * fourth.error_size_rad()
+        stays_or_grows && (turns || !self.has_to_turn)
     }
 
     /// True where altitude or airspeed goes away from what a mode holds, or does not come back to it, with an error that does not

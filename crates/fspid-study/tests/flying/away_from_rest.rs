@@ -1,10 +1,9 @@
 //! Flights of gains that move, without limits: those that do not come back to the rest around which the loop holds.
 
-use fspid_sim::{Doubt, EarlyEnd, EndCause};
+use fspid_sim::Doubt;
 use fspid_study::metrics::Verdict;
-use fspid_study::simulation::ControllerResult;
 
-use super::{Draw, doubt, result};
+use super::{Draw, doubt, is_lost, last_fifths_move_deg, result};
 
 /// A step of a plant with an integrator, whose self-tuner has no limit of any kind.
 const FREE: &str = r#"
@@ -79,22 +78,6 @@ kp = 0.2
 ki = 0.02
 "#;
 
-fn is_lost(flown: &ControllerResult) -> bool {
-    matches!(flown.metrics.verdict, Verdict::EndedEarly(EarlyEnd { cause: EndCause::Diverged, .. }))
-}
-
-/// How far the error moves in the last fifth of a flight, and in the fifth before it, deg.
-fn moves_deg(flown: &ControllerResult) -> [f64; 2] {
-    let errors = flown.trace.setpoint_rad.iter().zip(&flown.trace.theta_rad);
-    let errors: Vec<f64> = errors.map(|(r, y)| (r - y).to_degrees()).collect();
-    let fifth = errors.len() / 5;
-    let size = |part: &[f64]| {
-        let most = part.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        most - part.iter().copied().fold(f64::INFINITY, f64::min)
-    };
-    [size(&errors[4 * fifth..]), size(&errors[3 * fifth..4 * fifth])]
-}
-
 fn drawn(draw: &mut Draw) -> (Vec<String>, f64) {
     let nominal =
         [draw.between(0.2, 4.0), draw.of(&[0.0, 0.2, 0.8, 2.0]), draw.of(&[0.0, 0.1, 0.6])];
@@ -141,14 +124,14 @@ fn flights_of_drawn_gains_that_move_and_are_called_stable_come_back_in_ten_times
         let flown_on = || result(FREE, &[&set[..], &[long.as_str()]].concat());
         if doubt(&flown) == Some(Doubt::AwayFromRest) {
             let flown_on = flown_on();
-            let [last, before] = moves_deg(&flown_on);
+            let [last, before] = last_fifths_move_deg(&flown_on);
             lost += usize::from(is_lost(&flown_on));
             swings += usize::from(!is_lost(&flown_on));
             assert!(is_lost(&flown_on) || last > 0.9 * before, "{number}: {set:?}");
         } else if flown.at_rest.stability_word() == Some("stable") {
             stable += 1;
             let flown_on = flown_on();
-            let [last, before] = moves_deg(&flown_on);
+            let [last, before] = last_fifths_move_deg(&flown_on);
             assert!(!is_lost(&flown_on), "{number}: {set:?}");
             // What moves by less than a thousandth of all its movement is at rest.
             let at_rest_deg = 1e-3 * flown_on.trace.setpoint_rad[0].to_degrees();
@@ -229,7 +212,7 @@ fn a_swing_that_stays_is_seen_behind_widths_swings_and_noise_however_small_they_
     // Without the rules it settles, whatever stands beside it.
     let fixed = "controller.C.supervisor.output_scale={ kp = 0.0, ki = 0.0, kd = 0.0 }";
     assert_eq!(doubt(&result(RINGS, &[fixed])), None);
-    let [last, before] = moves_deg(&result(RINGS, &["loop.duration_s=300.0"]));
+    let [last, before] = last_fifths_move_deg(&result(RINGS, &["loop.duration_s=300.0"]));
     assert!(last > 1.0 && last > 0.99 * before, "{last} {before}");
 }
 

@@ -1,25 +1,15 @@
 //! Gains that a self-tuner has at rest and nowhere else, or does not have at all, and integrals and samples that limits hold: what
 //! is said of such loops, and what long flights make of them.
 
-use fspid_sim::{Doubt, EarlyEnd, EndCause};
+use fspid_sim::Doubt;
 use fspid_study::analysis::{Analysis, Question, Stability};
-use fspid_study::metrics::Verdict;
 use fspid_study::simulation::{ControllerResult, Simulation};
 
-use super::{Draw, doubt, result, study};
+use super::{Draw, doubt, is_lost, last_fifths_move_deg, result, study};
 
 /// How far the error moves in the last fifth of a flight, deg.
 fn moves_deg(flown: &ControllerResult) -> f64 {
-    let errors = flown.trace.setpoint_rad.iter().zip(&flown.trace.theta_rad);
-    let errors: Vec<f64> = errors.map(|(r, y)| (r - y).to_degrees()).collect();
-    let last = &errors[errors.len() * 4 / 5..];
-    let most = last.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    most - last.iter().copied().fold(f64::INFINITY, f64::min)
-}
-
-fn is_lost(flown: &ControllerResult) -> bool {
-    let Verdict::EndedEarly(EarlyEnd { cause, .. }) = flown.metrics.verdict else { return false };
-    cause == EndCause::Diverged
+    last_fifths_move_deg(flown)[0]
 }
 
 /// The flight with these changes, and where it is called stable, ten times as long.

@@ -32,7 +32,8 @@ mod where_it_leads;
 mod wind_table;
 
 use fspid_scenario::file::{self, Study};
-use fspid_sim::{AircraftPlant, Doubt, Plant, Trace};
+use fspid_sim::{AircraftPlant, Doubt, EarlyEnd, EndCause, Plant, Trace};
+use fspid_study::metrics::Verdict;
 use fspid_study::simulation::{ControllerResult, Simulation};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -86,6 +87,22 @@ fn flown(text: &str, set: &[&str]) -> Trace {
 fn result(text: &str, set: &[&str]) -> ControllerResult {
     let found = Simulation::of(&study(text, set)).expect("it flies");
     found.results.into_iter().next().expect("a controller")
+}
+
+fn is_lost(flown: &ControllerResult) -> bool {
+    matches!(flown.metrics.verdict, Verdict::EndedEarly(EarlyEnd { cause: EndCause::Diverged, .. }))
+}
+
+/// How far the error moves in the last fifth of a flight, and in the fifth before it, deg.
+fn last_fifths_move_deg(flown: &ControllerResult) -> [f64; 2] {
+    let errors = flown.trace.setpoint_rad.iter().zip(&flown.trace.theta_rad);
+    let errors: Vec<f64> = errors.map(|(r, y)| (r - y).to_degrees()).collect();
+    let from = |fifths: usize| errors.len() * fifths / 5;
+    let size = |part: &[f64]| {
+        let most = part.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        most - part.iter().copied().fold(f64::INFINITY, f64::min)
+    };
+    [size(&errors[from(4)..]), size(&errors[from(3)..from(4)])]
 }
 
 /// Why it is undecided whether a flight holds at rest, where it is.

@@ -3,24 +3,10 @@
 use fspid_tune::contest::{Outcome, Quantity};
 
 use super::{LOOP, MARKED, TUNING, cases, pid, place};
+use crate::problem::RUNS_AWAY;
 
-/// An unstable plant that a controller holds behind a limit until it is lost, after ten times its flight.
-const HELD_BEYOND_A_LIMIT: &str = r#"
-schema = 1
-name = "held beyond its limit"
-[plant]
-numerator = [1.0]
-denominator = [1.0, 0.95, -0.05]
-elevator_sign = "nose-up-positive"
-[actuator]
-time_constant_s = 0.05
-[loop]
-sample_period_s = 0.02
-duration_s = 20.0
-[setpoint]
-kind = "step"
-amplitude_deg = 10.0
-[[controller]]
+/// Who holds it, and who behind a limit until it is lost.
+const HOLDERS: &str = r#"[[controller]]
 name = "A"
 kind = "pid"
 kp = 0.12
@@ -54,7 +40,7 @@ fn who_flies_loops_of_which_nobody_can_tell_whether_they_are_stable_does_not_win
         )
     };
     let all: String = (0..10).map(longer).collect();
-    let place = place(&format!("{HELD_BEYOND_A_LIMIT}{all}"));
+    let place = place(&format!("{RUNS_AWAY}{HOLDERS}{all}"));
     let outcome = place.held();
     let told = outcome.text();
     let first = "B is first, and nobody wins: 10 of its 10 flights are of loops of which nobody can tell whether they are stable";
