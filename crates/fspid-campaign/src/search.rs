@@ -5,11 +5,13 @@
 //! found is a flight, and so a proof that it is that bad; that nothing is worse is not proved.
 
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use fspid_optimise::{LShade, NelderMead, Optimiser, Start, minimise};
 use fspid_scenario::count::FLIGHTS;
 use fspid_scenario::dispersion::{Dispersion, Distribution, Drawn, standard_normal};
 use fspid_scenario::file::known_words;
+use fspid_scenario::requirement::Requirement;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
@@ -17,7 +19,7 @@ use crate::campaign::Campaign;
 use crate::engine::{self, FlightResult};
 use crate::error::CampaignError;
 use crate::replay::{changes, command};
-use crate::rows::{measure_names, measured};
+use crate::rows::{LEFT_VALIDITY_AT, measure_names, measured};
 
 /// How far distributions without limits are searched, in standard deviations.
 const FARTHEST: f64 = 3.0;
@@ -26,6 +28,11 @@ const NEAREST: f64 = 1.0 / (1_u64 << 53) as f64;
 /// Cost of a flight that has no such measure, and of one that is lost: below every number that a measure has.
 const ABSENT: f64 = -1e200;
 const LOST: f64 = -1e300;
+/// Share of that which one has that leaves the range of its aircraft's data, and one that fails without an end.
+const LEFT: f64 = 0.7;
+const FAILED: f64 = 0.5;
+/// Cost of a requirement that was not evaluated: worse than every one that is met, and better than every one that is not.
+const NOT_EVALUATED: f64 = -f64::MIN_POSITIVE;
 /// Of lost flights those count as worse that are lost earlier; no flight lasts this long.
 const LONGEST_S: f64 = 1e12;
 
@@ -61,8 +68,23 @@ pub struct Worst {
     pub nominal: Option<f64>,
     /// Why the flight fails; empty where it does not.
     pub reasons: Vec<String>,
+    /// Why nobody can tell whether its loop is stable at rest, where that is so.
+    pub undecided: Option<String>,
     /// How many flights were flown.
     pub flown: usize,
+    /// What came of them beside the measure.
+    pub counts: Counts,
+}
+
+/// How many of the flights of a search came to what no measure tells.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// They fail, by themselves or by a requirement.
+    pub failed: usize,
+    /// It is undecided whether their loop is stable at rest.
+    pub undecided: usize,
+    /// Their numbers make no scenario, so that nothing was flown.
+    pub refused: usize,
 }
 
 /// Looks for the worst case of a campaign's scenario.
@@ -92,7 +114,9 @@ pub fn search(campaign: &Campaign, question: &Question) -> Result<Worst, Campaig
         controller: target.controller.clone(),
         measure: question.measure.clone(),
         value: worst.as_ref().and_then(|flight| target.value(flight)),
+        undecided: worst.as_ref().and_then(|flight| flight.at_rest.undecided_in_words()),
         reasons: worst.map_or(Vec::new(), |flight| flight.reasons()),
+        counts: target.tally.counts(),
         nominal: nominal.and_then(|flight| target.value(&flight)),
         changes,
         drawn,
@@ -111,6 +135,32 @@ struct Target<'a> {
     tails: Vec<[f64; 2]>,
     /// What kept a flight from being flown that is not of the flight.
     failed: OnceLock<CampaignError>,
+    tally: Tally,
+}
+
+/// [`Counts`] that grow on all threads at once.
+#[derive(Default)]
+struct Tally {
+    failed: AtomicUsize,
+    undecided: AtomicUsize,
+    refused: AtomicUsize,
+}
+
+impl Tally {
+    fn add(&self, flight: Option<&FlightResult>) {
+        let one = |count: &AtomicUsize, is_one: bool| {
+            count.fetch_add(usize::from(is_one), Ordering::Relaxed);
+        };
+        one(&self.failed, flight.is_some_and(FlightResult::is_failed));
+        one(&self.undecided, flight.is_some_and(|it| it.at_rest.undecided.is_some()));
+        one(&self.refused, flight.is_none());
+    }
+
+    fn counts(&self) -> Counts {
+        let [failed, undecided, refused] = [&self.failed, &self.undecided, &self.refused]
+            .map(|count| count.load(Ordering::Relaxed));
+        Counts { failed, undecided, refused }
+    }
 }
 
 impl<'a> Target<'a> {
@@ -130,7 +180,10 @@ impl<'a> Target<'a> {
             let found = question.controller.as_deref().unwrap_or_default();
             return Err(unknown("controller", found, names));
         };
-        let ids: Vec<&str> = study.requirements.iter().map(|it| it.id.as_str()).collect();
+        // One of another controller is asked of none of these flights.
+        let mine = |it: &&Requirement| it.controller.as_ref().is_none_or(|of| of == name);
+        let ids: Vec<&str> =
+            study.requirements.iter().filter(mine).map(|it| it.id.as_str()).collect();
         let is_requirement = ids.contains(&question.measure.as_str());
         if !is_requirement && !measure_names().any(|(name, _)| name == question.measure) {
             // A requirement may be called as its measure is.
@@ -141,8 +194,8 @@ impl<'a> Target<'a> {
         FLIGHTS.check(question.budget)?;
         let controller = name.to_owned();
         let tails = campaign.draws().in_cube(tails);
-        let failed = OnceLock::new();
-        Ok(Self { campaign, question, controller, place, is_requirement, tails, failed })
+        let (failed, tally) = (OnceLock::new(), Tally::default());
+        Ok(Self { campaign, question, controller, place, is_requirement, tails, failed, tally })
     }
 
     /// Makes it as bad as can be found; flights flown.
@@ -161,10 +214,12 @@ impl<'a> Target<'a> {
             Vec::new()
         });
         runs.iter()
-            .map(|run| match &run.flights {
-                Ok(flights) => flights.get(self.place).map_or(0.0, |flight| self.cost(flight)),
+            .map(|run| {
+                let flights = run.flights.as_ref().ok();
+                let flight = flights.and_then(|flights| flights.get(self.place));
+                self.tally.add(flight);
                 // No scenario, no worst case of one.
-                Err(_) => f64::INFINITY,
+                flight.map_or(f64::INFINITY, |flight| self.cost(flight))
             })
             .chain(std::iter::repeat(f64::INFINITY))
             .take(points.len())
@@ -181,19 +236,27 @@ impl<'a> Target<'a> {
 
     /// Low for bad flights.
     fn cost(&self, flight: &FlightResult) -> f64 {
+        let earlier = |at_s: f64| 1.0 - at_s / LONGEST_S;
         if let Some(at_s) = flight.diverged_at_s().or_else(|| flight.hit_ground_at_s()) {
-            return LOST * (1.0 - at_s / LONGEST_S);
+            return LOST * earlier(at_s);
         }
-        if flight.metrics.verdict.is_failure() {
-            return LOST * 0.5;
+        let ending = flight.ending();
+        if let Some(exit) = ending.failing_exit() {
+            return LOST * LEFT * earlier(exit.at_s);
         }
-        let cost = match self.is_requirement {
-            true => self.slack(flight),
-            false => {
-                self.value(flight).map(|value| if self.question.lowest { value } else { -value })
+        if ending.measured.is_failure() {
+            return LOST * FAILED;
+        }
+        let towards = |value: f64| if self.question.lowest { value } else { -value };
+        let (cost, absent) = match self.is_requirement {
+            true => (self.slack(flight), NOT_EVALUATED),
+            // Who never leaves the range is none of those who do.
+            false if self.question.measure == LEFT_VALIDITY_AT => {
+                (self.value(flight).map(towards), -ABSENT)
             }
+            false => (self.value(flight).map(towards), ABSENT),
         };
-        cost.filter(|cost| !cost.is_nan()).unwrap_or(ABSENT)
+        cost.filter(|cost| !cost.is_nan()).unwrap_or(absent)
     }
 
     fn value(&self, flight: &FlightResult) -> Option<f64> {
@@ -234,6 +297,24 @@ fn tails(dispersion: &Dispersion) -> Vec<[f64; 2]> {
     }
 }
 
+impl Counts {
+    /// " Of the flights 46 fail, and of 3 it is undecided whether they are stable at rest."; nothing where there are none.
+    fn in_words(self) -> String {
+        let told = [
+            (self.failed, "fail"),
+            (self.undecided, "are undecided: nobody can tell whether their loop is stable at rest"),
+            (self.refused, "make no scenario, and count as none"),
+        ];
+        let told = told.iter().filter(|(count, _)| *count > 0);
+        let told: Vec<String> = told.map(|(count, what)| format!("{count} {what}")).collect();
+        if told.is_empty() {
+            String::new()
+        } else {
+            format!(" Of all that were asked {}.", told.join("; "))
+        }
+    }
+}
+
 impl Worst {
     /// The answer for people.
     #[must_use]
@@ -256,11 +337,16 @@ impl Worst {
         for reason in &self.reasons {
             out.push_str(&format!("  fails: {reason}\n"));
         }
+        if let Some(undecided) = &self.undecided {
+            out.push_str(&format!("  {undecided}\n"));
+        }
         for change in &self.changes {
             out.push_str(&format!("  {change}\n"));
         }
         out.push_str(&format!("  again: {}\n", command(campaign, &self.changes)));
-        out.push_str("This flight is that bad; that none is worse is not proved.\n");
+        out.push_str("This flight is that bad; that none is worse is not proved.");
+        out.push_str(&self.counts.in_words());
+        out.push('\n');
         out
     }
 
@@ -276,6 +362,10 @@ impl Worst {
             "reasons": self.reasons,
             "changes": self.changes,
             "flights": self.flown,
+            "failed": self.counts.failed,
+            "undecided": self.counts.undecided,
+            "refused": self.counts.refused,
+            "worst_undecided": self.undecided,
             "command": command(campaign, &self.changes),
         })
     }

@@ -8,10 +8,14 @@ use fspid_campaign::{Campaign, CampaignError, Folder, Question, Shards, local, p
 use fspid_scenario::dispersion::Drawn;
 
 fn campaign() -> Campaign {
-    let scenario = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/campaign.toml");
+    campaign_of("campaign.toml", &["loop.duration_s=5.0"])
+}
+
+fn campaign_of(name: &str, set: &[&str]) -> Campaign {
+    let scenario = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios").join(name);
     let question = Question {
         scenario: &scenario,
-        overrides: &["loop.duration_s=5.0".to_owned()],
+        overrides: &set.iter().map(|it| (*it).to_owned()).collect::<Vec<_>>(),
         runs: 1,
         seed: 1,
         sampling: Sampling::Random,
@@ -66,6 +70,66 @@ fn the_largest_overshoot_is_in_the_corner_of_least_damping_and_slowest_servo() {
     };
     assert!(found.value > Some(by_chance) && found.nominal < Some(by_chance), "{found:?}");
     assert!(found.flown <= 600, "{}", found.flown);
+}
+
+/// Amplitudes of a step of a nonlinear aircraft, by large ones of which it leaves the range of its data.
+fn leaving(measure: &str, lowest: bool, set: &[&str]) -> Worst {
+    let step = "dispersion[]={ name = \"step\", path = \"setpoint.amplitude_deg\", distribution = \"uniform\", lower = 1.0, upper = 25.0 }";
+    let campaign = campaign_of("gallery/uav-pitch-step.toml", &[&[step], set].concat());
+    let question = search::Question {
+        measure: measure.to_owned(),
+        lowest,
+        controller: None,
+        budget: 60,
+        seed: 1,
+    };
+    search::search(&campaign, &question).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// "worst … none s" at the least amplitude, of a box in which 69 of 100 flights leave their range.
+#[test]
+fn a_flight_that_leaves_the_range_of_its_data_is_worse_than_one_that_does_not() {
+    for (measure, lowest) in [("left_validity_at_s", true), ("rise_time_s", false)] {
+        for rule in ["fail", "warn"] {
+            let found = leaving(measure, lowest, &[&format!("aircraft.validity={rule}")]);
+            let leaves = measure == "left_validity_at_s" || rule == "fail";
+            assert!(!leaves || number(&found.drawn[0]) > 10.0, "{measure} {rule} {found:?}");
+            assert_eq!(
+                found.reasons.iter().any(|it| it.contains("left the range")),
+                rule == "fail"
+            );
+            assert!(measure != "left_validity_at_s" || found.value.is_some(), "{found:?}");
+            assert!(found.counts.failed > 10 || rule == "warn", "{found:?}");
+        }
+    }
+}
+
+/// "worst overshoot_pct found in 300 flights: none": the requirement was that of another controller.
+#[test]
+fn a_requirement_of_another_controller_is_not_asked_of_this_one() {
+    let required = "requirement[]={ id = \"overshoot_pct\", measure = \"overshoot_pct\", most = 10.0, controller = \"CPID\" }";
+    let campaign = campaign_of("campaign.toml", &["loop.duration_s=5.0", required]);
+    let question = search::Question { budget: 40, ..asked("overshoot_pct") };
+    let found = search::search(&campaign, &question).expect("it is searched");
+    assert!(found.value.is_some_and(|it| it > 0.0), "{found:?}");
+    let required = required.replace("id = \"overshoot_pct\"", "id = \"of CPID\"");
+    let campaign = campaign_of("campaign.toml", &["loop.duration_s=5.0", &required]);
+    let refused = search::search(&campaign, &search::Question { budget: 40, ..asked("of CPID") });
+    assert!(matches!(refused, Err(CampaignError::Unknown { what: "measure", .. })), "{refused:?}");
+}
+
+/// Nothing said that of most of these flights nobody can tell whether their loop is stable.
+#[test]
+fn what_no_measure_tells_is_counted_beside_the_worst() {
+    let bounded = "controller.FSPID.output_limits_deg=[-0.02, 0.02]";
+    let campaign = campaign_of("campaign.toml", &["loop.duration_s=5.0", bounded]);
+    let question = search::Question { budget: 40, ..asked("iae_deg_s") };
+    let found = search::search(&campaign, &question).expect("it is searched");
+    let text = found.text(&campaign);
+    assert!(found.counts.undecided + found.counts.failed > 0, "{text}");
+    assert!(text.contains("Of all that were asked"), "{text}");
+    assert_eq!(found.undecided.is_some(), text.contains("stability at rest"), "{text}");
+    assert_eq!(found.json(&campaign)["undecided"], found.counts.undecided);
 }
 
 #[test]

@@ -316,6 +316,17 @@ impl Certification {
     pub fn all_proved(&self) -> bool {
         !self.results.is_empty() && self.results.iter().all(Certified::is_proved)
     }
+
+    /// Its certificates are those of one choice of the dispersions, beside which nothing is drawn.
+    fn are_about_one_choice(&mut self) {
+        for result in &mut self.results {
+            if let Ok(Outcome { verdict: Verdict::Proved(certificate, _), .. }) =
+                &mut result.outcome
+            {
+                family::is_about_one_choice(certificate);
+            }
+        }
+    }
 }
 
 /// The plant that lasts from this time on, s.

@@ -134,11 +134,11 @@ impl Told {
                 "limits_left_out": limits_left_out,
                 "steps_within_deg": stepped.map(|it| told_deg(it.setpoint_rad)),
                 "steps_load_within_deg": stepped.map(|it| told_deg(it.load_rad)),
-                "steps_limited_until_s": stepped.map(|it| it.settled_s),
+                "steps_limited_until_s": stepped.map(|it| limited_until_s(it.limited, it.settled_s)),
                 "steps_after_rest_s": stepped.and_then(|it| it.rested_s),
                 "flights_setpoint_within_deg": ended.map(|it| told_deg(it.setpoint_rad)),
                 "flights_load_within_deg": ended.map(|it| told_deg(it.load_rad)),
-                "flights_limited_until_s": ended.map(|it| it.settled_s),
+                "flights_limited_until_s": ended.map(|it| limited_until_s(it.limited, it.settled_s)),
             });
             merged([told, bounds])
         };
@@ -257,11 +257,16 @@ fn steps(stepped: &Stepped) -> String {
     )
 }
 
-/// What limits do on the way; a time after which the flight is near rest.
+/// Until when a limit acts at most, s.
+pub(super) fn limited_until_s(limited: bool, settled_s: f64) -> f64 {
+    if limited { settled_s } else { 0.0 }
+}
+
+/// What limits do on the way, and the time after which none acts any more.
 fn acting(limited: bool, settled: &str) -> String {
     match limited {
         true => format!("with its limits acting on the way; {settled} none acts any more"),
-        false => format!("and no limit acts at any time; {settled} it is near rest"),
+        false => "and no limit acts at any time".to_owned(),
     }
 }
 
@@ -345,4 +350,20 @@ pub(super) fn told_deg(radians: f64) -> f64 {
     let scale = libm::pow(10.0, f64::from(DIGITS - 1) - libm::floor(libm::log10(angle.abs())));
     let told = libm::round(angle * scale) / scale;
     if told.is_finite() { told } else { angle }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::float_cmp, reason = "the same numbers are asked for")]
+
+    use super::*;
+
+    /// "0.16 s later it is near rest", with 97 % of the step still to go.
+    #[test]
+    fn steps_that_no_limit_touches_are_told_without_a_time() {
+        assert_eq!(acting(false, "0.16 s later"), "and no limit acts at any time");
+        let limited = "with its limits acting on the way; 3 s later none acts any more";
+        assert_eq!(acting(true, "3 s later"), limited);
+        assert_eq!([false, true].map(|limited| limited_until_s(limited, 3.0)), [0.0, 3.0]);
+    }
 }

@@ -7,7 +7,7 @@ use fspid_sim::actuator::Lag;
 use fspid_sim::core::{Gains, Pid, PidConfig};
 use fspid_sim::signal::{Disturbance, Entry, Profile, Shape};
 use fspid_sim::{
-    Actuator, Controller, ElevatorSign, LinearPlant, Outcome, Scenario, Timing, simulate,
+    Actuator, Controller, ElevatorSign, LinearPlant, Outcome, Scenario, Timing, Trace, simulate,
 };
 
 const DEG: f64 = std::f64::consts::PI / 180.0;
@@ -123,6 +123,10 @@ fn scenario(random: &mut Random) -> Scenario {
     scenario
 }
 
+fn is_noisy(scenario: &Scenario) -> bool {
+    scenario.disturbances.iter().any(|it| it.is_noise() && it.entry() == Entry::Measurement)
+}
+
 /// How often something was compared, and how near the nearest came.
 #[derive(Default, Debug)]
 struct Told {
@@ -145,7 +149,9 @@ fn attack(seed: u64, scenarios: usize) -> Told {
         let flown = flight.traces.iter().flat_map(|it| &it.command_rad);
         let within = flown.fold(0.0, |most: f64, u| most.max(u.abs()));
         // Half of them against who keeps as still as these controllers do until something happens.
-        let commands = flight.traces.iter().map(|it| it.command_rad.as_slice());
+        // The last two are nobody's that the question knows; before anything happens they do nothing, or answer noise.
+        let known = &flight.traces[..2];
+        let commands = known.iter().map(|it| it.command_rad.as_slice());
         let still = Still::of(&scenario, commands).filter(|_| random.chance(0.5));
         let assumed = Assumed { within_rad: within.max(0.5), still };
         let question = match Question::of(&scenario, travel, assumed) {
@@ -156,7 +162,13 @@ fn attack(seed: u64, scenarios: usize) -> Told {
             }
             Err(other) => panic!("{number}: {other} {scenario:#?}"),
         };
-        for trace in flight.traces.iter().filter(|it| it.outcome == Outcome::Completed) {
+        let keeps_still = |trace: &&Trace| {
+            let before = trace.command_rad.iter().take(still.map_or(0, |it| it.until));
+            still.is_none_or(|it| before.clone().all(|u| u.abs() <= it.within_rad))
+                || !is_noisy(&scenario)
+        };
+        let flown = flight.traces.iter().filter(|it| it.outcome == Outcome::Completed);
+        for trace in flown.filter(keeps_still) {
             let (found, way) = measured(
                 (measure, travel),
                 (&trace.setpoint_rad, &trace.theta_rad),

@@ -6,6 +6,7 @@ use fspid_limit::{
 };
 use fspid_sim::actuator::Lag;
 use fspid_sim::core::{Gains, Pid, PidConfig};
+use fspid_sim::sensor::{Sensor, SensorModel};
 use fspid_sim::signal::{Disturbance, Entry, Profile, Shape};
 use fspid_sim::{
     Actuator, Controller, ElevatorSign, LinearPlant, PlantChange, Scenario, Timing, simulate,
@@ -206,6 +207,36 @@ fn who_keeps_still_until_something_happens_cannot_be_early() {
     let question = Question::of(&scenario, asked.1, assumed).expect("allowed");
     let (_, reached) = planned(&scenario, &question, asked, 10.0 * DEG);
     assert!(reached.measure < 1.02 * late.proved);
+}
+
+/// "30.07 deg s proved" of a servo that stands a degree off, beside a PID that flies it with 2.75: it had not moved until the step.
+#[test]
+fn nobody_keeps_still_where_a_bias_air_or_noise_of_the_servo_moves_the_aircraft_from_the_start() {
+    let quiet = || {
+        let mut scenario = light();
+        scenario.disturbances.clear();
+        scenario
+    };
+    let until = |scenario: &Scenario| Still::of(scenario, [].into_iter()).map(|it| it.until);
+    assert_eq!(until(&quiet()), Some(75));
+    let mut biased = quiet();
+    biased.actuator = biased.actuator.with_bias(0.1 * DEG).expect("allowed");
+    assert_eq!(until(&biased), None);
+    let noise = |entry: Entry, size_rad: f64| {
+        let shape = Shape::Noise { at_s: 1.0, seed: 1 };
+        let mut scenario = quiet();
+        scenario.disturbances.push(Disturbance::new(entry, size_rad, shape).expect("allowed"));
+        until(&scenario)
+    };
+    for entry in [Entry::Servo, Entry::Elevator] {
+        assert_eq!((noise(entry, 0.1 * DEG), noise(entry, 0.0)), (Some(25), Some(75)), "{entry:?}");
+    }
+    // It moves nobody but who answers it.
+    assert_eq!(noise(Entry::Measurement, 0.1 * DEG), Some(75));
+    let mut seen = quiet();
+    let model = SensorModel { bias: 0.1 * DEG, ..SensorModel::default() };
+    seen.surroundings.rate_sensor = Some(Sensor::new(model, 1, 0).expect("allowed"));
+    assert_eq!(until(&seen), None);
 }
 
 #[test]

@@ -212,7 +212,7 @@ impl fmt::Display for LeftOut {
             Self::SeenPitch => "Rest is told of the pitch that the controller sees: by what its sensor shows wrongly the aircraft's own is off.",
             Self::Disturbances => "Disturbances count while they stand still, as loads.",
             Self::Dispersions => "The claim is about the nominal numbers, not about those that a campaign draws.",
-            Self::DrawnCommands => "Set-points, disturbances, moving air and noise count as they are written, not as the dispersions draw them.",
+            Self::DrawnCommands => "Set-points, disturbances, biases of sensors, moving air and noise count as they are written, not as the dispersions draw them.",
             Self::OtherChoices => "Of what the dispersions choose among, the claim is about one choice alone: others have certificates of their own.",
             Self::OuterLoops => "The claim is about the pitch loop alone, not about the outer loops around it and the set-points that they command.",
             Self::Configurations => {

@@ -83,7 +83,7 @@ pub use led::{Led, Leg};
 pub use longitudinal::{LongitudinalDerivatives, LongitudinalModel};
 pub use plant::{ElevatorSign, LinearPlant, Plant, PlantChange};
 pub use rest::{Doubt, Rest, RestPoint, Side, Stand};
-pub use scenario::{Flyer, NamedController, Prepared, Respondent, Scenario};
+pub use scenario::{Flyer, NamedController, Noises, Prepared, Respondent, Scenario};
 pub use seen::Seen;
 pub use steady::Steady;
 pub use surroundings::{Course, Surroundings, Weather};

@@ -100,6 +100,15 @@ pub struct Scenario {
     pub autopilot: Option<Autopilot>,
 }
 
+/// Which noises of disturbances are asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Noises {
+    /// None: noise pushes nowhere.
+    None,
+    /// Those at servo and elevator, which move the aircraft.
+    ThatMove,
+}
+
 impl Scenario {
     /// A flight with an ideal actuator in calm air, without anybody who answers yet; `name` is the title of reports.
     #[must_use]
@@ -146,10 +155,14 @@ impl Scenario {
         })
     }
 
-    /// When disturbances begin to push the loop, s, ascending. Noise pushes nowhere, and neither does what is of no size.
+    /// When disturbances begin to push the loop, s, ascending; noise does where it is among these, and what is of no size nowhere.
     #[must_use]
-    pub fn pushes_s(&self) -> Vec<f64> {
-        let pushes = |it: &&Disturbance| !it.is_noise() && it.part().0 != 0.0;
+    pub fn pushes_s(&self, noises: Noises) -> Vec<f64> {
+        let counts = |it: &Disturbance| match noises {
+            Noises::None => !it.is_noise(),
+            Noises::ThatMove => !it.is_noise() || it.entry() != Entry::Measurement,
+        };
+        let pushes = |it: &&Disturbance| counts(it) && it.part().0 != 0.0;
         let pushing = self.disturbances.iter().filter(pushes);
         let mut pushes_s: Vec<f64> = pushing.map(Disturbance::starts_s).collect();
         pushes_s.sort_by(f64::total_cmp);

@@ -22,18 +22,23 @@ pub struct Surroundings {
 }
 
 impl Surroundings {
-    /// True where a sensor shows noise or drift.
+    /// True where the air is turbulent, or a sensor shows noise or drift.
     pub(crate) fn is_noisy(&self) -> bool {
+        let is_turbulent = self.weather.as_ref().is_some_and(|it| it.turbulence.is_some());
         let sensors = self.pitch_sensor.iter().chain(&self.rate_sensor);
         let mut models = sensors.map(Sensor::model);
-        models.any(|it| it.noise_density > 0.0 || it.drift > 0.0)
+        is_turbulent || models.any(|it| it.noise_density > 0.0 || it.drift > 0.0)
     }
 
-    /// The same with sensors that show neither noise nor drift from some time on; their bias and scale stay.
+    /// The same with sensors that show neither noise nor drift from some time on, their bias and scale stay, and with turbulence
+    /// that dies away from then on.
     pub(crate) fn silent_from(&self, at_s: f64) -> Self {
         let mut own = self.clone();
         let sensors = own.pitch_sensor.iter_mut().chain(&mut own.rate_sensor);
         sensors.for_each(|sensor| *sensor = sensor.silent_from(at_s));
+        if let Some(turbulence) = own.weather.as_mut().and_then(|it| it.turbulence.as_mut()) {
+            turbulence.driven_until_s = at_s;
+        }
         own
     }
 }

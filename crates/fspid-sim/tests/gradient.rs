@@ -310,6 +310,7 @@ fn weather(gust: bool, rough: bool) -> Option<Weather> {
         wing_span_m: 10.0,
         noise: 9.into(),
         follows: Follows::Start,
+        driven_until_s: f64::INFINITY,
     };
     let wind = WindKind::FullCycle.build(&[3.0, 0.0, -6.0, 40.0, 20.0]).expect("allowed");
     let winds = if gust { vec![wind] } else { Vec::new() };

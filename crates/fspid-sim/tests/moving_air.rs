@@ -103,6 +103,7 @@ fn turbulence(seed: u64) -> Weather {
         wing_span_m: 196.0 * FOOT_M,
         noise: seed.into(),
         follows: Follows::Start,
+        driven_until_s: f64::INFINITY,
     };
     Weather { turbulence: Some(turbulence), ..winds(Vec::new()) }
 }

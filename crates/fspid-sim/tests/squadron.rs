@@ -151,6 +151,7 @@ fn weather(case: Case, random: &mut Random, plant: &AircraftPlant) -> Option<Wea
         wing_span_m: 11.0,
         noise: random.bits().into(),
         follows: if random.one_in(3) { Follows::Flight } else { Follows::Start },
+        driven_until_s: f64::INFINITY,
     };
     let winds = |random: &mut Random| winds(random, airspeed_m_s, height_m);
     match case.air {

@@ -77,6 +77,7 @@ fn turbulence(w20_m_s: f64) -> Weather {
         wing_span_m: 33.4 * FOOT_M,
         noise: 9.into(),
         follows: Follows::Start,
+        driven_until_s: f64::INFINITY,
     };
     Weather { course: course(), winds: Vec::new(), turbulence: Some(turbulence) }
 }

@@ -4,7 +4,7 @@ use fspid_scenario::file::Study;
 use fspid_study::simulation::Simulation;
 
 use crate::error::TuneError;
-use crate::limit::{NearLimit, refusal, shares};
+use crate::limit::{NearLimit, Shares, refusal, shares};
 use crate::problem::TuningProblem;
 
 impl TuningProblem {
@@ -19,7 +19,7 @@ impl TuningProblem {
         stop: fn() -> bool,
     ) -> Result<NearLimit, TuneError> {
         let flights = self.its_flights();
-        let (mut shares, mut cases) = (Vec::new(), Vec::new());
+        let (mut shares, mut cases, mut beside) = (Vec::new(), Vec::new(), Vec::new());
         for (place, (case, run)) in flights.jobs().enumerate() {
             told(&format!("limit of flight {} of {}", place + 1, flights.count()));
             let share = match flights.study(point, case, run) {
@@ -31,17 +31,19 @@ impl TuningProblem {
                 runs => format!("{}, draw {} of {runs}", case.name, run + 1),
             };
             cases.push((name, share.as_ref().err().cloned()));
-            shares.push(share.ok().flatten());
+            let (share, said) = share.unwrap_or_default();
+            shares.push(share.into_iter().next().flatten());
+            beside.push(said);
         }
-        Ok(NearLimit { controllers: vec![(self.controller().to_owned(), shares)], cases })
+        Ok(NearLimit { controllers: vec![(self.controller().to_owned(), shares)], cases, beside })
     }
 
-    /// The share of a flight, or why there is none.
+    /// The share of a flight with what is said beside it, or why there is none.
     fn share(
         &self,
         study: &Study,
         stop: fn() -> bool,
-    ) -> Result<Result<Option<f64>, String>, TuneError> {
+    ) -> Result<Result<Shares, String>, TuneError> {
         if let Some(why) = refusal(&study.scenario) {
             return Ok(Err(why));
         }
@@ -57,7 +59,6 @@ impl TuningProblem {
         if verdict.is_failure() {
             return Ok(Err(verdict.to_string()));
         }
-        let found = shares(&study.scenario, &[Some(own.trace)], stop)?;
-        Ok(found.map(|shares| shares.into_iter().next().flatten()))
+        shares(&study.scenario, &[Some(own.trace)], stop)
     }
 }

@@ -214,6 +214,15 @@ fn threads_do_not_show_and_the_best_gains_take_no_more_travel() {
     assert!(best.travel.is_some_and(|it| it.value < 1.05) && best.lost == 0, "{best:?}");
 }
 
+/// With a limit on one side alone every candidate was infinite, and none was told.
+#[test]
+fn gains_with_a_limit_on_one_side_are_searched_for() {
+    let limits = "gain_limits = { kp_min = 0.0, ki_min = 0.0, kd_min = 0.0 }";
+    let answer = measured(&scenario(&format!("{RULES}\n{limits}"), |_| String::new()));
+    let best = row(&answer, Treatment::PlantTuned);
+    assert!(best < 1.05 && best > 0.3, "{best}");
+}
+
 #[test]
 fn what_cannot_be_asked_is_refused_by_name() {
     let fixed = scenario(RULES, |_| String::new()).replace("kind = \"fspid\"", "kind = \"pid\"");

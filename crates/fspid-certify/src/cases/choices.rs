@@ -6,13 +6,13 @@ use fspid_scenario::file::Study;
 use super::{Change, NoCases};
 use crate::family;
 
-/// True of a dispersion that chooses among values of the loop that are no numbers of a family: another aircraft, another
-/// delay.
+/// True of a dispersion that chooses among values that are no numbers of a family, and that a claim depends on: another aircraft,
+/// another delay, another set-point or load.
 pub(in super::super) fn is_chosen_apart(dispersion: &Dispersion) -> bool {
     matches!(dispersion.distribution, Distribution::Choice(_))
         && !dispersion.relative
         && !family::is_in_a_box(dispersion)
-        && !family::is_outside_of_the_loop(dispersion)
+        && !family::is_in_no_claim(dispersion)
 }
 
 fn apart(study: &Study) -> impl Iterator<Item = &Dispersion> {
@@ -32,11 +32,24 @@ pub(in super::super) fn only_choices_differ(study: &Study) -> bool {
 pub(super) fn all_are_apart(study: &Study) -> Result<(), NoCases> {
     let is_left = |it: &&Dispersion| {
         let is_chosen = matches!(it.distribution, Distribution::Choice(_));
-        is_chosen && !is_chosen_apart(it) && !family::is_outside_of_the_loop(it)
+        is_chosen && !is_chosen_apart(it) && !family::is_in_no_claim(it)
     };
-    let targets = study.dispersions.iter().filter(is_left).flat_map(|it| &it.targets);
-    let left: Vec<String> = targets.map(|target| format!("`{}`", target.name)).collect();
-    if left.is_empty() { Ok(()) } else { Err(NoCases::InAFamily(left.join(", "))) }
+    let left: Vec<&Dispersion> = study.dispersions.iter().filter(is_left).collect();
+    // Where each is a factor of what stands there, nothing is to be set.
+    let (factors, numbers): (Vec<&Dispersion>, Vec<&Dispersion>) =
+        left.into_iter().partition(|it| it.relative && !family::is_in_a_box(it));
+    match (factors.is_empty(), numbers.is_empty()) {
+        (true, true) => Ok(()),
+        (false, _) => Err(NoCases::Factors(named(&factors))),
+        (true, false) => Err(NoCases::InAFamily(named(&numbers))),
+    }
+}
+
+/// Their paths.
+fn named(dispersions: &[&Dispersion]) -> String {
+    let targets = dispersions.iter().flat_map(|it| &it.targets);
+    let paths = targets.flat_map(|target| &target.paths);
+    paths.map(|path| format!("`{}`", path.text())).collect::<Vec<_>>().join(", ")
 }
 
 /// How many combinations there are; 0 where nothing is chosen.

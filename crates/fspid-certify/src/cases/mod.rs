@@ -127,6 +127,11 @@ pub enum NoCases {
         "{0}: chosen as well, as numbers of a family, and not one by one: --family asks every combination with them; or give one value with --set and leave the dispersion out"
     )]
     InAFamily(String),
+    /// Factors of what stands there, which `--set` does not know.
+    #[error(
+        "{0}: chosen as factors, with `relative = true`; write the values themselves, which are certified one by one"
+    )]
+    Factors(String),
     /// More than are certified at once.
     #[error("{found} {of}; allowed are up to {MOST_CASES}")]
     TooMany {
@@ -226,7 +231,10 @@ impl CertifiedCases {
             known.push(Known { description, asked, outcome: outcome.clone() });
             outcome
         };
-        let stable = Certification::asking(template.study(), only, &mut ask, tell)?;
+        let mut stable = Certification::asking(template.study(), only, &mut ask, tell)?;
+        if self.which == Cases::Choices && only_choices_differ(template.study()) {
+            stable.are_about_one_choice();
+        }
         let chosen = match self.which {
             Cases::Choices => Chosen::Apart,
             Cases::Tuning | Cases::Contest => Chosen::AsABox,

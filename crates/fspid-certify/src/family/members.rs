@@ -309,11 +309,27 @@ pub(in super::super) fn is_in_a_box(dispersion: &Dispersion) -> bool {
 }
 
 /// True for places that have no way into the loop: what it is asked to do, what disturbs it, and noise.
+/// True of a dispersion of moving air and noise, which no claim speaks of.
+pub(in super::super) fn is_in_no_claim(dispersion: &Dispersion) -> bool {
+    dispersion.targets.iter().flat_map(|target| &target.paths).all(|path| match table(path) {
+        "wind" | "gust" | "turbulence" => true,
+        "disturbance" => ["seed", "standard_deviation"].iter().any(|it| path.text().contains(it)),
+        // A seed brings a bias, which is a load.
+        "sensor" => is_outside(path) && !path.text().contains("seed"),
+        _ => false,
+    })
+}
+
+/// The table of a scenario in which a path lies.
+fn table(path: &SettingPath) -> &str {
+    let text = path.text();
+    text.split(['.', '[']).next().unwrap_or(text)
+}
+
 fn is_outside(path: &SettingPath) -> bool {
     let text = path.text();
-    let table = text.split(['.', '[']).next().unwrap_or(text);
     let is_noise = || ["noise", "drift", "seed"].iter().any(|word| text.contains(word));
-    match table {
+    match table(path) {
         "setpoint" | "disturbance" | "wind" | "gust" | "turbulence" => true,
         "sensor" => is_noise(),
         _ => false,

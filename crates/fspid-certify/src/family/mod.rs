@@ -10,7 +10,9 @@ mod source;
 pub(super) use answer::{box_in_words, in_json, in_words, member_in_words, sentences};
 pub use as_flown::AsFlown;
 pub use members::NoFamily;
-pub(super) use members::{is_in_a_box, is_outside_of_the_loop, reaches_outside_of_the_loop};
+pub(super) use members::{
+    is_in_a_box, is_in_no_claim, is_outside_of_the_loop, reaches_outside_of_the_loop,
+};
 
 use fspid_proof::check::{PlantSet, Sloped};
 use fspid_proof::{
@@ -118,7 +120,7 @@ pub(super) fn certified(
 }
 
 /// A certificate that leaves out other choices in place of all that differs.
-fn is_about_one_choice(certificate: &mut Certificate) {
+pub(super) fn is_about_one_choice(certificate: &mut Certificate) {
     for one in &mut certificate.left_out {
         if *one == LeftOut::Dispersions {
             *one = LeftOut::OtherChoices;

@@ -6,6 +6,7 @@ use fspid_page::number::significant;
 use fspid_proof::{Certificate, Family, Parameter, Rechecked, Scope};
 use fspid_scenario::units::degrees;
 
+use crate::scope::limited_until_s;
 use crate::text::{GAINS_REACHED, found, time_constant_s};
 use crate::told::{at_least, at_most};
 use crate::{Certified, FamilyAnswer, disturbances};
@@ -100,14 +101,14 @@ fn from_rest(scope: &Scope) -> Vec<Vec<Datum>> {
         if let Some(rested_s) = steps.rested_s {
             rows.push(row("rest before a step, at least", seconds(rested_s), "s"));
         }
-        let until = seconds(steps.settled_s);
+        let until = seconds(limited_until_s(steps.limited, steps.settled_s));
         rows.push(row("no limit acts any more after a step by", until, "s"));
     }
     if let Some(flights) = &scope.ended {
         let setpoint = angle(flights.setpoint_rad);
         rows.push(row("flights as commanded, set-point up to", setpoint, "deg"));
         rows.push(row("flights as commanded, load up to", angle(flights.load_rad), "deg"));
-        let until = seconds(flights.settled_s);
+        let until = seconds(limited_until_s(flights.limited, flights.settled_s));
         rows.push(row("no limit acts any more in those flights from", until, "s"));
     }
     rows

@@ -6,7 +6,7 @@
 //! ringing, a chattering command. Nothing but the claims enters.
 
 use fspid_core::fuzzy::RuleTable;
-use fspid_sim::{LinearPlant, Trace, simulate};
+use fspid_sim::{LinearPlant, Noises, Trace, simulate};
 
 use super::super::claim::{CLAIMS, Claim, Quantity};
 use super::super::model::{
@@ -238,7 +238,7 @@ impl Bench {
             .traces
             .iter()
             .map(|trace| {
-                let pushes_s = scenario.pushes_s();
+                let pushes_s = scenario.pushes_s(Noises::None);
                 FlightMetrics::of(trace, &flight.edges, scenario.timing, None, &pushes_s)
             })
             .collect();

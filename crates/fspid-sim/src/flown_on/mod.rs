@@ -45,8 +45,8 @@ const PERIODS: f64 = 2.0;
 /// towards its rest as well.
 ///
 /// A nonlinear aircraft that is flown on is asked for a swing that stays at limits alone, for it has slow motions beside: what it
-/// comes to without one is told by where its flight leads. In moving air, which is that of a way that ends with the flight, and of
-/// another simulator's aircraft the flight itself is asked for such a swing, and not flown on.
+/// comes to without one is told by where its flight leads. Of another simulator's aircraft the flight itself is asked for such a
+/// swing, and not flown on.
 pub(crate) fn doubt(
     scenario: &Scenario,
     controller: &Controller,
@@ -63,18 +63,17 @@ pub(crate) fn doubt(
     let is_linear = scenario.plant.linear().is_some();
     let pieces = pieces_of(scenario, &ends, trace);
     let in_doubt = |is_in_doubt: bool| is_in_doubt.then(|| of_limits_or_gains(gains, &pieces));
-    let moved = moved_in_flight(scenario);
+    let moved = Moved::of(scenario, Afterwards::Noise);
     if trace.rows() < rows {
         let swings_itself = || moves().is_some_and(|moves| pieces.swings_on(moved, moves));
         // With fixed gains and without limits a loop that holds at rest holds; what else ends an aircraft's flight its verdict tells.
         return in_doubt(
             is_linear
                 || is_lost(trace.outcome, swings_itself(), &pieces)
-                || gains.is_some() && has_gone_away(trace.outcome, &pieces, moved),
+                || gains.is_some_and(|it| has_gone_away(trace.outcome, it, &pieces, moved)),
         );
     }
-    let is_external = matches!(scenario.plant, Plant::External(_));
-    let flies_on = !is_external && !scenario.has_moving_air();
+    let flies_on = !matches!(scenario.plant, Plant::External(_));
     let swings = has_swings(scenario) || swings_by_command(scenario);
     let is_stilled = gains.is_some() && swings && flies_on && rows <= SAMPLES[1];
     let has_rested = has_come_to_rest(scenario, &pieces, gains, trace);
@@ -118,14 +117,6 @@ fn ways(
         (Afterwards::Still, is_stilled),
     ];
     all.into_iter().filter_map(|(afterwards, is_asked)| is_asked.then_some(afterwards))
-}
-
-/// What moves the flight itself; moving air does as noise.
-fn moved_in_flight(scenario: &Scenario) -> Moved {
-    match scenario.has_moving_air() {
-        true => Moved::ByNoise,
-        false => Moved::of(scenario, Afterwards::Noise),
-    }
 }
 
 /// The flight itself in five pieces, and what is left.
@@ -187,7 +178,7 @@ fn has_come_to_rest(
     gains: Option<MovingGains>,
     trace: &Trace,
 ) -> bool {
-    let has_ended = || match moved_in_flight(scenario) {
+    let has_ended = || match Moved::of(scenario, Afterwards::Noise) {
         Moved::Nothing => pieces.rests(),
         Moved::BySwings => {
             !pieces.tail().meets() && pieces.repeats() && has_shown_its_swings(scenario)
@@ -261,7 +252,8 @@ fn doubt_flown_on(
         is_held =
             sample_guard::is_beyond(controller, [instant.setpoint_rad, theta_rad, rate_rad_s]);
         let is_seen = instant.k > rows + 2 * pieces.length && pieces.is_whole();
-        rested = moved == Moved::Nothing && is_seen && pieces.rests();
+        let has_rested = || pieces.rests() || gains.is_some_and(|it| it.have_come_back(&pieces));
+        rested = moved == Moved::Nothing && is_seen && has_rested();
         if rested { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
     let Ok(outcome) = outcome else { return of_its_own };
@@ -284,9 +276,7 @@ fn doubt_flown_on(
 }
 
 fn have_left(gains: Option<MovingGains>, pieces: &Pieces<'_>, moved: Moved) -> bool {
-    gains.is_some_and(|it| {
-        it.have_left(pieces, moved) || MovingGains::leave_what_is_held(pieces, moved)
-    })
+    gains.is_some_and(|it| it.have_left(pieces, moved) || it.leave_what_is_held(pieces, moved))
 }
 
 /// By what a flight is in doubt that has not come back to its rest: by gains that move, where no limit is met near its end.
@@ -302,8 +292,8 @@ fn diverged(outcome: Outcome) -> bool {
 }
 
 /// True of a flight with gains that move that is lost by them: it diverged, or went away from what is held.
-fn has_gone_away(outcome: Outcome, pieces: &Pieces<'_>, moved: Moved) -> bool {
-    diverged(outcome) || MovingGains::leave_what_is_held(pieces, moved)
+fn has_gone_away(outcome: Outcome, gains: MovingGains, pieces: &Pieces<'_>, moved: Moved) -> bool {
+    diverged(outcome) || gains.leave_what_is_held(pieces, moved)
 }
 
 /// True of an aircraft that ends early out of a swing at limits, or on its back at them; without either it comes down to the ground

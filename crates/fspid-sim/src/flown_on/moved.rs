@@ -8,6 +8,9 @@ use crate::signal::{Disturbance, Entry};
 use crate::timing::Timing;
 use crate::trace::Trace;
 
+/// Air that changes late by no more than this share of all that it does has changed before.
+const AIR_CHANGES: f64 = 0.01;
+
 /// What keeps an error moving for ever.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Moved {
@@ -47,7 +50,7 @@ impl Moved {
     }
 }
 
-/// True where noise, or drift of a sensor, acts within the flight.
+/// True where noise, turbulence, or drift of a sensor acts within the flight.
 pub(super) fn is_noisy(scenario: &Scenario) -> bool {
     let end_s = scenario.timing.end_s();
     let mut noises = scenario.disturbances.iter().filter(|it| it.is_noise());
@@ -91,13 +94,30 @@ pub(super) fn changes_late(scenario: &Scenario, trace: &Trace) -> bool {
     let mut plants = scenario.plant_changes.iter().filter(|it| it.at_s() <= timing.end_s());
     let setpoint = || changes(&scenario.setpoint.sampled(timing).0);
     (!scenario.setpoint.goes_on() && setpoint())
+        || air_changes(scenario, from)
         || trace.column("mode").is_some_and(changes)
         || loads.any(is_late)
         || plants.any(|it| it.at_s() + it.ramp_s() >= from_s)
 }
 
+/// True where the winds along the way change from some sample on by more than a hundredth of all that they do.
+fn air_changes(scenario: &Scenario, from: usize) -> bool {
+    let Some(weather) = &scenario.surroundings.weather else { return false };
+    let timing = scenario.timing;
+    let changes: Vec<[f64; 3]> =
+        (0..timing.rows()).map(|k| weather.wind_change(timing.time_s(k))).collect();
+    let reach = |changes: &[[f64; 3]], part: usize| {
+        let values = changes.iter().map(|it| it[part]);
+        let (least, most) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), it| {
+            (least.min(it), most.max(it))
+        });
+        most - least
+    };
+    (0..3).any(|part| reach(&changes[from..], part) > AIR_CHANGES * reach(&changes, part))
+}
+
 /// The flight as it goes on to so many samples: what stands still at its end is held, what swings swings on where it is to, and
-/// what would begin later does not.
+/// what would begin later does not. Winds are those along the way, which goes on.
 pub(super) fn held_on(
     scenario: &Scenario,
     rows: usize,

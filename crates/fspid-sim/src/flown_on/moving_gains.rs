@@ -5,6 +5,8 @@
 #[cfg(test)]
 mod tests;
 
+use core::f64::consts::PI;
+
 use super::moved::Moved;
 use super::periods_s;
 use super::pieces::{Pieces, Span};
@@ -26,8 +28,15 @@ const DOUBLED: f64 = 2.0;
 const STANDS: f64 = 0.02;
 /// A swing that is so many times as wide as the widths of actuator and sensors is none of theirs.
 const WIDTHS: f64 = 10.0;
+/// Pieces of a flight that is flown on that are as long as the flight, at least.
+const OWN_LENGTH: usize = 5;
 /// What a step of a rate gyro is of pitch: that of a second.
 const RATE_S: f64 = 1.0;
+/// An aircraft's error that is so many times as large has not drifted with speed and height: what runs away by its gains does so
+/// ever faster.
+const GONE: f64 = 1.25;
+/// An error that is no larger is none of an aircraft that has left its set-point, rad.
+const NEAR_RAD: f64 = PI / 180.0;
 /// Altitude, m, and airspeed, m/s, that are nearer to what they are to be are there.
 const NEAR: [f64; 2] = [3.0, 0.5];
 
@@ -82,10 +91,13 @@ impl MovingGains {
         stays_or_grows && (turns || !self.has_to_turn)
     }
 
-    /// True where altitude or airspeed goes away from what a mode holds, or does not come back to it, with an error that does not
-    /// stand: at a limit of an outer loop the pitch stands while they go.
-    pub(super) fn leave_what_is_held(pieces: &Pieces<'_>, moved: Moved) -> bool {
+    /// True where what is held is left: altitude or airspeed, which go away from what a mode holds or do not come back to it, with
+    /// an error that does not stand, for at a limit of an outer loop the pitch stands while they go; or an aircraft's set-point.
+    pub(super) fn leave_what_is_held(self, pieces: &Pieces<'_>, moved: Moved) -> bool {
         let Some([fourth, fifth]) = pieces.last_fifths() else { return false };
+        if self.has_to_turn && pieces.shows_errors() && has_gone_off([fourth, fifth]) {
+            return true;
+        }
         let [before, last, all] = [fourth, fifth, pieces.whole()].map(Span::off);
         let times = if moved == Moved::Nothing { STAYS } else { DOUBLED };
         let goes = |place: usize| {
@@ -97,10 +109,26 @@ impl MovingGains {
 
     /// True where an aircraft's flight ends so near a rest that its gains are those of the rest.
     pub(super) fn stand(pieces: &Pieces<'_>) -> bool {
-        let [tail, all] = [pieces.tail(), pieces.whole()].map(Span::off);
-        let stands = |place: usize| tail[place][0] <= NEAR[place].max(STANDS * all[place][1]);
-        pieces.has_moved_by_at_most(STANDS) && (0..NEAR.len()).all(stands)
+        Self::have_stood(pieces, pieces.tail())
     }
+
+    /// True where an aircraft that is flown on has been so near a rest, within its limits, for as long as its flight was.
+    pub(super) fn have_come_back(self, pieces: &Pieces<'_>) -> bool {
+        let last = pieces.last(OWN_LENGTH);
+        self.has_to_turn && !last.meets() && Self::have_stood(pieces, last)
+    }
+
+    fn have_stood(pieces: &Pieces<'_>, part: Span) -> bool {
+        let [moves, all] = [part, pieces.whole()].map(Span::off);
+        let stands = |place: usize| moves[place][0] <= NEAR[place].max(STANDS * all[place][1]);
+        pieces.moves_by_at_most(part, STANDS) && (0..NEAR.len()).all(stands)
+    }
+}
+
+/// True where the error has become so much larger from one fifth of a flight to the next that what drifts would not.
+fn has_gone_off([before, last]: [Span; 2]) -> bool {
+    let [before_rad, last_rad] = [before, last].map(Span::error_off_rad);
+    last_rad > NEAR_RAD && last_rad >= GONE * before_rad
 }
 
 /// All widths of actuator and sensors, rad.

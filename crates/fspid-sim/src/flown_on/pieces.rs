@@ -132,6 +132,11 @@ impl Span {
         self.error.size_rad()
     }
 
+    /// How far off the error is at most.
+    pub(super) fn error_off_rad(self) -> f64 {
+        self.error.least_rad.abs().max(self.error.most_rad.abs())
+    }
+
     /// How far altitude, m, and airspeed, m/s, move from what they are to be, and how far they are at most.
     pub(super) fn off(self) -> [[f64; 2]; 2] {
         self.off.map(|it| [it.size_rad(), it.least_rad.abs().max(it.most_rad.abs())])
@@ -184,6 +189,11 @@ impl<'a> Pieces<'a> {
         Self { ends, length, unseen_rad, may_drift, samples, all, before }
     }
 
+    /// True where what moves is the error of the pitch loop, and not the pitch itself.
+    pub(super) const fn shows_errors(&self) -> bool {
+        !self.may_drift
+    }
+
     /// Takes a sample.
     pub(super) fn push(&mut self, shown: Shown) {
         let Shown { moving_rad, command_rad, at_servo_rad, elevator_rad, .. } = shown;
@@ -221,7 +231,12 @@ impl<'a> Pieces<'a> {
 
     /// The last two pieces, one of them whole.
     pub(super) fn tail(&self) -> Span {
-        Span::of(&self.all[self.all.len().saturating_sub(2)..])
+        self.last(2)
+    }
+
+    /// So many of the last pieces, or all that there are.
+    pub(super) fn last(&self, pieces: usize) -> Span {
+        Span::of(&self.all[self.all.len().saturating_sub(pieces)..])
     }
 
     /// True where the last two pieces have come to rest: within the limits with a command that stands, for an error alone stands
@@ -248,7 +263,7 @@ impl<'a> Pieces<'a> {
 
     /// True where little is left of a beginning, under noise; of gains that move with it, next to nothing.
     pub(super) fn is_quiet(&self, gains_move: bool) -> bool {
-        self.has_moved_by_at_most(if gains_move { QUIET_GAINS } else { QUIET })
+        self.moves_by_at_most(self.tail(), if gains_move { QUIET_GAINS } else { QUIET })
     }
 
     /// The flight in five parts.
@@ -263,9 +278,9 @@ impl<'a> Pieces<'a> {
         (self.all.len() >= 5).then_some([fourth, fifth])
     }
 
-    /// True where the error moves near the end by no more than a share of all its movement, or than its sensor sees.
-    pub(super) fn has_moved_by_at_most(&self, share: f64) -> bool {
-        let moves_rad = self.tail().error.size_rad();
+    /// True where the error moves in a part by no more than a share of all its movement, or than its sensor sees.
+    pub(super) fn moves_by_at_most(&self, part: Span, share: f64) -> bool {
+        let moves_rad = part.error.size_rad();
         moves_rad <= self.unseen_rad.max(share * self.whole().error.size_rad())
     }
 

@@ -9,7 +9,7 @@ pub use words::WRONG_WAY;
 
 use fspid_sim::signal::Edge;
 use fspid_sim::stability::{Unstable, doubt_of_flight};
-use fspid_sim::{NamedController, Plant, Scenario, Trace};
+use fspid_sim::{NamedController, Noises, Plant, Scenario, Trace};
 
 use crate::analysis::{AtRest, RestGains};
 use crate::metrics::{Absent, FlightMetrics, Verdict};
@@ -46,7 +46,7 @@ impl ControllerResult {
         (at_rest, unstable): (AtRest, Option<Unstable>),
     ) -> Self {
         let scenario = &study.scenario;
-        let (timing, pushes_s) = (scenario.timing, scenario.pushes_s());
+        let (timing, pushes_s) = (scenario.timing, scenario.pushes_s(Noises::None));
         let named = scenario.controllers.iter().find(|it| it.name == name);
         // Who flies without equations is no controller that could fly on.
         let has_equations = at_rest.gains != RestGains::Unknown;

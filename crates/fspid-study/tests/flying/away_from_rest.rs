@@ -1,6 +1,6 @@
 //! Flights of gains that move, without limits: those that do not come back to the rest around which the loop holds.
 
-use fspid_sim::Doubt;
+use fspid_sim::{Doubt, EndCause};
 use fspid_study::metrics::Verdict;
 
 use super::{Draw, doubt, is_lost, last_fifths_move_deg, result};
@@ -268,4 +268,54 @@ fn an_altitude_that_goes_away_from_what_is_held_at_a_limit_of_its_loop_is_undeci
     assert!(doubt(&hits).is_some(), "{:?}", hits.metrics.verdict);
     let held = "outer_loop.altitude.supervisor.output_scale.kp=0.0";
     assert_ne!(doubt(&result(GOES_AWAY, &[held])), Some(Doubt::AwayFromRest));
+}
+
+/// A step of a Navion, linear or with its own six degrees of freedom, whose integral the rules make negative where the error is
+/// large. Linear it diverges, in still air as in any; nonlinear it comes off its set-point and flies into the ground.
+const DIVES: &str = r#"
+schema = 1
+name = "an integral that drives away"
+aircraft = { name = "navion", airspeed_ft_s = 176.0, altitude_ft = 1000.0, model = "linear" }
+loop = { sample_period_s = 0.02, duration_s = 19.28 }
+setpoint = { kind = "step", amplitude_deg = 6.386 }
+[[controller]]
+name = "C"
+kind = "fspid"
+nominal = { kp = 0.638, ki = 0.2, kd = 0.0 }
+derivative_filter_s = 0.05
+supervisor = { table = "mirrored", range = 5.0, error_scale = 4.771, change_scale = 1.505, output_scale = { kp = 0.1267, ki = 0.0905, kd = -0.0427 } }
+"#;
+
+/// In moving air flights were not flown on: a steady wind, of which a linear plant feels nothing, made this loop `stable`.
+#[test]
+fn moving_air_does_not_hide_gains_that_leave_their_rest() {
+    let airs = [
+        "",
+        "[wind]\nkind = \"steady\"\nspeed_m_s = 1.0\nfrom_deg = 0.0\n",
+        "[[gust]]\nkind = \"full-cycle\"\nup_m_s = 2.0\ngradient_m = 30.0\nat_s = 5.0\n",
+        "[turbulence]\nintensity = \"light\"\nseed = 1\n",
+    ];
+    for air in airs {
+        let text = format!("{DIVES}{air}");
+        assert_eq!(doubt(&result(&text, &[])), Some(Doubt::AwayFromRest), "{air}");
+        assert!(is_lost(&result(&text, &["loop.duration_s=200.0"])), "{air}");
+        // Rules that leave the integral its sign bring it back.
+        let held = "controller.C.supervisor.output_scale.ki=0.02";
+        assert_eq!(doubt(&result(&text, &[held])), None, "{air}");
+    }
+}
+
+/// What comes off its set-point without turning back was taken for the drift of speed and height.
+#[test]
+fn an_aircraft_that_its_gains_drive_off_its_set_point_is_undecided_whether_or_not_it_turns_back() {
+    let nonlinear = "aircraft.model=nonlinear";
+    let flown = result(DIVES, &[nonlinear]);
+    assert!(matches!(flown.metrics.verdict, Verdict::NotSettled { .. }));
+    assert_eq!(doubt(&flown), Some(Doubt::AwayFromRest));
+    let on = result(DIVES, &[nonlinear, "loop.duration_s=100.0"]);
+    let hits_the_ground = EndCause::HitGround;
+    assert!(matches!(on.metrics.verdict, Verdict::EndedEarly(end) if end.cause == hits_the_ground));
+    assert_eq!(doubt(&on), Some(Doubt::AwayFromRest));
+    let held = "controller.C.supervisor.output_scale.ki=0.02";
+    assert_eq!(doubt(&result(DIVES, &[nonlinear, held])), None);
 }

@@ -32,7 +32,7 @@ pub(super) struct Best {
     pub(super) values: Vec<Value>,
 }
 
-/// How far gains may go: their limits, or [`REACH`] times nominal either way; a gain that is zero stays zero.
+/// How far gains may go: their limits, or [`REACH`] times nominal either way where there is none; a gain that is zero stays zero.
 fn space(study: &Study) -> Option<(Space, [Option<f64>; 3])> {
     let tuner = tuner(study)?.tuner();
     let (nominal, limits) = (tuner.nominal(), tuner.settings().gain_limits);
@@ -41,7 +41,9 @@ fn space(study: &Study) -> Option<(Space, [Option<f64>; 3])> {
     let names = ["kp", "ki", "kd"];
     for (place, nominal) in [nominal.kp, nominal.ki, nominal.kd].into_iter().enumerate() {
         let far = [nominal / REACH, nominal * REACH];
-        let ends = limited.map_or([far[0].min(far[1]), far[0].max(far[1])], |it| it[place]);
+        let far = [far[0].min(far[1]), far[0].max(far[1])];
+        // A limit of one side alone leaves the other without one.
+        let ends = limited.map_or(far, |it| [0, 1].map(|end| ended(it[place][end], far[end])));
         match ends {
             [lower, upper] if lower < upper => {
                 let scale = if lower > 0.0 { Scale::Logarithmic } else { Scale::Linear };
@@ -51,6 +53,11 @@ fn space(study: &Study) -> Option<(Space, [Option<f64>; 3])> {
         }
     }
     (!parameters.is_empty()).then(|| (Space::new(parameters), fixed))
+}
+
+/// A limit that is one, or another.
+fn ended(limit: f64, otherwise: f64) -> f64 {
+    if limit.is_finite() { limit } else { otherwise }
 }
 
 /// The gains of a point.

@@ -58,11 +58,14 @@ const NULL: [(&str, &str); 17] = [
     ("share_between_flights", STILL),
     ("share_within_flights", STILL),
     ("effectiveness", STILL),
-    ("best_by_effectiveness", "no best gains of each plant were searched for, or they do not move"),
+    ("best_by_effectiveness", "no best gains of each plant were found, or they do not move"),
     ("airspeed", STILL),
-    ("best", "no best gains of each plant were searched for, or they do not move"),
+    ("best", "no best gains of each plant were found, or they do not move"),
     ("amplitude_per_deg", STILL),
-    ("best_gains", "no best gains of each plant were searched for"),
+    (
+        "best_gains",
+        "no best gains of each plant were searched for, or no candidate kept its travel and what it keeps",
+    ),
 ];
 
 fn estimate(found: Option<Estimate>) -> Value {

@@ -52,10 +52,21 @@ impl Answer {
         self.steps.iter().find(|it| it.treatment == treatment)
     }
 
-    /// True where the step makes the error smaller for certain.
+    /// True where the step makes the error smaller for certain, by more than nothing.
     pub(super) fn helps(&self, treatment: Treatment) -> bool {
-        let step = self.step(treatment).and_then(|it| it.iae);
-        step.is_some_and(|it| it.interval.is_some_and(|[_, upper]| upper < 1.0))
+        self.effect(treatment) == Effect::Helps
+    }
+
+    fn effect(&self, treatment: Treatment) -> Effect {
+        let iae = self.step(treatment).and_then(|it| it.iae);
+        match iae.and_then(|it| it.interval) {
+            Some([_, upper]) if upper < 1.0 - NOTHING => Effect::Helps,
+            Some([lower, _]) if lower > 1.0 + NOTHING => Effect::Harms,
+            Some([lower, upper]) if lower > 1.0 - NOTHING && upper < 1.0 + NOTHING => {
+                Effect::Nothing
+            }
+            _ => Effect::NotShown,
+        }
     }
 
     /// Plants that have a flight in the win; the others are no evidence of it.
@@ -96,25 +107,49 @@ impl Answer {
                 "Whether {name} adapts is open: no two plants fly the same command, disturbances and air."
             );
         }
-        let (plant, moment) = (self.helps(Treatment::AsItIs), self.helps(Treatment::OtherPlants));
-        match (plant, moment) {
-            (true, true) => format!("{name} adapts to its plant, and it answers the moment."),
-            (true, false) => format!(
-                "{name} adapts to its plant; that it answers the moment is not shown to help."
+        let (plant, moment) = (self.effect(Treatment::AsItIs), self.effect(Treatment::OtherPlants));
+        let told = match (plant, moment) {
+            (Effect::Helps, Effect::Helps) => {
+                format!("{name} adapts to its plant, and it answers the moment.")
+            }
+            (Effect::Helps, moment) => {
+                format!(
+                    "{name} adapts to its plant; that it answers the moment {}.",
+                    moment.words()
+                )
+            }
+            (plant, Effect::Helps) => format!(
+                "{name} answers the moment, alike on every plant; that it adapts to its plant {}.",
+                plant.words()
             ),
-            (false, true) => format!(
-                "{name} answers the moment, alike on every plant; that it adapts to its plant is not shown to help."
+            (Effect::NotShown, Effect::NotShown) => {
+                format!(
+                    "That {name} adapts to its plant, or answers the moment, is not shown to help."
+                )
+            }
+            (plant, moment) => format!(
+                "That {name} adapts to its plant {}; that it answers the moment {}.",
+                plant.words(),
+                moment.words()
             ),
-            (false, false) => format!(
-                "That {name} adapts to its plant, or answers the moment, is not shown to help."
-            ),
+        };
+        match self.win.and_then(|it| it.interval) {
+            Some([lower, _]) if lower > 1.0 => {
+                format!("{told} Its error is larger than that of {} all the same.", self.beside())
+            }
+            _ => told,
         }
+    }
+
+    /// What it is held against.
+    fn beside(&self) -> &str {
+        self.against.as_deref().unwrap_or("its own nominal gains")
     }
 
     /// The win in numbers.
     #[must_use]
     pub fn detail(&self) -> String {
-        let beside = self.against.as_deref().unwrap_or("its own nominal gains");
+        let beside = self.beside();
         let flights = counted(self.kept, "flight");
         let plants = counted(self.plants_kept(), "plant");
         let iae = self.win.map_or("no mean".to_owned(), change);
@@ -206,6 +241,29 @@ impl Answer {
             ));
         }
         notes
+    }
+}
+
+/// A ratio of errors that is no further from 1 is nothing, however certain it is.
+const NOTHING: f64 = 1e-3;
+
+/// What a step does to the error.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Effect {
+    Helps,
+    Nothing,
+    NotShown,
+    Harms,
+}
+
+impl Effect {
+    const fn words(self) -> &'static str {
+        match self {
+            Self::Helps => "helps",
+            Self::Nothing => "changes less than a thousandth",
+            Self::NotShown => "is not shown to help",
+            Self::Harms => "makes it worse",
+        }
     }
 }
 

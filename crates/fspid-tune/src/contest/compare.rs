@@ -29,6 +29,8 @@ pub enum Standing {
 pub(crate) enum Bar {
     /// Every flight of it fails.
     AllFail,
+    /// None of its tunings found anything that was allowed, or fewer did than of the other.
+    NotAllowed,
     /// A larger share of its flights is of loops that are unstable at rest.
     Unstable,
     /// The same with those of which nobody can tell.
@@ -46,6 +48,12 @@ pub(crate) fn barred(judged: &Judged, one: usize, other: usize) -> Option<Bar> {
     let [mine, theirs] = [one, other].map(|it| judged.count(it, &all));
     if mine.failed == mine.of {
         return Some(Bar::AllFail);
+    }
+    let [(bad, tunings), (other_bad, other_tunings)] =
+        [one, other].map(|it| it.not_allowed().into());
+    // Who was not tuned is held to nothing.
+    if bad > 0 && (bad == tunings || bad * other_tunings.max(1) > other_bad * tunings) {
+        return Some(Bar::NotAllowed);
     }
     if mine.compared(theirs, |it| it.unstable).is_gt() {
         return Some(Bar::Unstable);

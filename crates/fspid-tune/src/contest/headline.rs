@@ -1,6 +1,6 @@
 //! Who wins, if anybody does, and why.
 
-use super::compare::{Comparison, Standing, barred};
+use super::compare::{Bar, Comparison, Standing, barred};
 use super::outcome::Outcome;
 use super::words::{counted, cut, failing, finding, list, name, p_value, some_of, standing};
 
@@ -123,7 +123,7 @@ pub(super) fn beside_first(outcome: &Outcome) -> Option<String> {
 }
 
 /// What keeps the first from winning, whatever its error: loops that are unstable at rest, or of which nobody can tell, flights
-/// that all fail, or more that fail than of another.
+/// that all fail, or more that fail than of another, or tunings that broke what they were held to.
 fn bar_of_first(outcome: &Outcome, first: usize) -> Option<String> {
     let (judged, count) = (&outcome.judged, outcome.summaries.get(first)?.whole.count);
     if count.unstable > 0 {
@@ -135,8 +135,14 @@ fn bar_of_first(outcome: &Outcome, first: usize) -> Option<String> {
         return Some(format!("{some} of loops of which nobody can tell whether they are stable"));
     }
     let others = (0..judged.contestants.len()).filter(|place| *place != first);
-    let bars = others.filter(|place| barred(judged, first, *place).is_some());
-    bars.map(|place| failing(outcome, first, place)).next()
+    let mut bars = others.filter_map(|place| Some((place, barred(judged, first, place)?)));
+    bars.next().map(|(place, bar)| match bar {
+        Bar::NotAllowed => {
+            let [bad, of] = judged.contestants[first].not_allowed();
+            format!("{bad} of its {of} tunings found nothing that was allowed")
+        }
+        _ => failing(outcome, first, place),
+    })
 }
 
 #[cfg(test)]

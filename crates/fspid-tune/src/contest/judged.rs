@@ -47,6 +47,15 @@ pub struct Contestant {
     pub designs: Vec<Design>,
 }
 
+impl Contestant {
+    /// How many of its tunings found nothing that was allowed, of how many.
+    #[must_use]
+    pub fn not_allowed(&self) -> [usize; 2] {
+        let found = || self.designs.iter().filter_map(|it| it.found.as_ref());
+        [found().filter(|it| it.cost.is_none()).count(), found().count()]
+    }
+}
+
 /// All flights of a contest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Judged {

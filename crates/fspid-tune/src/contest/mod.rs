@@ -65,6 +65,7 @@ pub(crate) use student::beyond;
 pub use summary::{Mirror, Part, Spread, Summary};
 pub use tuning::{Found, Progress};
 pub use two_way::{TwoWay, holm};
+pub(crate) use words::nothing_allowed;
 pub(crate) use words::some_of;
 
 use crate::crew::Crew;

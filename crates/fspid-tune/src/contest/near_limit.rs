@@ -4,7 +4,7 @@ use fspid_sim::{Trace, simulate};
 
 use super::{Contest, Judged, Outcome};
 use crate::error::TuneError;
-use crate::limit::{NearLimit, refusal, shares};
+use crate::limit::{NearLimit, Shares, refusal, shares};
 
 impl Contest {
     /// The limit of every case of which one can be told, at the travel of every controller's best design.
@@ -21,7 +21,7 @@ impl Contest {
         let best: Vec<usize> = judged.contestants.iter().map(Judged::best).collect();
         let mut controllers: Vec<(String, Vec<Option<f64>>)> =
             judged.contestants.iter().map(|it| (it.name.clone(), Vec::new())).collect();
-        let mut cases = Vec::new();
+        let (mut cases, mut beside) = (Vec::new(), Vec::new());
         for (place, case) in self.rules.cases.iter().enumerate() {
             told(&format!("limit of case {} of {}", place + 1, self.rules.cases.len()));
             let shares = match self.rules.runs {
@@ -29,10 +29,11 @@ impl Contest {
                 _ => Err("its aircraft are drawn".to_owned()),
             };
             cases.push((case.name.clone(), shares.as_ref().err().cloned()));
-            let shares = shares.unwrap_or_else(|_| vec![None; best.len()]);
+            let (shares, said) = shares.unwrap_or_else(|_| (vec![None; best.len()], Vec::new()));
+            beside.push(said);
             controllers.iter_mut().zip(shares).for_each(|((_, mine), share)| mine.push(share));
         }
-        Ok(NearLimit { controllers, cases })
+        Ok(NearLimit { controllers, cases, beside })
     }
 
     /// The shares of the best designs in a case, or why there are none.
@@ -41,7 +42,7 @@ impl Contest {
         place: usize,
         (outcome, best): (&Outcome, &[usize]),
         stop: fn() -> bool,
-    ) -> Result<Result<Vec<Option<f64>>, String>, TuneError> {
+    ) -> Result<Result<Shares, String>, TuneError> {
         let template = self.source.case(&self.rules.cases[place])?;
         let scenario = &template.study().scenario;
         // What is refused is refused before anything flies.

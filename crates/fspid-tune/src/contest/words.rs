@@ -7,7 +7,7 @@ use fspid_scenario::tuning::{Over, Tuning};
 
 use super::compare::{Bar, CONFIDENCE, Comparison, Standing};
 use super::flight::{FAR, Flight};
-use super::judged::{CaseGroup, Judged, Quantity};
+use super::judged::{CaseGroup, Contestant, Judged, Quantity};
 use super::outcome::Outcome;
 use super::summary::Spread;
 
@@ -324,6 +324,10 @@ pub(super) fn standing(found: &Comparison) -> String {
         (Standing::Open, ..) => "not significant",
         (Standing::Barred, ..) => match found.bar {
             Some((true, Bar::AllFail)) => "not better, for all its flights fail",
+            Some((true, Bar::NotAllowed)) => "not better, for its tunings found nothing allowed",
+            Some((false, Bar::NotAllowed)) => {
+                "not worse, for the tunings of what it is compared with found nothing allowed"
+            }
             Some((true, Bar::Unstable)) => "not better, for it is unstable at rest",
             Some((true, Bar::Undecided)) => "not better, for nobody can tell whether it is stable",
             Some((true, Bar::FailsMore)) => "not better, for more of its flights fail",
@@ -465,20 +469,20 @@ pub(super) fn cautions(outcome: &Outcome) -> Vec<String> {
         notes.push("Each controller was tuned once: what another seed would have found is not in the intervals.".to_owned());
     }
     for contestant in &judged.contestants {
-        let found: Vec<_> = contestant.designs.iter().filter_map(|it| it.found.as_ref()).collect();
-        let bad = found.iter().filter(|it| it.cost.is_none()).count();
-        if bad > 0 {
-            notes.push(format!(
-                "{}: {} of {} tunings found no candidate that came back from every training flight and met every requirement; the one that broke them least was judged.",
-                contestant.name,
-                bad,
-                found.len()
-            ));
-        }
+        notes.extend(nothing_allowed(contestant));
     }
     notes.extend((0..judged.contestants.len()).filter_map(|place| undecided(outcome, place)));
     notes.extend((0..judged.contestants.len()).filter_map(|place| loads_left(outcome, place)));
     notes
+}
+
+/// How many tunings of a controller found nothing that was allowed, if any.
+pub(crate) fn nothing_allowed(contestant: &Contestant) -> Option<String> {
+    let [bad, of] = contestant.not_allowed();
+    (bad > 0).then(|| format!(
+        "{}: {bad} of {of} tunings found no candidate that came back from every training flight and kept to every limit and requirement; the one that broke them least was judged.",
+        contestant.name
+    ))
 }
 
 /// In how many flights of a controller nobody can tell whether its loop is stable, if in any, and where to ask why.

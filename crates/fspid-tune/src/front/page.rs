@@ -5,7 +5,7 @@ use fspid_page::campaign::CampaignPage;
 use fspid_plot::{LineFigure, LinePanel, Series, SeriesStyle, Svg, TradeFigure, TradeSeries};
 
 use super::joint::{CONFIDENCE, DRAWS, FEWEST_CASES, FEWEST_SEEDS, PLACES};
-use super::text::{change_pct, headline, share, whole};
+use super::text::{beside_limits, change_pct, headline, nothing_allowed_at, share, whole};
 use super::{Dominance, FrontOutcome, over_travel};
 
 pub(super) fn page(outcome: &FrontOutcome) -> String {
@@ -66,7 +66,8 @@ fn answer(outcome: &FrontOutcome) -> Vec<Item> {
         items.push(picture("along", differences(outcome), along));
     }
     items.push(Item::Table(standings(outcome)));
-    items.push(Item::List(outcome.bands.iter().map(whole).collect()));
+    let said = nothing_allowed_at(outcome).into_iter().chain(beside_limits(outcome));
+    items.push(Item::List(outcome.bands.iter().map(whole).chain(said).collect()));
     items
 }
 
@@ -74,7 +75,7 @@ fn notes() -> Vec<String> {
     vec![
         format!("Bands: the mean ± its error times a quantile of the largest deviation along the front. The error at each place is that of a contest, with a part for cases and one for the seeds of each controller, and Student's distribution by its degrees of freedom; the quantile comes of {DRAWS} draws of deviations that move along the front as cases and seeds do, with Bonferroni's correction for the number of controllers."),
         "The signed ranks of the cases have to agree at every place, as in a contest, with a case of which one loses more flights as its largest defeat: with n cases no p-value is below 2^(1\u{2212}n). Weights of cases count in means and in no test.".to_owned(),
-        "Barred from being better: a controller all of whose flights fail, of which one is unstable at rest or undecided, or that loses more or, significantly by the signed ranks of the cases, fails more than the other, at an effort or over all of them.".to_owned(),
+        "Barred from being better: a controller all of whose flights fail, whose tunings found nothing allowed, or less often than those of the other, of which one is unstable at rest or undecided, or that loses more or, significantly by the signed ranks of the cases, fails more than the other, at an effort or over all of them.".to_owned(),
         format!("Assumed: cases and seeds are like draws of those that matter, and between two efforts error over travel is near a straight line in logarithms. With fewer than {FEWEST_SEEDS} seeds or {FEWEST_CASES} cases without lost flights and with a common range of travel, there is no band and nothing is claimed."),
     ]
 }

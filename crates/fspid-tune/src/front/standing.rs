@@ -32,6 +32,8 @@ pub enum Dominance {
 pub enum FrontBar {
     /// Every flight of it fails.
     AllFail,
+    /// None of its tunings for an effort found anything that was allowed, or fewer did than of the other.
+    NotAllowed,
     /// A flight of it is of a loop that is unstable at rest.
     Unstable,
     /// A flight of it is of a loop of which nobody can tell whether it is stable.
@@ -65,6 +67,12 @@ impl Dominance {
             Self::OpenByRanks => "not significant by the signed ranks of its cases",
             Self::Barred(FrontBar::AllFail) => {
                 "not better, for all its flights at some effort fail"
+            }
+            Self::Barred(FrontBar::NotAllowed) => {
+                "not better, for its tunings for some effort found nothing allowed"
+            }
+            Self::OtherBarred(FrontBar::NotAllowed) => {
+                "not worse, for the tunings of what it is compared with found nothing allowed at some effort"
             }
             Self::Barred(FrontBar::Unstable) => "not better, for it is unstable at rest",
             Self::Barred(FrontBar::Undecided) => {
@@ -118,6 +126,7 @@ fn bar(judged: &Judged, one: usize, other: usize) -> Option<FrontBar> {
     let found = barred(judged, one, other);
     match found {
         Some(Bar::AllFail) => Some(FrontBar::AllFail),
+        Some(Bar::NotAllowed) => Some(FrontBar::NotAllowed),
         // Who has one does not win, also where the other has as many.
         _ if count(mine).unstable > 0 => Some(FrontBar::Unstable),
         _ if count(mine).undecided > 0 => Some(FrontBar::Undecided),

@@ -5,8 +5,9 @@ use fspid_page::columns::{Align, Columns};
 use fspid_page::number::{fixed, short, with_sign};
 
 use super::joint::{CONFIDENCE, PLACES};
-use super::{Band, FrontOutcome};
-use crate::contest::Quantity;
+use super::{Band, FrontOutcome, Rung};
+use crate::contest::{Quantity, nothing_allowed};
+use crate::limit::NearLimit;
 
 /// Every so many places along a front one is told.
 const TOLD: usize = (PLACES - 1) / 4;
@@ -35,7 +36,24 @@ pub(super) fn text(outcome: &FrontOutcome) -> String {
     out.push_str(&rows.to_string());
     outcome.bands.iter().for_each(|band| out.push_str(&format!("  {}\n", whole(band))));
     out.push_str(&format!("\n{}", ladder(outcome)));
+    for sentence in nothing_allowed_at(outcome).into_iter().chain(beside_limits(outcome)) {
+        out.push_str(&format!("  {sentence}\n"));
+    }
     out
+}
+
+/// Whose tunings found nothing that was allowed, at which efforts.
+pub(super) fn nothing_allowed_at(outcome: &FrontOutcome) -> Vec<String> {
+    let of_rung = |rung: &Rung| -> Vec<String> {
+        let told = rung.outcome.judged.contestants.iter().filter_map(nothing_allowed);
+        told.map(|told| format!("At {} deg {told}", rung.travel_deg)).collect()
+    };
+    outcome.rungs.iter().flat_map(of_rung).collect()
+}
+
+/// What is taken of commands where a limit is told.
+pub(super) fn beside_limits(outcome: &FrontOutcome) -> Vec<String> {
+    NearLimit::said_beside(outcome.rungs.iter().map(|rung| &rung.near))
 }
 
 /// What the whole front of a controller is, and what is left out of it.

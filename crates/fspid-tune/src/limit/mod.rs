@@ -18,7 +18,7 @@ use fspid_scenario::units::{degrees, radians};
 use fspid_sim::Scenario;
 use fspid_study::simulation::{ControllerResult, Simulation};
 pub use near::NearLimit;
-pub(crate) use near::{refusal, shares};
+pub(crate) use near::{Shares, refusal, shares};
 use rung::Asker;
 pub use rung::{Causal, Rung};
 pub(crate) use words::proved_percent;

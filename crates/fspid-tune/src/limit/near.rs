@@ -4,13 +4,14 @@
 //! one, since the limit is a convex function of the travel and they are its slope.
 
 use fspid_limit::{
-    Assumed, LimitError, Measure, Multipliers, Programme, Question, Travel, measured, prove,
+    Assumed, LimitError, Measure, Multipliers, Programme, Question, SaidBeside, Travel, measured,
+    prove,
 };
 use fspid_page::columns::{Align, Columns, cut};
 use fspid_sim::{Scenario, Trace};
 use serde_json::{Value, json};
 
-use super::words::proved_percent;
+use super::words::{beside_cases, proved_percent};
 use super::{assumed, unrounded};
 use crate::error::TuneError;
 
@@ -25,7 +26,12 @@ pub struct NearLimit {
     pub controllers: Vec<(String, Vec<Option<f64>>)>,
     /// Names of the cases, each with why it has no limit, where it has none.
     pub cases: Vec<(String, Option<String>)>,
+    /// What is taken of commands and flights in each case that has a limit, and said beside it.
+    pub beside: Vec<Vec<SaidBeside>>,
 }
+
+/// Shares of the limit of a case, and what is said beside them.
+pub(crate) type Shares = (Vec<Option<f64>>, Vec<SaidBeside>);
 
 /// What cannot be asked of a scenario whatever flies there, in a few words.
 pub(crate) fn refusal(scenario: &Scenario) -> Option<String> {
@@ -41,7 +47,7 @@ pub(crate) fn shares(
     scenario: &Scenario,
     traces: &[Option<Trace>],
     stop: fn() -> bool,
-) -> Result<Result<Vec<Option<f64>>, String>, TuneError> {
+) -> Result<Result<Shares, String>, TuneError> {
     let commands = traces.iter().flatten().map(|it| it.command_rad.as_slice());
     let assumed = assumed(scenario, commands, false);
     let question = match Question::of(scenario, Travel::Elevator, assumed) {
@@ -53,7 +59,8 @@ pub(crate) fn shares(
         Some(trace) => asker.share(trace),
         None => Ok(None),
     };
-    traces.iter().map(share).collect::<Result<Vec<_>, TuneError>>().map(Ok)
+    let found = traces.iter().map(share).collect::<Result<Vec<_>, TuneError>>()?;
+    Ok(Ok((found, question.beside().to_vec())))
 }
 
 /// Bounds of one case, by as few programmes as will do.
@@ -125,6 +132,12 @@ impl NearLimit {
         means.into_iter().map(|mean| (count > 0).then_some(100.0 * mean)).collect()
     }
 
+    /// What is said beside the limits of all these, a sentence each.
+    pub(crate) fn said_beside<'a>(all: impl Iterator<Item = &'a Self>) -> Vec<String> {
+        let cases: Vec<Vec<SaidBeside>> = all.flat_map(|it| it.beside.iter().cloned()).collect();
+        beside_cases(&cases)
+    }
+
     /// For people.
     #[must_use]
     pub fn text(&self) -> String {
@@ -158,6 +171,9 @@ impl NearLimit {
         for (why, count) in reasons {
             out.push_str(&format!("  no limit of {count} cases: {why}\n"));
         }
+        for sentence in beside_cases(&self.beside) {
+            out.push_str(&format!("  {sentence}\n"));
+        }
         out
     }
 
@@ -176,6 +192,7 @@ impl NearLimit {
             "controllers": controllers.collect::<Vec<_>>(),
             "cases": cases.collect::<Vec<_>>(),
             "cases_of_mean": count,
+            "beside": beside_cases(&self.beside),
         })
     }
 }
@@ -191,9 +208,38 @@ mod tests {
         let near = NearLimit {
             controllers: vec![("PID".to_owned(), vec![Some(share), Some(share)])],
             cases: vec![("one".to_owned(), None), ("two".to_owned(), None)],
+            beside: Vec::new(),
         };
         let text = near.text();
         assert_eq!((text.matches("61").count(), text.matches("62").count()), (3, 0), "{text}");
         assert_eq!(proved_percent(61.999), "61");
+    }
+
+    /// They stood beside the answers of `limit` alone.
+    #[test]
+    fn what_is_taken_of_commands_is_said_once_with_how_many_cases_it_is_of() {
+        let still = |within_rad: f64| {
+            SaidBeside::Still(fspid_limit::Still { until: 10, until_s: 1.0, within_rad })
+        };
+        let near = NearLimit {
+            controllers: vec![("PID".to_owned(), vec![Some(0.5); 3])],
+            cases: ["one", "two", "three"].map(|name| (name.to_owned(), None)).to_vec(),
+            beside: vec![
+                vec![still(0.01), SaidBeside::Air],
+                vec![still(0.02)],
+                vec![SaidBeside::Within(1.6)],
+            ],
+        };
+        let text = near.text();
+        let sentences: Vec<&str> = text.lines().filter(|it| it.contains("taken")).collect();
+        assert_eq!(sentences.len(), 3, "{text}");
+        assert!(sentences[0].starts_with("  2 of 3 cases: Until something happens"), "{text}");
+        assert!(sentences[0].contains("within ± 1.147 deg"), "the most of both: {text}");
+        assert!(
+            sentences[1].starts_with("  1 of 3 cases: ") && sentences[1].contains("air"),
+            "{text}"
+        );
+        assert!(sentences[2].contains("± 91.67 deg"), "{text}");
+        assert_eq!(near.json()["beside"].as_array().map(Vec::len), Some(3));
     }
 }

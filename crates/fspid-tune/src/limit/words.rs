@@ -1,5 +1,7 @@
 //! Numbers and sentences of the answer.
 
+use core::mem::discriminant;
+
 use fspid_limit::{Measure, SaidBeside, Travel};
 use fspid_page::number::fixed;
 use fspid_scenario::units::degrees;
@@ -87,7 +89,7 @@ pub(super) fn lead(answer: &Answer) -> String {
     let (end_s, dt_s) = answer.times_s;
     let options = &answer.options;
     format!(
-        "The least {} that any commands reach within a given {}, over {} s at {} ms. Nobody gets below what is proved, whatever the controller: the solver's multipliers were added up in interval arithmetic. What is reached was flown within the travel, by commands that know the whole flight before it begins or by anybody here who does not.",
+        "The least {} that any commands reach within a given {}, over {} s at {} ms. Nobody who keeps to what is said below gets below what is proved, whatever the controller: the solver's multipliers were added up in interval arithmetic. What is reached was flown within the travel, by commands that know the whole flight before it begins or by anybody here who does not.",
         called(options.measure),
         options.travel.words(),
         short(end_s),
@@ -127,6 +129,48 @@ pub(super) fn causal_is_told(answer: &Answer) -> bool {
 fn all_rungs(answer: &Answer) -> impl Iterator<Item = &Rung> {
     let own = answer.controllers.iter().filter_map(|it| it.rung.as_ref());
     answer.rungs.iter().chain(own)
+}
+
+/// What is said beside the limits of some cases: each once, with how many it is of, and with the largest of its numbers.
+pub(super) fn beside_cases(cases: &[Vec<SaidBeside>]) -> Vec<String> {
+    let mut kinds: Vec<(SaidBeside, usize)> = Vec::new();
+    for one in cases.iter().flatten() {
+        match kinds.iter_mut().find(|(kind, _)| discriminant(kind) == discriminant(one)) {
+            Some((kind, count)) => (*kind, *count) = (larger(*kind, *one), *count + 1),
+            None => kinds.push((*one, 1)),
+        }
+    }
+    let told = |(kind, count)| format!("{count} of {} cases: {}", cases.len(), in_cases(kind));
+    kinds.into_iter().map(told).collect()
+}
+
+/// What leaves commands more room, of two of one kind.
+fn larger(one: SaidBeside, other: SaidBeside) -> SaidBeside {
+    match (one, other) {
+        (SaidBeside::Within(one), SaidBeside::Within(other)) => SaidBeside::Within(one.max(other)),
+        (SaidBeside::Still(one), SaidBeside::Still(other)) if other.within_rad > one.within_rad => {
+            SaidBeside::Still(other)
+        }
+        _ => one,
+    }
+}
+
+fn in_cases(beside: SaidBeside) -> String {
+    match beside {
+        SaidBeside::Within(within_rad) => format!(
+            "The actuator has no limits: commands are taken to be within ± {} deg.",
+            short(degrees(within_rad))
+        ),
+        SaidBeside::Still(still) => format!(
+            "Until something happens commands are taken to be {}, as those of all designs here are: nobody moves for what has not happened.",
+            match still.within_rad > 0.0 {
+                true =>
+                    format!("within ± {} deg at most", short(1.0005 * degrees(still.within_rad))),
+                false => "zero".to_owned(),
+            }
+        ),
+        other => sentence(other),
+    }
 }
 
 fn sentence(beside: SaidBeside) -> String {

@@ -198,3 +198,41 @@ fn a_self_tuner_that_is_unstable_at_rest_fails_though_its_case_asks_nothing_of_i
     assert_eq!((tuned.unstable, tuned.failed), (fixed.unstable, fixed.failed));
     assert!(tuned.failed > 0);
 }
+
+/// "A wins" of 4.8 deg of travel in the mean, where at most 2 deg were allowed and the other took 2.2: none of its tunings had found
+/// anything that was.
+#[test]
+fn who_found_nothing_that_was_allowed_does_not_win() {
+    let plant = "[plant]\nnumerator = [11.2, 20.0]\ndenominator = [1.0, 5.05, 13.2, 0.0]\nelevator_sign = \"nose-up-positive\"\n[actuator]\ntime_constant_s = 0.1\n[loop]\nsample_period_s = 0.05\nduration_s = 8.0\n[setpoint]\nkind = \"step\"\namplitude_deg = 2.0\nat_s = 0.5\n";
+    let pid = |name: &str, least: f64, start: f64| {
+        format!(
+            "[[controller]]\nname = \"{name}\"\nkind = \"pid\"\nkp = {{ tune = [{least}, 5.0], scale = \"log\", start = {start} }}\nki = 0.1\nkd = 0.02\nderivative_filter_s = 0.1\n"
+        )
+    };
+    let tuning = "[tuning]\nbudget = 20\nseed = 6\n[[tuning.objective]]\nmeasure = \"iae_deg_s\"\n[[tuning.limit]]\nmeasure = \"elevator_travel_deg\"\nmost = 2.0\n[[tuning.case]]\nname = \"as written\"\nset = []\n[contest]\nseeds = 3\n";
+    let all: String = (0..9)
+        .map(|k| {
+            let [gain, stiffness] = [8.0 + f64::from(k), 16.0 - 0.7 * f64::from(k)];
+            case(
+                &format!("c{k}"),
+                &format!(
+                    "\"plant.numerator[0]={gain:.1}\", \"plant.denominator[2]={stiffness:.1}\""
+                ),
+            )
+        })
+        .collect();
+    let held = |least_of_a: f64| {
+        let two = [pid("A", least_of_a, 1.5), pid("B", 0.05, 0.3)].concat();
+        place(&format!("schema = 1\nname = \"allowed\"\n{plant}{two}{tuning}{all}")).held()
+    };
+    let outcome = held(1.2);
+    let told = outcome.text();
+    let first = "A is first, and nobody wins: 3 of its 3 tunings found nothing that was allowed";
+    assert!(told.starts_with(first), "{told}");
+    assert!(outcome.json()["verdict"]["winner"].is_null());
+    assert!(told.contains("not worse, for the tunings of what it is compared with found nothing"));
+    assert!(told.contains("kept to every limit and requirement"), "{told}");
+    // With room to keep to it both do.
+    let both = held(0.05);
+    assert!(both.judged.contestants.iter().all(|it| it.not_allowed() == [0, 3]), "{}", both.text());
+}

@@ -11,6 +11,9 @@ use fspid_campaign::{Folder, Question, local, search};
 use fspid_scenario::count as counts;
 
 /// Look for the worst case inside the box of the dispersions, on purpose and not by chance.
+///
+/// Lost flights are worse than all others, those that leave the range of their aircraft's data next. A normal distribution is
+/// searched within its limits, or within three standard deviations where it has none.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The scenario file.

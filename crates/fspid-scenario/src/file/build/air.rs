@@ -176,6 +176,7 @@ fn turbulence(
         wing_span_m: span_m(report, part, way)?,
         noise: noise(report, part)?,
         follows: follows(files, part, way),
+        driven_until_s: f64::INFINITY,
     })
 }
 

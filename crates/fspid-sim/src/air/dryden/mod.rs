@@ -72,6 +72,8 @@ pub struct Turbulence {
     pub noise: Noise,
     /// Whether height and airspeed stay those above.
     pub follows: Follows,
+    /// From then on nothing drives it any more, s, so that it dies away; infinity for never.
+    pub driven_until_s: f64,
 }
 
 /// Whose height and airspeed scale lengths and intensities have.
@@ -88,6 +90,8 @@ pub enum Follows {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dryden {
     noise: Noise,
+    /// Periods after it drive nothing.
+    last_driven: usize,
     along: ShapedNoise<1>,
     /// Two states of the velocity, then that of the rate.
     across: ShapedNoise<3>,
@@ -130,6 +134,8 @@ impl Dryden {
         let sigma_p = roll_sigma_rad_s(sigma_w, vertical_m, span_m);
         Ok(Self {
             noise: turbulence.noise.clone(),
+            // Infinity is every period.
+            last_driven: (turbulence.driven_until_s / dt_s) as usize,
             along: first_order(sigma_u, along_m / airspeed_m_s, dt_s)?,
             across: second(sigma_v, across_m, 3.0)?,
             vertical: second(sigma_w, vertical_m, 4.0)?,
@@ -168,7 +174,7 @@ impl Dryden {
     }
 
     fn source(&self, stream: u64) -> Source<'_> {
-        Source { noise: &self.noise, stream }
+        Source { noise: &self.noise, stream, last: self.last_driven }
     }
 }
 

@@ -31,10 +31,15 @@ pub(super) struct Source<'a> {
     pub(super) noise: &'a Noise,
     /// Stream of the first state; those of the others follow.
     pub(super) stream: u64,
+    /// The last sample that has random numbers; those of the others are 0.
+    pub(super) last: usize,
 }
 
 impl Source<'_> {
     fn normals<const N: usize>(self, k: usize) -> [f64; N] {
+        if k > self.last {
+            return [0.0; N];
+        }
         std::array::from_fn(|state| self.noise.normal(self.stream + state as u64, k))
     }
 }

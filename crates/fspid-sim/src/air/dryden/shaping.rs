@@ -82,6 +82,7 @@ mod tests {
             wing_span_m: 10.0,
             noise: 8.into(),
             follows,
+            driven_until_s: f64::INFINITY,
         }
     }
 

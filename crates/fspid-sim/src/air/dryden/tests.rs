@@ -12,6 +12,7 @@ fn turbulence() -> Turbulence {
         wing_span_m: 33.4 * FEET,
         noise: 5.into(),
         follows: Follows::Start,
+        driven_until_s: f64::INFINITY,
     }
 }
 

@@ -1,9 +1,11 @@
 //! What moves a flight of 2 s and 201 samples after its end, and what changes in its last fifth, which begins at 1.61 s.
 
 use super::*;
+use crate::air::{Follows, FullCycle, Severity, Specification, Steady, Turbulence, Wind};
 use crate::plant::{ElevatorSign, LinearPlant, PlantChange};
 use crate::sensor::{Sensor, SensorModel};
 use crate::signal::{Profile, Shape};
+use crate::surroundings::{Course, Weather};
 
 const STEP: Shape = Shape::Step { at_s: 0.0 };
 
@@ -169,4 +171,69 @@ fn a_plant_that_changes_after_a_flight_does_not_change_where_it_is_flown_on() {
         held_on(&own, 1001, Afterwards::Quiet).expect("it is flown on").stages.len()
     };
     assert_eq!([changed(2.0), changed(2.01)], [2, 1]);
+}
+
+fn in_air(winds: Vec<Wind>, turbulence: Option<Turbulence>) -> Scenario {
+    let course = Course {
+        airspeed_m_s: 50.0,
+        height_m: 100.0,
+        climb_rad: 0.0,
+        heading_rad: 0.0,
+        start_m: [0.0; 2],
+    };
+    let mut own = commanded(0.1, STEP);
+    own.surroundings.weather = Some(Weather { course, winds, turbulence });
+    own
+}
+
+fn light() -> Turbulence {
+    Turbulence {
+        specification: Specification::MilF8785c,
+        intensity: Severity::Light.into(),
+        height_m: 100.0,
+        airspeed_m_s: 50.0,
+        wing_span_m: 10.0,
+        noise: 1.into(),
+        follows: Follows::Start,
+        driven_until_s: f64::INFINITY,
+    }
+}
+
+/// Turbulence moves a flight as noise does, and a wind as a load that is held.
+#[test]
+fn turbulence_moves_a_flight_and_a_wind_does_not() {
+    let steady = Wind::Steady(Steady { earth_m_s: [3.0, 0.0, 0.0] });
+    let [nothing, by_noise] = [Moved::Nothing, Moved::ByNoise];
+    assert_eq!(moved(&in_air(vec![steady], None)), [nothing; 3]);
+    assert_eq!(moved(&in_air(Vec::new(), Some(light()))), [by_noise, nothing, nothing]);
+}
+
+/// A gust along a way of 80.5 m until the last fifth begins.
+#[test]
+fn air_that_changes_in_the_last_fifth_changes_late() {
+    let gust = |start_m: f64| {
+        let amplitude_m_s = [0.0, 0.0, 2.0];
+        Wind::FullCycle(FullCycle { amplitude_m_s, gradient_m: 10.0, start_m })
+    };
+    let is_late = |winds: Vec<Wind>| air_changes(&in_air(winds, None), 161);
+    assert!(!is_late(vec![Wind::Steady(Steady { earth_m_s: [3.0, 0.0, 0.0] })]));
+    assert!(!is_late(vec![gust(60.0)]), "it ends at 80 m");
+    assert!(is_late(vec![gust(62.0)]), "it ends at 82 m");
+}
+
+/// The turbulence dies away from the end of the flight on, of 2 s on a grid of 10 ms.
+#[test]
+fn turbulence_is_that_of_the_flight_until_its_end_and_dies_away_from_then_on() {
+    let gusts = |until_s: f64| {
+        let turbulence = Turbulence { driven_until_s: until_s, ..light() };
+        let Some(weather) = in_air(Vec::new(), Some(turbulence)).surroundings.weather else {
+            panic!("it has weather")
+        };
+        weather.gusts(Timing::new(0.01, 60.0).expect("allowed")).expect("allowed")
+    };
+    let (all, ended) = (gusts(f64::INFINITY), gusts(2.005));
+    assert_eq!(all[..201], ended[..201]);
+    assert_ne!(all[201], ended[201]);
+    let forward = |gusts: &[[f64; 3]]| gusts.iter().map(|it| it[0].abs()).fold(0.0, f64::max);
+    assert!(forward(&ended[4000..]) < 1e-3 * forward(&all[4000..]));
 }

@@ -179,7 +179,9 @@ fn gains_stand_where_a_flight_moves_at_its_end_by_a_fiftieth_at_most() {
 #[test]
 fn what_is_held_is_left_where_it_goes_away_or_swings_and_not_where_it_stands_or_comes_back() {
     let scenario = scenario();
-    let ends = Ends::of(&scenario, &self_tuner());
+    let controller = self_tuner();
+    let ends = Ends::of(&scenario, &controller);
+    let gains = MovingGains::of(&scenario, &controller).expect("they move");
     let leaves = |off_m: fn(f64) -> f64, mode: fn(f64) -> f64| {
         let mut pieces = Pieces::new(&scenario, &ends, PERIOD);
         for k in 0..10 * PERIOD {
@@ -187,7 +189,7 @@ fn what_is_held_is_left_where_it_goes_away_or_swings_and_not_where_it_stands_or_
             let outer = Outer { off: [off_m(along), 0.0], mode: mode(along) };
             pieces.push(Shown { outer, ..still() });
         }
-        MovingGains::leave_what_is_held(&pieces, Moved::Nothing)
+        gains.leave_what_is_held(&pieces, Moved::Nothing)
     };
     let one = |_: f64| 0.0;
     assert!(leaves(|along| 50.0 * along, one));
@@ -199,6 +201,59 @@ fn what_is_held_is_left_where_it_goes_away_or_swings_and_not_where_it_stands_or_
         !leaves(|along| 50.0 * along, |along| f64::from(u8::from(along > 0.7))),
         "another mode"
     );
+}
+
+/// What drifts with speed and height does not go away so fast, and what is nearer than a degree is there. A linear plant has nothing
+/// that drifts beside, and is asked otherwise; behind an autopilot it is the pitch itself that moves.
+#[test]
+fn an_aircraft_leaves_its_set_point_where_its_error_grows_by_a_quarter_from_one_fifth_to_the_next()
+{
+    let scenario = scenario();
+    let controller = self_tuner();
+    let ends = Ends::of(&scenario, &controller);
+    let of_plants = MovingGains::of(&scenario, &controller).expect("they move");
+    let of_aircraft = MovingGains { has_to_turn: true, ..of_plants };
+    let rises = |may_drift: bool, gains: MovingGains, error_deg: fn(f64) -> f64| {
+        let mut pieces = Pieces::new(&scenario, &ends, PERIOD);
+        pieces.may_drift = may_drift;
+        for k in 1..=10 * PERIOD {
+            let moving_rad = error_deg(k as f64 / (10 * PERIOD) as f64).to_radians();
+            pieces.push(Shown { moving_rad, ..still() });
+        }
+        gains.leave_what_is_held(&pieces, Moved::Nothing)
+    };
+    // From 0.8 of the way to its end.
+    assert!(rises(false, of_aircraft, |along| -5.0 * along * along));
+    assert!(!rises(false, of_aircraft, |along| -5.0 * along.sqrt()), "it drifts");
+    assert!(!rises(false, of_aircraft, |along| 0.99 * along * along), "it is there");
+    assert!(!rises(false, of_plants, |along| -5.0 * along * along));
+    assert!(!rises(true, of_aircraft, |along| -5.0 * along * along));
+}
+
+/// An aircraft that is flown on has come back where it stood for five pieces, within its limits; two are not enough.
+#[test]
+fn an_aircraft_has_come_back_where_it_stood_for_as_long_as_its_flight_was() {
+    let scenario = scenario();
+    let controller = self_tuner();
+    let ends = Ends::of(&scenario, &controller);
+    let of_plants = MovingGains::of(&scenario, &controller).expect("they move");
+    let of_aircraft = MovingGains { has_to_turn: true, ..of_plants };
+    let has_come_back = |gains: MovingGains, moving: usize, left_rad: f64, off_m: f64| {
+        let mut pieces = Pieces::new(&scenario, &ends, PERIOD);
+        for k in 0..10 * PERIOD {
+            let side = if k % PERIOD < PERIOD / 2 { 1.0 } else { -1.0 };
+            let is_moving = k < moving * PERIOD;
+            let moving_rad = side * if is_moving { 0.1 } else { left_rad };
+            let outer = Outer { off: [if is_moving { 0.0 } else { side * off_m }, 0.0], mode: 0.0 };
+            pieces.push(Shown { moving_rad, outer, ..still() });
+        }
+        gains.have_come_back(&pieces)
+    };
+    assert!(has_come_back(of_aircraft, 5, 0.0019, 1.4));
+    assert!(!has_come_back(of_aircraft, 5, 0.0021, 1.4), "the pitch moves");
+    assert!(!has_come_back(of_aircraft, 5, 0.0019, 1.6), "the altitude does");
+    assert!(!has_come_back(of_aircraft, 6, 0.0019, 1.4), "not for long enough");
+    assert!(!has_come_back(of_plants, 5, 0.0, 0.0), "a linear plant comes to rest");
 }
 
 fn still() -> Shown {
