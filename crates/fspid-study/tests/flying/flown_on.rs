@@ -354,7 +354,7 @@ fn an_aircraft_that_is_lost_at_limits_within_its_flight_has_no_margins_to_requir
     assert_eq!(fast, vec![(true, None); 2]);
 }
 
-/// A swing that an aircraft's own flight shows is told, in moving air by that flight.
+/// A swing that an aircraft's own flight shows is told, and one that comes of it when it goes on, in moving air as in still air.
 #[test]
 fn a_swing_at_limits_that_the_flight_of_an_aircraft_shows_leaves_it_in_doubt() {
     let step = |aircraft: &str, speed: &str, pid: &str| {
@@ -371,10 +371,11 @@ fn a_swing_at_limits_that_the_flight_of_an_aircraft_shows_leaves_it_in_doubt() {
         "airspeed_ft_s = 176.0",
         "kp = 3.8\nki = 0.1\nkd = 0.6\nderivative_filter_s = 0.05\nslew_limit_deg_s = 5.8",
     );
-    // The air of a way ends with the flight, which is asked alone.
     let breeze = "[wind]\nkind = \"log-shear\"\nw20_kt = 0.1\nfrom_deg = 0.0\n";
     assert_eq!(doubt(&result(&format!("{beaver}\n{breeze}"), &[])), Some(Doubt::SwingAtLimits));
-    assert_eq!(doubt(&result(&format!("{}\n{breeze}", slow_elevator()), &[])), None);
+    let slow = format!("{}\n{breeze}", slow_elevator());
+    assert_eq!(doubt(&result(&slow, &[])), Some(Doubt::SwingAtLimits));
+    assert_eq!(doubt(&result(&slow, &["actuator.rate_limit_deg_s=20.0"])), None);
     // Wherever in its swing the flight ends.
     for (text, duration) in
         [(&beaver, "22.0"), (&navion, "29.0"), (&navion, "31.5"), (&navion, "60.0")]

@@ -127,6 +127,9 @@ impl Answer {
                     "That {name} adapts to its plant, or answers the moment, is not shown to help."
                 )
             }
+            (Effect::Nothing, Effect::Nothing) => format!(
+                "That {name} adapts to its plant, or answers the moment, is not shown to help: neither changes a thousandth."
+            ),
             (plant, moment) => format!(
                 "That {name} adapts to its plant {}; that it answers the moment {}.",
                 plant.words(),

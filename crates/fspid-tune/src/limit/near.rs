@@ -234,7 +234,7 @@ mod tests {
         let sentences: Vec<&str> = text.lines().filter(|it| it.contains("taken")).collect();
         assert_eq!(sentences.len(), 3, "{text}");
         assert!(sentences[0].starts_with("  2 of 3 cases: Until something happens"), "{text}");
-        assert!(sentences[0].contains("within ± 1.147 deg"), "the most of both: {text}");
+        assert!(sentences[0].contains("within ± 1.146 deg"), "the most of both: {text}");
         assert!(
             sentences[1].starts_with("  1 of 3 cases: ") && sentences[1].contains("air"),
             "{text}"
