@@ -205,6 +205,42 @@ fn motions_that_are_no_modes_say_why() {
     assert_eq!(Phugoid::of(&small), Err(Absent::OtherModel { found: 1 }));
 }
 
+/// Level 1 in every row of an aircraft whose short period doubles in a third of a second.
+#[test]
+fn a_short_period_that_swings_and_grows_is_worse_than_all_levels() {
+    // A pair of damping -0.1 at 3 rad/s, with a phugoid of 0.1 rad/s, and alone.
+    let (pair, slow) = ([1.0, -0.6, 9.0], [1.0, 0.02, 0.01]);
+    let mut both = [0.0; 5];
+    for (i, one) in pair.iter().enumerate() {
+        for (j, other) in slow.iter().enumerate() {
+            both[i + j] += one * other;
+        }
+    }
+    for denominator in [&both[..], &[1.0, -0.6, 9.0, 0.0]] {
+        let qualities = Qualities::of(&model(&[-1.0, -0.5], denominator, 300.0), Category::B);
+        let worst = qualities.worst().expect("judged");
+        assert_eq!((worst.requirement.title, worst.level), ("short-period damping", Level::Worse));
+        assert!((worst.value + 0.1).abs() < 1e-9, "{worst:?}");
+        assert!(qualities.short_period.is_err());
+    }
+}
+
+/// Damping asks for no load: without a zero of the lift nothing of the short period was judged.
+#[test]
+fn damping_is_judged_without_a_zero_of_the_lift() {
+    let poles = [1.0, 0.06, 9.0, 0.0];
+    let judged = |numerator: &[f64]| Qualities::of(&model(numerator, &poles, 300.0), Category::B);
+    let damping = |qualities: &Qualities| {
+        let all: Vec<_> = qualities.judgements().collect();
+        let own = all.iter().filter(|it| it.requirement.title == "short-period damping");
+        own.map(|it| (it.value, it.level)).collect::<Vec<_>>()
+    };
+    let without = judged(&[-1.0, -3.8, -5.1]);
+    assert_eq!(without.short_period, Err(Absent::NoLiftZero));
+    assert_eq!(damping(&without), damping(&judged(&[-1.0, -0.5])));
+    assert_eq!(damping(&without).iter().map(|it| it.1).collect::<Vec<_>>(), [Level::Worse]);
+}
+
 /// Nothing was said of one that short period and phugoid share, and only a reason without a level of a fast one.
 #[test]
 fn a_divergence_is_judged_whichever_half_of_the_motion_it_belongs_to() {
@@ -287,7 +323,7 @@ fn lateral_modes_are_judged_by_class_and_category() {
     assert_eq!(judged(ModeName::Spiral, spiral, Class::I, Category::B), Ok(Level::Two));
     assert_eq!(judged(ModeName::Spiral, spiral, Class::I, Category::A), Ok(Level::One));
     let coupled = judged(ModeName::RollSpiral, swing, Class::I, Category::A);
-    assert_eq!(coupled, Err(Absent::NotAllowed(Category::A)));
+    assert_eq!(coupled, Ok(Level::Worse), "not allowed at all");
 }
 
 #[test]

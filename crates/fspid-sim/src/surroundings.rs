@@ -52,6 +52,9 @@ pub struct Course {
     pub height_m: f64,
     /// Angle of the path over the horizon, climbing positive, rad.
     pub climb_rad: f64,
+    /// Angle over the horizon of the axes that a linear plant has its gusts along, nose up positive, rad: the path's of stability
+    /// axes, and the pitch at the trim of axes of the body.
+    pub axes_rad: f64,
     /// Heading, clockwise from north, rad.
     pub heading_rad: f64,
     /// Start, m north and m east of the origin.
@@ -94,12 +97,12 @@ impl Course {
         (climb_m_s != 0.0).then(|| (height_m - self.height_m) / climb_m_s)
     }
 
-    /// The air's velocity along the path and down across it, and its pitch rate.
+    /// The air's velocity along the plant's axes, forward and down, and its pitch rate.
     fn longitudinal(&self, motion: &AirMotion) -> [f64; 3] {
         let ([north, east, earth_down], [forward, _, down]) = (motion.earth_m_s, motion.body_m_s);
         let (sine, cosine) = sin_cos(self.heading_rad);
         let [_, q_rad_s, _] = motion.body_rad_s;
-        let (up, along) = sin_cos(self.climb_rad);
+        let (up, along) = sin_cos(self.axes_rad);
         let ahead = north * cosine + east * sine;
         [ahead * along - earth_down * up + forward, ahead * up + earth_down * along + down, q_rad_s]
     }
@@ -117,7 +120,8 @@ impl Weather {
         positive("airspeed, m/s", self.course.airspeed_m_s)?;
         let [north_m, east_m] = self.course.start_m;
         let course = &self.course;
-        for value in [course.height_m, course.climb_rad, course.heading_rad, north_m, east_m] {
+        let angles = [course.climb_rad, course.axes_rad, course.heading_rad];
+        for value in angles.into_iter().chain([course.height_m, north_m, east_m]) {
             finite("course", value)?;
         }
         let wind = |k: usize| self.wind_change(timing.time_s(k));

@@ -134,6 +134,7 @@ fn scenario(autopilot: Autopilot, end_s: f64) -> Scenario {
         airspeed_m_s: SPEED_M_S,
         height_m: ALTITUDE_M,
         climb_rad: 0.0,
+        axes_rad: 0.0,
         heading_rad: 0.0,
         start_m: [0.0, 0.0],
     };

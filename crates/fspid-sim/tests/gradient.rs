@@ -299,6 +299,7 @@ fn weather(gust: bool, rough: bool) -> Option<Weather> {
         airspeed_m_s,
         height_m: 150.0,
         climb_rad: 0.0,
+        axes_rad: 0.0,
         heading_rad: 0.0,
         start_m: [0.0; 2],
     };

@@ -69,6 +69,7 @@ fn course() -> Course {
         airspeed_m_s: SPEED_M_S,
         height_m: ALTITUDE_M,
         climb_rad: 0.0,
+        axes_rad: 0.0,
         heading_rad: 0.3,
         start_m: [0.0, 0.0],
     }

@@ -141,8 +141,14 @@ fn weather(case: Case, random: &mut Random, plant: &AircraftPlant) -> Option<Wea
     let TrimTarget { airspeed_m_s, altitude_m, .. } = plant.trim().target;
     let height_m = altitude_m - plant.ground_altitude_m().unwrap_or(0.0);
     let heading_rad = random.between(-3.0, 3.0);
-    let course =
-        Course { airspeed_m_s, height_m, climb_rad: 0.0, heading_rad, start_m: [10.0, -7.0] };
+    let course = Course {
+        airspeed_m_s,
+        height_m,
+        climb_rad: 0.0,
+        axes_rad: 0.0,
+        heading_rad,
+        start_m: [10.0, -7.0],
+    };
     let turbulence = Turbulence {
         specification: Specification::MilF8785c,
         intensity: Severity::Moderate.into(),

@@ -60,7 +60,14 @@ fn flown(scenario: &Scenario) -> Trace {
 
 fn course() -> Course {
     let airspeed_m_s = 176.0 * FOOT_M;
-    Course { airspeed_m_s, height_m: 150.0, climb_rad: 0.0, heading_rad: 0.0, start_m: [0.0; 2] }
+    Course {
+        airspeed_m_s,
+        height_m: 150.0,
+        climb_rad: 0.0,
+        axes_rad: 0.0,
+        heading_rad: 0.0,
+        start_m: [0.0; 2],
+    }
 }
 
 fn weather(kind: WindKind, params: &[f64]) -> Weather {

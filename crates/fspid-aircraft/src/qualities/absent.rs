@@ -56,9 +56,6 @@ pub enum Absent {
     /// A requirement that exists, but whose chart was not at hand.
     #[error("no chart for category {0:?} was at hand")]
     NoChart(Category),
-    /// A requirement that a category does not have.
-    #[error("the motion is not allowed at all in category {0:?}")]
-    NotAllowed(Category),
     /// A linear system that could not be solved.
     #[error(transparent)]
     Linear(#[from] LtiError),

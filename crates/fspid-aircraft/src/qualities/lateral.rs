@@ -39,7 +39,7 @@ pub(super) const ROLL_SPIRAL: Requirement = Requirement {
 /// Level of a lateral mode.
 ///
 /// # Errors
-/// A mode that a category does not allow; a mode at the origin, which has no damping; a longitudinal mode.
+/// A mode at the origin, which has no damping; a longitudinal mode.
 pub fn lateral_level(
     mode: &AircraftMode,
     class: Class,
@@ -49,15 +49,21 @@ pub fn lateral_level(
         ModeName::DutchRoll => dutch_roll(mode, class, category),
         ModeName::Roll => Ok(roll(mode, class, category)),
         ModeName::Spiral => Ok(spiral(mode, category)),
-        ModeName::RollSpiral if category == Category::A => Err(Absent::NotAllowed(category)),
-        ModeName::RollSpiral => {
-            let rate = -mode.pole.re;
-            Ok(Judgement::new(&ROLL_SPIRAL, rate, Level::at_least(rate, [0.5, 0.3, 0.15])))
-        }
+        ModeName::RollSpiral => Ok(roll_spiral(mode, category)),
         ModeName::ShortPeriod | ModeName::Phugoid | ModeName::ThirdOscillation => {
             Err(Absent::OtherModel { found: 4 })
         }
     }
+}
+
+/// Category A does not allow one at all.
+fn roll_spiral(mode: &AircraftMode, category: Category) -> Judgement {
+    let rate = -mode.pole.re;
+    let level = match category {
+        Category::A => Level::Worse,
+        Category::B | Category::C => Level::at_least(rate, [0.5, 0.3, 0.15]),
+    };
+    Judgement::new(&ROLL_SPIRAL, rate, level)
 }
 
 fn dutch_roll(mode: &AircraftMode, class: Class, category: Category) -> Result<Judgement, Absent> {

@@ -25,7 +25,7 @@ pub use lateral::lateral_level;
 pub use level::{Category, Class, Confidence, Judgement, Level, Requirement};
 pub use model::{CommandPath, PitchModel};
 pub use phugoid::Phugoid;
-pub use short_period::{ShortPeriod, cap_level};
+pub use short_period::{ShortPeriod, cap_level, short_period_damping};
 
 /// All requirements that are judged here, for reports.
 pub const REQUIREMENTS: [&Requirement; 11] = [
@@ -69,6 +69,8 @@ pub struct Qualities {
     pub category: Category,
     /// Short period, load factor and control anticipation.
     pub short_period: Result<ShortPeriod, Absent>,
+    /// Damping of the short period, where nothing else of it is known, or it grows as well.
+    pub short_period_damping: Result<Judgement, Absent>,
     /// Phugoid.
     pub phugoid: Result<Phugoid, Absent>,
     /// What runs away without a swing, if anything does.
@@ -88,6 +90,7 @@ impl Qualities {
         Self {
             category,
             short_period: ShortPeriod::of(model, category),
+            short_period_damping: short_period_damping(model, category),
             phugoid: Phugoid::of(model),
             divergence: Divergence::of(model),
             bandwidth: Bandwidth::of(model, category),
@@ -99,8 +102,8 @@ impl Qualities {
     /// Every level that could be given.
     pub fn judgements(&self) -> impl Iterator<Item = Judgement> {
         let short_period = self.short_period.ok().into_iter();
-        let short_period = short_period
-            .flat_map(|found| [found.damping_level, found.frequency_level, found.cap_level]);
+        let short_period = short_period.flat_map(|found| [found.frequency_level, found.cap_level]);
+        let damping = self.short_period_damping.ok();
         let divergence = self.divergence.map(|found| found.level);
         // One requirement is told once, by the worst that it is about.
         let is_told =
@@ -108,7 +111,13 @@ impl Qualities {
         let phugoid = self.phugoid.ok().map(|found| found.level()).filter(|level| !is_told(level));
         let bandwidth = self.bandwidth.ok().and_then(|found| found.level.ok());
         let delay = self.equivalent_delay.ok().map(|found| found.level);
-        short_period.chain(phugoid).chain(divergence).chain(bandwidth).chain(delay)
+        damping
+            .into_iter()
+            .chain(short_period)
+            .chain(phugoid)
+            .chain(divergence)
+            .chain(bandwidth)
+            .chain(delay)
     }
 
     /// The worst level that was given, if any was.

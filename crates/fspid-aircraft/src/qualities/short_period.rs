@@ -20,7 +20,7 @@ pub(super) const FREQUENCY: Requirement = Requirement {
     title: "short-period frequency",
     clause: "MIL-F-8785C 3.2.2.1.1, figures 1 to 3",
     confidence: Confidence::Disputed,
-    note: "lines of constant frequency squared over n/alpha; levels 2 and 3 share the lower one. In category C it is 0.096 (others read 0.036). The least frequency and n/alpha of figures 1 and 3 are not applied",
+    note: "lines of constant frequency squared over n/alpha, which is that of the lift's zero (11 % below that at constant speed for a Boeing 747 in approach); levels 2 and 3 share the lower one. In category C it is 0.096 (others read 0.036). The least frequency and n/alpha of figures 1 and 3 are not applied",
 };
 
 /// Damping and frequency together.
@@ -103,6 +103,24 @@ impl ShortPeriod {
             cap_level: Judgement::new(&CAP, cap, cap_level(damping, cap, category)),
         })
     }
+}
+
+/// Damping of the short period alone, which asks for no load, judged for a category; of a pair that swings and grows, in whatever
+/// half of the motion but the phugoid, its negative one.
+///
+/// # Errors
+/// A fast motion that is not a mode of two poles.
+pub fn short_period_damping(model: &PitchModel, category: Category) -> Result<Judgement, Absent> {
+    let modes = model.modes()?;
+    let swings = modes.iter().filter(|mode| mode.name != ModeName::Phugoid && mode.oscillates());
+    let growing = swings.filter(|mode| mode.pole.re >= 0.0);
+    let fastest = growing.max_by(|one, other| one.pole.re.total_cmp(&other.pole.re));
+    let damping = match fastest {
+        Some(mode) => mode.mode()?.damping_ratio,
+        None => short_period_mode(&modes)?.damping_ratio,
+    };
+    let level = Level::within(damping, category.pick(DAMPING_BOUNDS));
+    Ok(Judgement::new(&DAMPING, damping, level))
 }
 
 /// Level of a damping and a control anticipation parameter in the boxes of MIL-STD-1797A.

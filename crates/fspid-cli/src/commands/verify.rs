@@ -106,7 +106,7 @@ Ready sets and their choices, the first of each if left out:
   mil-f-8785c  level=1|2|3, category=B|A|C
   ctms         none
   mil-f-9490d-altitude  air=smooth|turbulent, target_ft=FT or target_m=M (that of the start)
-  rvsm         air=smooth|turbulent, target_ft=FT or target_m=M (that of the start)
+  rvsm         air=smooth|turbulent, target_ft=FT or target_m=M (that of the start; an overshoot needs one)
   ac-25.1329   none
 
 Examples:

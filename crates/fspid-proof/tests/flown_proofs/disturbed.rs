@@ -136,6 +136,7 @@ fn disturbed(scenario: &Scenario, way: &Way, values: &[f64]) -> Scenario {
         airspeed_m_s: 50.0,
         height_m: 500.0,
         climb_rad: 0.0,
+        axes_rad: 0.0,
         heading_rad: 0.0,
         start_m: [0.0; 2],
     };

@@ -77,7 +77,11 @@ fn choice(choice: &Choice) -> Value {
             let others = choice.ways.iter().filter(|other| !std::ptr::eq(*other, way));
             let foreign: Vec<Value> =
                 others.flat_map(keys).map(|name| json!({ "required": [name] })).collect();
-            json!({ "required": names(way.required), "not": { "anyOf": foreign } })
+            // Of nothing nothing is to be left out, and an empty list is no schema.
+            match foreign.is_empty() {
+                true => json!({ "required": names(way.required) }),
+                false => json!({ "required": names(way.required), "not": { "anyOf": foreign } }),
+            }
         })
         .collect();
     json!({ "oneOf": ways })

@@ -2,7 +2,8 @@
 //!
 //! # Axes
 //! Earth axes are north, east, down. Body axes are forward, right, down; for a linear plant they are
-//! the stability axes of its reference condition. Every velocity is that of the *air*, positive
+//! those of its model: of the body for a linear aircraft, the stability axes of the reference condition for one known by a linear
+//! model alone. Every velocity is that of the *air*, positive
 //! along its axis: a headwind on a northerly course has a negative north component, an updraught a
 //! negative down component.
 //!

@@ -38,6 +38,7 @@ fn in_winds(scenario: Scenario, winds: Vec<Wind>) -> Scenario {
         airspeed_m_s: SPEED_M_S,
         height_m: ALTITUDE_M,
         climb_rad: 0.0,
+        axes_rad: 0.0,
         heading_rad: 0.0,
         start_m: [0.0, 0.0],
     };

@@ -5,7 +5,7 @@ use std::path::{Component, Path, PathBuf};
 use fspid_sim::{Controller, ElevatorSign, LinearPlant};
 
 use super::Verification;
-use crate::judgement::{Judgement, is_of_aircraft};
+use crate::judgement::{Judgement, NotEvaluated, is_of_aircraft};
 use fspid_scenario::file::{Extra, Replay, replay};
 use fspid_scenario::measure::Family;
 
@@ -23,7 +23,7 @@ const LONGEST: usize = 48;
 
 impl Verification {
     /// One file for each judgement, in their order, to be written into a folder that exists: files that the scenario
-    /// refers to are named from there.
+    /// refers to are named from there. None for one that lacks what a file has to say, so that it could not be read.
     #[must_use]
     pub fn replays(&self, folder: &Path) -> Vec<ReplayFile> {
         let base = Path::new(&self.path).parent().unwrap_or(Path::new(""));
@@ -34,7 +34,9 @@ impl Verification {
             let body = self.replay(judgement, &moved);
             ReplayFile { name, text: format!("{}{body}", self.head(number, judgement)) }
         };
-        (1..).zip(&self.judgements).map(file).collect()
+        let is_whole =
+            |it: &(usize, &Judgement)| !matches!(it.1.found, Err(NotEvaluated::NoTarget));
+        (1..).zip(&self.judgements).filter(is_whole).map(file).collect()
     }
 
     fn replay(&self, judgement: &Judgement, moved: &dyn Fn(&str) -> String) -> String {

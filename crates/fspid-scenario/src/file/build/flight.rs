@@ -83,7 +83,7 @@ fn aircraft(
     let aircraft = judged(report, (part, key), aircraft)?;
     glides(report, part, &aircraft)?;
     let plant = trimmed(report, part, &aircraft, target)?;
-    let target = plant.trim().target;
+    let (target, alpha_rad) = (plant.trim().target, plant.trim().point.alpha_rad);
     let plant = match model {
         ModelWord::Linear => {
             configuration::refuse_changes(report, section);
@@ -95,10 +95,12 @@ fn aircraft(
         }
     };
     let environment = *aircraft.environment();
+    let axes_rad = target.flight_path_rad + alpha_rad;
     let way = way(part, target, &environment)?;
+    let course = Course { axes_rad, ..way.course };
     let laws = laws(part)?;
     let derivatives = derivatives.map(|data| FlownDerivatives { data, laws, environment, target });
-    Some(Flown { plant, way: Some(Way { span_m, ..way }), derivatives })
+    Some(Flown { plant, way: Some(Way { span_m, course, ..way }), derivatives })
 }
 
 /// Along a target in the air of an environment, by an aircraft without a span.
@@ -292,6 +294,7 @@ fn course(part: &Section, target: TrimTarget) -> Option<Course> {
         airspeed_m_s: target.airspeed_m_s,
         height_m: target.altitude_m - part.get(keys::GROUND_M)?,
         climb_rad: target.flight_path_rad,
+        axes_rad: target.flight_path_rad,
         heading_rad: rad(part.get(keys::HEADING_DEG)?),
         start_m: [0.0; 2],
     })

@@ -145,6 +145,7 @@ fn way(plant: &ExternalPlant) -> Option<Way> {
             airspeed_m_s,
             height_m: jsbsim.altitude_m,
             climb_rad: jsbsim.climb_rad,
+            axes_rad: jsbsim.climb_rad,
             heading_rad: jsbsim.heading_rad,
             start_m: [0.0; 2],
         },

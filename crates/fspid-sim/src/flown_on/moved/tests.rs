@@ -178,6 +178,7 @@ fn in_air(winds: Vec<Wind>, turbulence: Option<Turbulence>) -> Scenario {
         airspeed_m_s: 50.0,
         height_m: 100.0,
         climb_rad: 0.0,
+        axes_rad: 0.0,
         heading_rad: 0.0,
         start_m: [0.0; 2],
     };

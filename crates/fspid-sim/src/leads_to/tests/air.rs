@@ -15,6 +15,7 @@ fn in_wind(heading_rad: f64, earth_m_s: [f64; 3]) -> Scenario {
         airspeed_m_s: SPEED_M_S,
         height_m: ALTITUDE_M,
         climb_rad: 0.0,
+        axes_rad: 0.0,
         heading_rad,
         start_m: [0.0, 0.0],
     };

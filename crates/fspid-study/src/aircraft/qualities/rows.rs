@@ -14,7 +14,13 @@ pub(super) fn facts(qualities: &Qualities) -> Facts {
 }
 
 fn short_period(facts: Facts, qualities: &Qualities) -> Facts {
-    let Ok(found) = &qualities.short_period else { return facts };
+    let name = "short period, damping";
+    let Ok(found) = &qualities.short_period else {
+        return match &qualities.short_period_damping {
+            Ok(found) => facts.number(name, "short_period_damping", Kind::Plain, found.value),
+            Err(_) => facts,
+        };
+    };
     let mode = &found.mode;
     facts
         .number(
@@ -23,7 +29,7 @@ fn short_period(facts: Facts, qualities: &Qualities) -> Facts {
             Kind::Frequency,
             mode.natural_frequency_rad_s,
         )
-        .number("short period, damping", "short_period_damping", Kind::Plain, mode.damping_ratio)
+        .number(name, "short_period_damping", Kind::Plain, mode.damping_ratio)
         .number("lift lag, Ttheta2", "lift_lag", Kind::Time, found.lift_lag_s)
         .number(
             "load by angle of attack",

@@ -2,7 +2,7 @@
 
 use fspid_aircraft::modes::Growth;
 use fspid_aircraft::qualities::{
-    Category, CommandPath, EquivalentDelay, Phugoid, PitchModel, ShortPeriod,
+    Category, CommandPath, EquivalentDelay, Phugoid, PitchModel, ShortPeriod, short_period_damping,
 };
 use fspid_sim::{LinearPlant, Scenario, SimError};
 
@@ -59,10 +59,9 @@ fn value(
         .map_err(NotEvaluated::Aircraft)?
         .behind(path.clone());
     // Categories differ in their limits, which are the requirement's here, and not in the values.
-    let short_period = || ShortPeriod::of(&model, Category::B);
     Ok(match measure {
-        Measure::ShortPeriodDamping => short_period()?.mode.damping_ratio,
-        Measure::ControlAnticipation => short_period()?.cap,
+        Measure::ShortPeriodDamping => short_period_damping(&model, Category::B)?.value,
+        Measure::ControlAnticipation => ShortPeriod::of(&model, Category::B)?.cap,
         Measure::PhugoidDamping => phugoid_damping(&Phugoid::of(&model)?),
         Measure::PhugoidDoubling => phugoid_doubling_s(&Phugoid::of(&model)?),
         // The equivalent delay, and nothing else comes here.
