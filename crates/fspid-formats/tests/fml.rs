@@ -5,6 +5,7 @@
 use crate::common;
 
 use common::{EXACT, LOSSY, answers, notes, paper, problems};
+use fspid_formats::fcl::{self, Dialect};
 use fspid_formats::{MAX_INPUT_BYTES, fis, fml};
 use fspid_fuzzy::membership::ShapeKind;
 use fspid_fuzzy::system::{
@@ -393,5 +394,31 @@ fn a_rectangle_without_an_end_is_written_as_points() {
             Membership::Shape { kind: ShapeKind::Rectangle, params, height: 1.0 };
         let back = read(&fml::write(&parts, EXACT).unwrap().text);
         assert_eq!([inside, outside].map(|x| grade(&back, 0, 0, x)), [1.0, 0.0]);
+    }
+}
+
+/// "An integral stays in its range" of a default of -1000, which does not.
+#[test]
+fn a_default_outside_of_a_range_that_limits_is_lost() {
+    let mut parts = read(HEATER);
+    parts.outputs[0].clamp = true;
+    assert!(fml::write(&parts, EXACT).is_ok());
+    parts.outputs[0].fallback.value = FallbackValue::Number(-1000.0);
+    let told = fml::write(&parts, EXACT).unwrap_err().to_string();
+    assert!(told.contains("its default lies outside of its range"), "{told}");
+    assert!(fml::write(&parts, LOSSY).is_ok());
+}
+
+/// It was written as a number, read as one that is averaged, and answered 0.9 in place of the default; beside sets the file that
+/// was written was refused.
+#[test]
+fn a_singleton_that_is_integrated_is_no_number_of_fcl() {
+    let mut parts = read(HEATER);
+    let membership =
+        Membership::Shape { kind: ShapeKind::Singleton, params: vec![60.0], height: 1.0 };
+    parts.outputs[0].terms[0].conclusion = Conclusion::Set { membership, lower: None };
+    for dialect in [Dialect::Iec, Dialect::Fuzzylite, Dialect::JFuzzyLogic] {
+        let told = fcl::write(&parts, dialect, LOSSY).unwrap_err().to_string();
+        assert!(told.contains("is read as a number in FCL"), "{told}");
     }
 }

@@ -32,7 +32,7 @@ use alloc::vec::Vec;
 pub use error::{FormulaError, FormulaErrorKind};
 use operation::{FUNCTIONS, Operation};
 
-use fspid_numeric::scalar::Scalar;
+use fspid_numeric::scalar::{Interval, Scalar};
 
 /// Longest text, in bytes.
 const MAX_BYTES: usize = 64 * 1024;
@@ -109,6 +109,35 @@ impl Formula {
             }
         }
         stack.pop()
+    }
+
+    /// True if it is known to have a finite value for all values of these intervals, one for each variable: no root or logarithm
+    /// of what may be negative, no quotient by what may be zero.
+    ///
+    /// Allocates nothing.
+    #[must_use]
+    pub fn has_value(&self, values: &[Interval]) -> bool {
+        let mut stack = Stack { operands: [Interval::ZERO; MAX_DEPTH], count: 0 };
+        self.code.iter().all(|part| {
+            let (is_defined, value) = match *part {
+                Operation::Number(value) => (value.is_finite(), Interval::constant(value)),
+                Operation::Variable(index) => match values.get(index) {
+                    Some(value) => (true, *value),
+                    None => (false, Interval::ENTIRE),
+                },
+                Operation::One(function) => {
+                    let a = stack.pop();
+                    (function.is_defined_on(a), function.apply(a))
+                }
+                Operation::Two(function) => {
+                    let b = stack.pop();
+                    let a = stack.pop();
+                    (function.is_defined_on(a, b), function.apply(a, b))
+                }
+            };
+            stack.push(value);
+            is_defined && value.lower().is_finite() && value.upper().is_finite()
+        })
     }
 }
 

@@ -1,6 +1,6 @@
 //! What a formula is made of, once read.
 
-use fspid_numeric::scalar::Scalar;
+use fspid_numeric::scalar::{Interval, Scalar};
 
 /// One step of computing a formula.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -164,6 +164,39 @@ impl One {
             Self::Tanh => a.tanh(),
         }
     }
+}
+
+impl One {
+    /// True if it has a value for every number of an interval.
+    pub(super) fn is_defined_on(self, a: Interval) -> bool {
+        match self {
+            Self::Acos | Self::Asin => -1.0 <= a.lower() && a.upper() <= 1.0,
+            Self::Acosh => 1.0 <= a.lower(),
+            Self::Atanh => -1.0 < a.lower() && a.upper() < 1.0,
+            Self::Log | Self::Log10 => 0.0 < a.lower(),
+            Self::Log1p => -1.0 < a.lower(),
+            Self::Sqrt => 0.0 <= a.lower(),
+            Self::Tan => !a.cos().contains(0.0),
+            _ => true,
+        }
+    }
+}
+
+impl Two {
+    /// The same for every two numbers of two intervals.
+    pub(super) fn is_defined_on(self, a: Interval, b: Interval) -> bool {
+        match self {
+            Self::Divide | Self::Remainder => !b.contains(0.0),
+            Self::Power => a.lower() > 0.0 || b.is_point() && is_count(b.lower()),
+            Self::Atan2 => !(a.contains(0.0) && b.contains(0.0)),
+            _ => true,
+        }
+    }
+}
+
+/// True for 0, 1, 2 …
+fn is_count(number: f64) -> bool {
+    number >= 0.0 && libm::floor(number) == number
 }
 
 impl Two {

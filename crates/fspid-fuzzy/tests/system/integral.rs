@@ -157,3 +157,21 @@ fn sets_and_norms_written_as_formulas_are_integrated_too() {
     assert!((found - 0.7).abs() < 1e-7 && answer.error_bound < 1e-10, "{answer:?}");
     assert!(Scalar::exp(-18.0_f64) < 1e-7);
 }
+
+/// "1.55, the rules gave no number; the output's default" of a plain set: its enclosure of minus infinity was not known to be one.
+#[test]
+fn a_shoulder_that_begins_at_infinity_is_integrated() {
+    let shoulder = [f64::NEG_INFINITY, 0.2, 0.2, 0.8];
+    let ends = shape(ShapeKind::Trapezoid, &shoulder);
+    let mirrored = shape(ShapeKind::Trapezoid, &[-0.8, -0.2, -0.2, f64::INFINITY]);
+    for (set, range, sign) in [(ends, [0.0, 2.0], 1.0), (mirrored, [-2.0, 0.0], -1.0)] {
+        let mut parts =
+            graded(output(range[0], range[1], sets(vec![set, shape(Gaussian, &[sign, 0.3])])));
+        parts.outputs[0].defuzzifier = Defuzzifier::Centroid(EXACT);
+        let answer = answers(&system(parts), &[1.0, 0.0])[0];
+        // A rectangle of 0.2 and a triangle of 0.6: areas 0.2 and 0.3, at 0.1 and 0.4.
+        let error = (answer.value.expect("an area") - sign * 0.28).abs();
+        assert!(error < 1e-12 && answer.error_bound < 1e-12, "{answer:?}");
+        assert_eq!(answer.source, Source::Rules);
+    }
+}

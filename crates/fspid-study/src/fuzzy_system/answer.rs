@@ -252,11 +252,19 @@ fn in_words(value: f64) -> String {
     }
 }
 
+/// An answer that may be off by more than this share of its range is hardly one.
+const ROUGH: f64 = 1e-6;
+
 /// The rule of an answer, and its error bound.
 fn remarks(output: &Output, answer: &Answer) -> String {
     let mut text = rule(output);
-    if answer.error_bound > 0.0 {
-        text.push_str(&format!(", within {:.1e}", answer.error_bound));
+    let range = output.universe.map_or(f64::INFINITY, |it| it.upper - it.lower);
+    match answer.error_bound {
+        bound if bound > ROUGH * range => {
+            text.push_str(&format!(", KNOWN ONLY WITHIN {bound:.1e}: it could not be integrated"));
+        }
+        bound if bound > 0.0 => text.push_str(&format!(", within {bound:.1e}")),
+        _ => {}
     }
     text
 }

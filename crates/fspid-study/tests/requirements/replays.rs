@@ -103,6 +103,21 @@ fn a_flight_of_a_set_s_own_that_fails_is_told_and_its_replay_fails_too() {
     }
 }
 
+/// A file was written for it that nobody could read.
+#[test]
+fn a_line_that_lacks_its_target_has_no_replay() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let verification = verified(&repository("scenarios/gallery/sensor-ahrs.toml"), &["rvsm"], &[]);
+    let lacks = |it: &&Judgement| matches!(it.found, Err(NotEvaluated::NoTarget));
+    let lacking = verification.judgements.iter().filter(lacks).count();
+    let replays = verification.replays(folder.path());
+    assert_eq!((lacking, replays.len()), (1, verification.judgements.len() - 1));
+    for replay in replays {
+        let again = file::parse(&replay.text, "replay", Some(folder.path()), &[]);
+        assert!(again.is_ok(), "{}", replay.name);
+    }
+}
+
 /// The scenarios of a folder and those below it that have an autopilot.
 fn with_autopilot(folder: &Path) -> Vec<std::path::PathBuf> {
     let entries = std::fs::read_dir(folder).expect("a folder");

@@ -157,7 +157,7 @@ pub enum Stop {
     Flat,
     /// No step, however short, leaves every row of data a rule that fires and an error that is finite.
     Stuck,
-    /// Nothing is to move: the conclusions are the best there are.
+    /// Nothing is to move: the conclusions are those of least squares.
     Fitted,
 }
 
@@ -170,7 +170,7 @@ impl fmt::Display for Stop {
             Self::ShortStep => "the step has become too short",
             Self::Flat => "the error does not change with anything that moves",
             Self::Stuck => "no step leaves every row of data a rule that fires",
-            Self::Fitted => "nothing is to move; the conclusions are the best there are",
+            Self::Fitted => "nothing is to move; the conclusions are those of least squares with its regularisation",
         })
     }
 }

@@ -3,8 +3,10 @@
 use std::collections::BTreeSet;
 
 use fspid_fuzzy::OutOfRange;
+use fspid_fuzzy::membership::ShapeKind;
 use fspid_fuzzy::system::{
-    Activation, Conclusion, Defuzzifier, FallbackValue, Input, Output, Parts, RuleBlock, Sampling,
+    Activation, Conclusion, Defuzzifier, FallbackValue, Input, Membership, Output, OutputTerm,
+    Parts, RuleBlock, Sampling,
 };
 
 use super::set;
@@ -162,7 +164,25 @@ fn output(output: &mut Output, dialect: Dialect, loss: &mut Loss) {
     }
 }
 
+/// A set without a width has no area, and FCL reads it as a number that is averaged.
+fn singletons(output: &Output, loss: &mut Loss) {
+    let is_singleton = |term: &OutputTerm| {
+        matches!(
+            &term.conclusion,
+            Conclusion::Set {
+                membership: Membership::Shape { kind: ShapeKind::Singleton, .. },
+                ..
+            }
+        )
+    };
+    if output.defuzzifier.sampling().is_some() && output.terms.iter().any(is_singleton) {
+        let message = "a singleton among sets that are integrated is read as a number in FCL";
+        loss.cannot(&output.name, message, "a weighted average, or a .toml file");
+    }
+}
+
 fn integrals(output: &mut Output, dialect: Dialect, loss: &mut Loss) {
+    singletons(output, loss);
     match dialect {
         Dialect::Iec => {}
         Dialect::JFuzzyLogic => {

@@ -2,8 +2,8 @@
 
 use fspid_fuzzy::membership::ShapeKind;
 use fspid_fuzzy::system::{
-    Activation, Antecedent, Conclusion, Defuzzifier, Input, Membership, Output, Parts, RuleBlock,
-    SNorm, Sampling, SetReading, TNorm, Universe, Variable,
+    Activation, Antecedent, Conclusion, Defuzzifier, FallbackValue, Input, Membership, Output,
+    Parts, RuleBlock, SNorm, Sampling, SetReading, TNorm, Universe, Variable,
 };
 use fspid_fuzzy::{OutOfRange, SNormKind};
 
@@ -95,6 +95,16 @@ fn input(input: &mut Input, loss: &mut Loss) {
     }
 }
 
+/// True where the answer without a rule is a number outside of the range, in which readers of FML keep it.
+fn has_default_outside(output: &Output) -> bool {
+    match (output.fallback.value, output.universe) {
+        (FallbackValue::Number(value), Some(range)) => {
+            !(range.lower <= value && value <= range.upper)
+        }
+        _ => false,
+    }
+}
+
 fn output(output: &mut Output, loss: &mut Loss) {
     enabled(&output.name, output.enabled, loss);
     sampled(output, loss, Sampling::Exact, |sampling| sampling == Sampling::Exact);
@@ -105,6 +115,9 @@ fn output(output: &mut Output, loss: &mut Loss) {
     }
     if output.clamp {
         match output.defuzzifier.sampling() {
+            Some(_) if has_default_outside(output) => {
+                loss.lose(&output.name, "its default lies outside of its range", "the end of it");
+            }
             Some(_) => loss.note(format!("`{}`: an integral stays in its range", output.name)),
             None => loss.lose(&output.name, "its answer is limited to its range", "no limit"),
         }

@@ -8,9 +8,10 @@ mod order;
 use alloc::vec;
 use alloc::vec::Vec;
 
+use crate::hedge::Hedge;
 use crate::norm::SNormKind;
 use crate::system::{
-    Activation, Antecedent, Consequent, Defuzzifier, Rule, RuleBlock, System, Variable,
+    Activation, Antecedent, Consequent, Defuzzifier, Rule, RuleBlock, System, TNorm, Variable,
 };
 pub(super) use antecedent::canonical;
 use antecedent::implied_by;
@@ -193,6 +194,15 @@ fn contradictions(earlier: &Rule, later: &Rule) -> Vec<(usize, [usize; 2])> {
 }
 
 /// True if `rule` changes no answer as long as `other` is there.
+/// True if what a rule concludes rises with the strength of its antecedent, and that with the grades of its statements: a
+/// formula may fall, and `not` makes much of little.
+fn rises_with_strength(rule: &ActiveRule<'_>) -> bool {
+    let falls = |it: &Consequent| it.hedges.contains(&Hedge::Not);
+    matches!(rule.block.and, TNorm::Kind(_))
+        && matches!(rule.block.implication, TNorm::Kind(_))
+        && !rule.rule.consequents.iter().any(falls)
+}
+
 fn makes_superfluous(system: &System, other: &ActiveRule<'_>, rule: &ActiveRule<'_>) -> bool {
     // With an s-norm that adds up, in an average, or where rules compete, every rule counts.
     let keeps_strongest = |consequent: &Consequent| {
@@ -208,7 +218,8 @@ fn makes_superfluous(system: &System, other: &ActiveRule<'_>, rule: &ActiveRule<
         && other.block.activation == Activation::General
         && rule.block.implication == other.block.implication
         && rule.block.and == other.block.and
-        && rule.rule.consequents.iter().all(keeps_strongest);
+        && rule.rule.consequents.iter().all(keeps_strongest)
+        && rises_with_strength(rule);
     plain
         && rule.rule.weight <= other.rule.weight
         && concludes_all(other.rule, rule.rule)

@@ -6,6 +6,7 @@ use alloc::vec::Vec;
 use crate::formula::Formula;
 use crate::norm::{SNormKind, TNormKind};
 use crate::system::{Membership, RuleBlock, SNorm, Statement, System, TNorm, Variable};
+use fspid_numeric::scalar::Interval;
 
 /// A shape that changes by more than this across a corner is taken to jump there.
 const JUMP: f64 = 1e-6;
@@ -49,7 +50,7 @@ fn joins_continuously(block: &RuleBlock) -> bool {
         TNorm::Kind(kind) => {
             !matches!(kind, TNormKind::DrasticProduct | TNormKind::NilpotentMinimum)
         }
-        TNorm::Formula(formula) => is_continuous(formula),
+        TNorm::Formula(formula) => joins_everywhere(formula),
     };
     and && continuous_join(&block.or)
 }
@@ -58,11 +59,16 @@ fn joins_continuously(block: &RuleBlock) -> bool {
 pub(super) fn continuous_join(norm: &SNorm) -> bool {
     match norm {
         SNorm::Kind(kind) => !matches!(kind, SNormKind::DrasticSum | SNormKind::NilpotentMaximum),
-        SNorm::Formula(formula) => is_continuous(formula),
+        SNorm::Formula(formula) => joins_everywhere(formula),
     }
 }
 
-/// True if a formula has no word that may make it jump; a quotient by zero has no bounds anyway.
+/// True if a formula joins any two grades, and cannot jump.
+fn joins_everywhere(formula: &Formula) -> bool {
+    is_continuous(formula) && formula.has_value(&[Interval::UNIT; 2])
+}
+
+/// True if a formula has no word that may make it jump where it [has a value](Formula::has_value).
 pub(super) fn is_continuous(formula: &Formula) -> bool {
     !JUMPING_WORDS.iter().any(|word| formula.text().contains(word))
 }

@@ -9,7 +9,7 @@ use super::objective::{Coverage as Strongest, StrongestGrade};
 use super::options::SurfaceOptions;
 use crate::audit::Statement;
 use crate::audit::search::{Effort, Extreme, middle, minimum};
-use crate::system::{Activation, Step, System, Variable};
+use crate::system::{Activation, Membership, Step, System, TNorm, Variable};
 use fspid_numeric::scalar::Interval;
 
 /// Where the question falls apart into one for each input, this is cheap to ask for.
@@ -65,7 +65,8 @@ fn complete_grid(system: &System, rules: &[usize]) -> Option<Vec<BTreeSet<usize>
         let rule = rule?;
         let block = system.parts.blocks.get(rule.block)?;
         let plain = rule.block == first && block.activation == Activation::General;
-        if !plain || rule.weight < 1.0 {
+        // A formula may fall with its arguments.
+        if !plain || rule.weight < 1.0 || !matches!(block.and, TNorm::Kind(_)) {
             return None;
         }
         let mut combination = vec![None; statements.len()];
@@ -73,10 +74,11 @@ fn complete_grid(system: &System, rules: &[usize]) -> Option<Vec<BTreeSet<usize>
             match *step {
                 Step::And => {}
                 Step::Statement(index) => {
-                    let Variable::Input(input) = system.program.statements.get(index)?.variable
-                    else {
+                    let statement = system.program.statements.get(index)?;
+                    let Variable::Input(input) = statement.variable else { return None };
+                    if depends_on_others(system, statement) {
                         return None;
-                    };
+                    }
                     if combination.get_mut(input)?.replace(index).is_some() {
                         return None;
                     }
@@ -89,6 +91,18 @@ fn complete_grid(system: &System, rules: &[usize]) -> Option<Vec<BTreeSet<usize>
     }
     let cells = statements.iter().try_fold(1_usize, |n, own| n.checked_mul(own.len()))?;
     (combinations.len() == cells).then_some(statements)
+}
+
+/// True if a grade may depend on other inputs than its own.
+fn depends_on_others(system: &System, statement: &crate::system::Statement) -> bool {
+    let Variable::Input(input) = statement.variable else { return true };
+    let term = statement.term.and_then(|term| system.parts.inputs.get(input)?.terms.get(term));
+    match term.map(|term| &term.membership) {
+        Some(Membership::Formula { formula, .. }) => {
+            (0..system.parts.inputs.len()).any(|other| formula.uses(other + 1))
+        }
+        Some(Membership::Shape { .. }) | None => false,
+    }
 }
 
 fn by_input(

@@ -100,6 +100,13 @@ impl<'a> Firing<'a> {
         for (place, conclusion) in self.degrees.iter_mut().zip(conclusions) {
             let strength = self.acting.get(conclusion.rule).copied().unwrap_or(Slope::zero());
             let degree = hedged(&conclusion.hedges, strength);
+            // What does not fire concludes nothing, whatever its hedges make of nothing.
+            let may_not_fire = strength.value.lower() <= 0.0;
+            let of_nothing = hedged(&conclusion.hedges, Slope::zero()).value;
+            let degree = match may_not_fire && of_nothing.upper() > 0.0 {
+                true => unknown_slope(degree.value.hull(Interval::ZERO)),
+                false => degree,
+            };
             *place = if keeps_to_unit(self.system, conclusion.block) {
                 within_unit(degree)
             } else {
@@ -140,8 +147,16 @@ impl<'a> Firing<'a> {
             };
             *place = within_unit(grade);
             let Variable::Input(input) = statement.variable else { continue };
+            let has_value = has_grade(self.system, statement, &self.inputs);
             match jumps {
+                // Without a value it is 0, of which hedges may make anything.
+                _ if !has_value && !statement.hedges.is_empty() => {
+                    *place = unknown_slope(Interval::UNIT);
+                }
                 Jumps::Anywhere => *place = unknown_slope(place.value.hull(Interval::ZERO)),
+                Jumps::At(_) if !has_value => {
+                    *place = unknown_slope(place.value.hull(Interval::ZERO));
+                }
                 Jumps::At(places) => {
                     let jumps = |values: &Interval| places.iter().any(|&p| values.contains(p));
                     if cell.get(input).is_some_and(jumps) {
@@ -260,6 +275,22 @@ impl<'a> Firing<'a> {
 
 fn grade_of(grades: &[Slope], statement: usize) -> Slope {
     grades.get(statement).copied().unwrap_or(Slope::zero())
+}
+
+/// True if a statement is known to have a grade everywhere in a box.
+fn has_grade(system: &System, statement: &Statement, inputs: &[Slope]) -> bool {
+    let Variable::Input(index) = statement.variable else { return false };
+    let input = system.parts.inputs.get(index);
+    let term = statement.term.and_then(|term| input?.terms.get(term));
+    term.is_none_or(|term| has_value(&term.membership, index, inputs))
+}
+
+/// True if a set of an input is known to have a grade everywhere in a box.
+pub(super) fn has_value(set: &Membership, input: usize, inputs: &[Slope]) -> bool {
+    let Membership::Formula { formula, .. } = set else { return true };
+    let own = inputs.get(input).map_or(Interval::ENTIRE, |it| it.value);
+    let values: Vec<Interval> = [own].into_iter().chain(inputs.iter().map(|it| it.value)).collect();
+    formula.has_value(&values)
 }
 
 /// Grade of a statement about a piecewise-linear set, with the slopes of just those pieces that reach

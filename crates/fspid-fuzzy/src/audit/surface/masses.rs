@@ -9,7 +9,7 @@ use alloc::vec::Vec;
 use super::continuity::{Jumps, continuous_join, jumps_of};
 use super::firing::{Firing, Slope, unknown_slope};
 use crate::norm::{SNormKind, TNormKind};
-use crate::system::{Conclusion, Defuzzifier, Membership, Output, Sampling, System, TNorm};
+use crate::system::{Conclusion, Defuzzifier, Membership, Output, SNorm, Sampling, System, TNorm};
 use fspid_numeric::scalar::{Interval, Scalar};
 
 /// Slices of the universe where an integral is enclosed piece by piece.
@@ -63,7 +63,11 @@ impl Masses {
             _ => None,
         });
         let sets: Option<Vec<_>> = sets.collect();
-        let reading = if sets.is_some() { reading } else { Reading::Unknown };
+        let reading = if sets.is_some() && joins_by_norms(system, output, index) {
+            reading
+        } else {
+            Reading::Unknown
+        };
         let spots =
             if reading == Reading::Unknown { Vec::new() } else { spots(universe, sampling) };
         let sets = sets.unwrap_or_default();
@@ -272,6 +276,14 @@ fn grade(system: &System, set: &Membership, at: Interval) -> Option<Interval> {
         // It may depend on the inputs.
         Membership::Formula { .. } => None,
     }
+}
+
+/// True if all that is concluded is shaped and joined by norms: a formula may make something of nothing.
+fn joins_by_norms(system: &System, output: &Output, index: usize) -> bool {
+    let conclusions = system.conclusions.iter().filter(|it| it.output == index);
+    let mut blocks = conclusions.filter_map(|it| system.parts.blocks.get(it.block));
+    matches!(output.aggregation, SNorm::Kind(_))
+        && blocks.all(|block| matches!(block.implication, TNorm::Kind(_)))
 }
 
 /// True if the joined set cannot jump with the strengths.

@@ -2,13 +2,15 @@
 
 use alloc::vec::Vec;
 
+use super::continuity::{Jumps, jumps_of};
 use super::field::Field;
-use super::firing::{Firing, Slope};
+use super::firing::{Firing, Slope, has_value, unknown_slope};
 use super::options::SurfaceOptions;
 use crate::audit::rule_base::{RulePosition, rule_base};
 use crate::audit::search::{Effort, Extreme, Objective, maximum};
+use crate::hedge::Hedge;
 use crate::norm::SNormKind;
-use crate::system::{Activation, Defuzzifier, System};
+use crate::system::{Activation, Defuzzifier, System, TNorm};
 use fspid_numeric::scalar::{Interval, Scalar};
 
 /// Boxes for each rule and term; a point is mostly found at once.
@@ -162,6 +164,10 @@ fn rivals(system: &System, rule: usize) -> Vec<Vec<usize>> {
             );
             output.aggregation.is(SNormKind::Maximum) && !sums
         });
+        // A formula may fall with the strength, and `not` makes much of little.
+        let own_block = system.parts.blocks.get(own.block);
+        let rises = !own.hedges.contains(&Hedge::Not)
+            && own_block.is_some_and(|it| matches!(it.implication, TNorm::Kind(_)));
         let block = |rule: usize| {
             let block = system.rules.get(rule)?.block;
             system.parts.blocks.get(block).map(|block| &block.implication)
@@ -172,7 +178,7 @@ fn rivals(system: &System, rule: usize) -> Vec<Vec<usize>> {
                 && other.hedges == own.hedges
                 && block(other.rule) == block(rule)
         });
-        if strongest_counts { same.map(|other| other.rule).collect() } else { Vec::new() }
+        if strongest_counts && rises { same.map(|other| other.rule).collect() } else { Vec::new() }
     });
     lists.collect()
 }
@@ -248,10 +254,13 @@ impl Firing<'_> {
         let x = self.inputs.get(input).copied().unwrap_or(Slope::zero());
         let Some(membership) = membership else { return Slope::zero() };
         let grade = self.grade_in(membership, x);
-        let smooth = match super::continuity::jumps_of(membership) {
-            super::continuity::Jumps::At(places) => places.is_empty(),
-            super::continuity::Jumps::Anywhere => false,
+        let smooth = match jumps_of(membership) {
+            Jumps::At(places) => places.is_empty(),
+            Jumps::Anywhere => false,
         };
-        if smooth { grade } else { super::firing::unknown_slope(grade.value) }
+        match smooth && has_value(membership, input, &self.inputs) {
+            true => grade,
+            false => unknown_slope(grade.value),
+        }
     }
 }

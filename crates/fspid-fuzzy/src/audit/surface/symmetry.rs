@@ -14,7 +14,7 @@ use crate::membership::{ShapeKind, Vertex};
 use crate::norm::SNormKind;
 use crate::system::{
     Activation, Antecedent, Conclusion, Consequent, Defuzzifier, FallbackValue, Input, Membership,
-    Output, Parts, Rule, RuleBlock, Sampling, Statement, Universe, Variable,
+    Output, Parts, Rule, RuleBlock, SNorm, Sampling, Statement, TNorm, Universe, Variable,
 };
 use fspid_numeric::scalar::Interval;
 
@@ -38,8 +38,8 @@ impl Mirror<'_> {
             (0..parts.inputs.len()).map(|input| self.input_terms(parts, input)).collect();
         let inputs = inputs?;
         let maps = Maps { inputs: &inputs, terms: &terms, output: index };
-        let kept =
-            parts.blocks.iter().all(|block| !block.enabled || maps.keep(block).unwrap_or(false));
+        let keeps = |block: &RuleBlock| joins_by_norms(block) && maps.keep(block).unwrap_or(false);
+        let kept = parts.blocks.iter().all(|block| !block.enabled || keeps(block));
         (kept && output.enabled).then_some(())
     }
 
@@ -88,8 +88,9 @@ impl Mirror<'_> {
 
     /// For each term of the output the one that is its image.
     fn output_terms(&self, output: &Output) -> Option<Vec<usize>> {
-        // This one depends on the order of the rules.
-        if output.aggregation.is(SNormKind::NormalizedSum) {
+        // These depend on the order of the rules.
+        let is_formula = matches!(output.aggregation, SNorm::Formula(_));
+        if is_formula || output.aggregation.is(SNormKind::NormalizedSum) {
             return None;
         }
         let all = output.terms.iter();
@@ -117,6 +118,12 @@ impl Mirror<'_> {
         });
         images.collect()
     }
+}
+
+/// True if a block joins by norms, which do not ask for an order.
+fn joins_by_norms(block: &RuleBlock) -> bool {
+    let joins = matches!(block.and, TNorm::Kind(_)) && matches!(block.or, SNorm::Kind(_));
+    joins && matches!(block.implication, TNorm::Kind(_))
 }
 
 /// Whether an output's method treats both directions alike.

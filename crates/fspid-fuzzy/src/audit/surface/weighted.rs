@@ -87,12 +87,20 @@ impl Firing<'_> {
                 .zip(&self.inputs)
                 .fold(Slope::constant(*constant), |sum, (&c, &x)| sum + Slope::constant(c) * x),
             Conclusion::Formula(formula) => {
+                let values: Vec<Interval> = self.inputs.iter().map(|it| it.value).collect();
+                // Without a value nobody knows what is answered in its place.
+                if !formula.has_value(&values) {
+                    return unknown_slope(Interval::ENTIRE);
+                }
                 let value = formula.evaluate(&self.inputs);
                 if is_continuous(formula) { value } else { unknown_slope(value.value) }
             }
             Conclusion::Set { lower: Some(_), .. } => unknown_slope(Interval::ENTIRE),
             Conclusion::Set { membership, lower: None } => {
                 let said = match (reading, membership) {
+                    (SetReading::InverseTsukamoto, Membership::Formula { .. }) => {
+                        unknown_slope(Interval::UNIT)
+                    }
                     (SetReading::InverseTsukamoto, _) => self.grade_in(membership, strength),
                     (SetReading::Tsukamoto, Membership::Shape { kind, params, height }) => {
                         let grade = (strength / Slope::constant(*height)).smaller(Slope::one());
