@@ -141,7 +141,8 @@ fn a_choice_that_lets_the_loop_grow_is_named() {
     let output = fspid(&["certify", "chosen.toml", "--cases", "choices"], folder.path());
     assert_eq!(code(&output), 1);
     let told = text(&output.stdout);
-    let left_out = "not in this claim  The claim is about the nominal numbers";
+    let left_out =
+        "not in this claim  Of what the dispersions choose among, the claim is about one choice";
     assert!(told.contains(left_out), "{told}");
     let missing = "PID: NOT PROVED at 2 of 4 choices of the dispersions: delay 30, aircraft navion; delay 30, aircraft cessna-172";
     assert!(told.contains(missing) && told.contains("PID: REFUTED: unstable"), "{told}");

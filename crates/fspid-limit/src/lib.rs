@@ -20,6 +20,7 @@ mod measure;
 mod programme;
 mod question;
 mod reach;
+mod still;
 mod travel;
 
 pub use bound::{Multipliers, prove};
@@ -28,6 +29,7 @@ pub use error::{LimitError, Refusal};
 pub use history::{Flown, fly_commands, measured};
 pub use measure::Measure;
 pub use programme::{Programme, Solution};
-pub use question::{Assumed, Question, SaidBeside, Still};
+pub use question::{Question, SaidBeside};
 pub use reach::{Limit, keeps_within, limit};
+pub use still::{Assumed, Still};
 pub use travel::Travel;

@@ -196,7 +196,7 @@ impl Two {
 
 /// True for 0, 1, 2 …
 fn is_count(number: f64) -> bool {
-    number >= 0.0 && libm::floor(number) == number
+    number >= 0.0 && libm::floor(number).total_cmp(&number).is_eq()
 }
 
 impl Two {

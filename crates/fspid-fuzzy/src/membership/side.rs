@@ -9,9 +9,6 @@ use fspid_numeric::scalar::Scalar;
 /// keeps a division by it from being 0/0.
 const LEAST_WIDTH: f64 = f64::from_bits(1);
 
-/// A foot that is further away is at infinity: an enclosure of infinity begins at the largest number there is.
-const FARTHEST: f64 = f64::MAX / 2.0;
-
 /// Straight from 0 at `foot` to 1 at `top` and beyond. A side of no width is a jump whose `top`
 /// belongs to the set; a `foot` at $-\infty$ makes the grade 1 everywhere.
 #[inline]
@@ -19,7 +16,8 @@ pub(super) fn rise<S: Scalar>(x: S, foot: S, top: S) -> S {
     let x = x.larger(S::constant(f64::NEG_INFINITY));
     let share = up_to_one((x - foot) / width(foot, top));
     let side = x.if_less(top, share, S::one());
-    foot.if_less(S::constant(-FARTHEST), S::one(), side)
+    // The other way round an enclosure of infinity, which begins at the largest number there is, would be open.
+    S::constant(f64::MIN).if_less(foot, side, S::one())
 }
 
 /// Straight from 1 up to `top` down to 0 at `foot`: [`rise`] seen in a mirror.
@@ -28,7 +26,7 @@ pub(super) fn fall<S: Scalar>(x: S, top: S, foot: S) -> S {
     let x = x.smaller(S::constant(f64::INFINITY));
     let share = up_to_one((foot - x) / width(top, foot));
     let side = top.if_less(x, share, S::one());
-    S::constant(FARTHEST).if_less(foot, S::one(), side)
+    foot.if_less(S::constant(f64::MAX), side, S::one())
 }
 
 /// The number moved into `[0, 1]`; NaN becomes 1, unlike [`Scalar::unit`].
