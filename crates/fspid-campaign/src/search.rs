@@ -298,7 +298,7 @@ fn tails(dispersion: &Dispersion) -> Vec<[f64; 2]> {
 }
 
 impl Counts {
-    /// " Of the flights 46 fail, and of 3 it is undecided whether they are stable at rest."; nothing where there are none.
+    /// " Of all that were asked 46 fail; 3 are undecided: …"; nothing where there are none.
     fn in_words(self) -> String {
         let told = [
             (self.failed, "fail"),

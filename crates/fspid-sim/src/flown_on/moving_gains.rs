@@ -95,7 +95,7 @@ impl MovingGains {
     /// an error that does not stand, for at a limit of an outer loop the pitch stands while they go; or an aircraft's set-point.
     pub(super) fn leave_what_is_held(self, pieces: &Pieces<'_>, moved: Moved) -> bool {
         let Some([fourth, fifth]) = pieces.last_fifths() else { return false };
-        if self.has_to_turn && pieces.shows_errors() && has_gone_off([fourth, fifth]) {
+        if self.has_to_turn && pieces.shows_errors() && has_gone_off([fourth, fifth], moved) {
             return true;
         }
         let [before, last, all] = [fourth, fifth, pieces.whole()].map(Span::off);
@@ -125,10 +125,12 @@ impl MovingGains {
     }
 }
 
-/// True where the error has become so much larger from one fifth of a flight to the next that what drifts would not.
-fn has_gone_off([before, last]: [Span; 2]) -> bool {
+/// True where the error has become so much larger from one fifth of a flight to the next that what drifts would not, nor chance
+/// where something moves it.
+fn has_gone_off([before, last]: [Span; 2], moved: Moved) -> bool {
     let [before_rad, last_rad] = [before, last].map(Span::error_off_rad);
-    last_rad > NEAR_RAD && last_rad >= GONE * before_rad
+    let times = if moved == Moved::Nothing { GONE } else { DOUBLED };
+    last_rad > NEAR_RAD && last_rad >= times * before_rad
 }
 
 /// All widths of actuator and sensors, rad.

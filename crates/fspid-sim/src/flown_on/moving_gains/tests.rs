@@ -213,20 +213,28 @@ fn an_aircraft_leaves_its_set_point_where_its_error_grows_by_a_quarter_from_one_
     let ends = Ends::of(&scenario, &controller);
     let of_plants = MovingGains::of(&scenario, &controller).expect("they move");
     let of_aircraft = MovingGains { has_to_turn: true, ..of_plants };
+    let rises_under =
+        |moved: Moved, may_drift: bool, gains: MovingGains, error_deg: fn(f64) -> f64| {
+            let mut pieces = Pieces::new(&scenario, &ends, PERIOD);
+            pieces.may_drift = may_drift;
+            for k in 1..=10 * PERIOD {
+                let moving_rad = error_deg(k as f64 / (10 * PERIOD) as f64).to_radians();
+                pieces.push(Shown { moving_rad, ..still() });
+            }
+            gains.leave_what_is_held(&pieces, moved)
+        };
     let rises = |may_drift: bool, gains: MovingGains, error_deg: fn(f64) -> f64| {
-        let mut pieces = Pieces::new(&scenario, &ends, PERIOD);
-        pieces.may_drift = may_drift;
-        for k in 1..=10 * PERIOD {
-            let moving_rad = error_deg(k as f64 / (10 * PERIOD) as f64).to_radians();
-            pieces.push(Shown { moving_rad, ..still() });
-        }
-        gains.leave_what_is_held(&pieces, Moved::Nothing)
+        rises_under(Moved::Nothing, may_drift, gains, error_deg)
     };
     // From 0.8 of the way to its end.
     assert!(rises(false, of_aircraft, |along| -5.0 * along * along));
     assert!(!rises(false, of_aircraft, |along| -5.0 * along.sqrt()), "it drifts");
     assert!(!rises(false, of_aircraft, |along| 0.99 * along * along), "it is there");
     assert!(!rises(false, of_plants, |along| -5.0 * along * along));
+    // Under noise it has to double, from 0.8 to 1.
+    let steep = |along: f64| 5.0 * libm::pow(along, 4.0);
+    assert!(rises_under(Moved::ByNoise, false, of_aircraft, steep));
+    assert!(!rises_under(Moved::ByNoise, false, of_aircraft, |along| 5.0 * along * along));
     assert!(!rises(true, of_aircraft, |along| -5.0 * along * along));
 }
 
