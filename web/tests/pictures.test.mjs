@@ -21,6 +21,10 @@ const LOOKS = [
 const SQUARE_PX = 10;
 const DIFFERENT = 40;
 const SHARE_ALLOWED = 0.02;
+// A machine that does much else draws late: a picture is taken again until it is the stored one, for so long at most.
+const FIRST_MS = 900;
+const AGAIN_MS = 1500;
+const TIMES = 20;
 
 let browser;
 before(async () => (browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox"] })));
@@ -86,15 +90,21 @@ for (const look of LOOKS) {
     mkdirSync(STORED, { recursive: true });
     for (const view of look.views) {
       await page.evaluate((id) => document.getElementById(id).click(), `tab-${view}`);
-      await page.waitForTimeout(900);
-      const now = await picture(page, bench);
+      await page.waitForTimeout(FIRST_MS);
+      let now = await picture(page, bench);
       const file = `${STORED}/${look.name}-${view}.png`;
       const left = file.replace(".png", ".now.png");
       if (process.env.PICTURES === "write") {
         writeFileSync(file, now);
         continue;
       }
-      const share = existsSync(file) ? await difference(bench, readFileSync(file), now) : 1;
+      const apart = async () => (existsSync(file) ? difference(bench, readFileSync(file), now) : 1);
+      let share = await apart();
+      for (let again = 0; share > SHARE_ALLOWED && existsSync(file) && again < TIMES; again += 1) {
+        await page.waitForTimeout(AGAIN_MS);
+        now = await picture(page, bench);
+        share = await apart();
+      }
       if (share > SHARE_ALLOWED) writeFileSync(left, now);
       else rmSync(left, { force: true });
       if (share > SHARE_ALLOWED) wrong.push(`${view}: ${(100 * share).toFixed(1)} % of its squares differ`);
