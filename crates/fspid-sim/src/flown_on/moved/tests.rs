@@ -212,14 +212,18 @@ fn turbulence_moves_a_flight_and_a_wind_does_not() {
 /// A gust along a way of 80.5 m until the last fifth begins.
 #[test]
 fn air_that_changes_in_the_last_fifth_changes_late() {
-    let gust = |start_m: f64| {
-        let amplitude_m_s = [0.0, 0.0, 2.0];
+    let sized = |down_m_s: f64, start_m: f64| {
+        let amplitude_m_s = [0.0, 0.0, down_m_s];
         Wind::FullCycle(FullCycle { amplitude_m_s, gradient_m: 10.0, start_m })
     };
+    let gust = |start_m: f64| sized(2.0, start_m);
     let is_late = |winds: Vec<Wind>| air_changes(&in_air(winds, None), 161);
     assert!(!is_late(vec![Wind::Steady(Steady { earth_m_s: [3.0, 0.0, 0.0] })]));
     assert!(!is_late(vec![gust(60.0)]), "it ends at 80 m");
     assert!(is_late(vec![gust(62.0)]), "it ends at 82 m");
+    // A hundredth of an updraught before it is none.
+    assert!(!is_late(vec![sized(-20.0, 10.0), sized(0.19, 80.5)]));
+    assert!(is_late(vec![sized(-20.0, 10.0), sized(0.21, 80.5)]));
 }
 
 /// The turbulence dies away from the end of the flight on, of 2 s on a grid of 10 ms.

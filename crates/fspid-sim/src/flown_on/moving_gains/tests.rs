@@ -246,21 +246,28 @@ fn an_aircraft_has_come_back_where_it_stood_for_as_long_as_its_flight_was() {
     let ends = Ends::of(&scenario, &controller);
     let of_plants = MovingGains::of(&scenario, &controller).expect("they move");
     let of_aircraft = MovingGains { has_to_turn: true, ..of_plants };
-    let has_come_back = |gains: MovingGains, moving: usize, left_rad: f64, off_m: f64| {
+    let climbed = |gains: MovingGains, moving: usize, left_rad: f64, [far_m, off_m]: [f64; 2]| {
         let mut pieces = Pieces::new(&scenario, &ends, PERIOD);
         for k in 0..10 * PERIOD {
             let side = if k % PERIOD < PERIOD / 2 { 1.0 } else { -1.0 };
             let is_moving = k < moving * PERIOD;
             let moving_rad = side * if is_moving { 0.1 } else { left_rad };
-            let outer = Outer { off: [if is_moving { 0.0 } else { side * off_m }, 0.0], mode: 0.0 };
+            let outer =
+                Outer { off: [if is_moving { far_m } else { side * off_m }, 0.0], mode: 0.0 };
             pieces.push(Shown { moving_rad, outer, ..still() });
         }
         gains.have_come_back(&pieces)
+    };
+    let has_come_back = |gains: MovingGains, moving: usize, left_rad: f64, off_m: f64| {
+        climbed(gains, moving, left_rad, [0.0, off_m])
     };
     assert!(has_come_back(of_aircraft, 5, 0.0019, 1.4));
     assert!(!has_come_back(of_aircraft, 5, 0.0021, 1.4), "the pitch moves");
     assert!(!has_come_back(of_aircraft, 5, 0.0019, 1.6), "the altitude does");
     assert!(!has_come_back(of_aircraft, 6, 0.0019, 1.4), "not for long enough");
+    // A fiftieth of all that it was off, where that is more than three metres.
+    assert!(climbed(of_aircraft, 5, 0.0019, [200.0, 1.9]));
+    assert!(!climbed(of_aircraft, 5, 0.0019, [200.0, 2.1]));
     assert!(!has_come_back(of_plants, 5, 0.0, 0.0), "a linear plant comes to rest");
 }
 
