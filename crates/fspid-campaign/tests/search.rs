@@ -104,17 +104,22 @@ fn a_flight_that_leaves_the_range_of_its_data_is_worse_than_one_that_does_not() 
     }
 }
 
+/// What is found of the campaign with one more change, by a few flights.
+fn searched(change: &str, measure: &str) -> (Campaign, Result<Worst, CampaignError>) {
+    let campaign = campaign_of("campaign.toml", &["loop.duration_s=5.0", change]);
+    let found = search::search(&campaign, &search::Question { budget: 40, ..asked(measure) });
+    (campaign, found)
+}
+
 /// "worst overshoot_pct found in 300 flights: none": the requirement was that of another controller.
 #[test]
 fn a_requirement_of_another_controller_is_not_asked_of_this_one() {
     let required = "requirement[]={ id = \"overshoot_pct\", measure = \"overshoot_pct\", most = 10.0, controller = \"CPID\" }";
-    let campaign = campaign_of("campaign.toml", &["loop.duration_s=5.0", required]);
-    let question = search::Question { budget: 40, ..asked("overshoot_pct") };
-    let found = search::search(&campaign, &question).expect("it is searched");
+    let (_, found) = searched(required, "overshoot_pct");
+    let found = found.expect("it is searched");
     assert!(found.value.is_some_and(|it| it > 0.0), "{found:?}");
     let required = required.replace("id = \"overshoot_pct\"", "id = \"of CPID\"");
-    let campaign = campaign_of("campaign.toml", &["loop.duration_s=5.0", &required]);
-    let refused = search::search(&campaign, &search::Question { budget: 40, ..asked("of CPID") });
+    let (_, refused) = searched(&required, "of CPID");
     assert!(matches!(refused, Err(CampaignError::Unknown { what: "measure", .. })), "{refused:?}");
 }
 
@@ -122,9 +127,8 @@ fn a_requirement_of_another_controller_is_not_asked_of_this_one() {
 #[test]
 fn what_no_measure_tells_is_counted_beside_the_worst() {
     let bounded = "controller.FSPID.output_limits_deg=[-0.02, 0.02]";
-    let campaign = campaign_of("campaign.toml", &["loop.duration_s=5.0", bounded]);
-    let question = search::Question { budget: 40, ..asked("iae_deg_s") };
-    let found = search::search(&campaign, &question).expect("it is searched");
+    let (campaign, found) = searched(bounded, "iae_deg_s");
+    let found = found.expect("it is searched");
     let text = found.text(&campaign);
     assert!(found.counts.undecided + found.counts.failed > 0, "{text}");
     assert!(text.contains("Of all that were asked"), "{text}");

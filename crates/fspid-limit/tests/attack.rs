@@ -123,6 +123,11 @@ fn scenario(random: &mut Random) -> Scenario {
     scenario
 }
 
+/// True of a flight whose commands are as still as it is taken for, until something happens.
+fn keeps_still(trace: &Trace, still: Option<Still>) -> bool {
+    still.is_none_or(|it| trace.command_rad.iter().take(it.until).all(|u| u.abs() <= it.within_rad))
+}
+
 fn is_noisy(scenario: &Scenario) -> bool {
     scenario.disturbances.iter().any(|it| it.is_noise() && it.entry() == Entry::Measurement)
 }
@@ -162,13 +167,8 @@ fn attack(seed: u64, scenarios: usize) -> Told {
             }
             Err(other) => panic!("{number}: {other} {scenario:#?}"),
         };
-        let keeps_still = |trace: &&Trace| {
-            let before = trace.command_rad.iter().take(still.map_or(0, |it| it.until));
-            still.is_none_or(|it| before.clone().all(|u| u.abs() <= it.within_rad))
-                || !is_noisy(&scenario)
-        };
         let flown = flight.traces.iter().filter(|it| it.outcome == Outcome::Completed);
-        for trace in flown.filter(keeps_still) {
+        for trace in flown.filter(|it| keeps_still(it, still) || !is_noisy(&scenario)) {
             let (found, way) = measured(
                 (measure, travel),
                 (&trace.setpoint_rad, &trace.theta_rad),

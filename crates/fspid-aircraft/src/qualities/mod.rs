@@ -69,7 +69,7 @@ pub struct Qualities {
     pub category: Category,
     /// Short period, load factor and control anticipation.
     pub short_period: Result<ShortPeriod, Absent>,
-    /// Damping of the short period, where nothing else of it is known, or it grows as well.
+    /// Damping of the short period; known also where its load is not, and where it swings and grows.
     pub short_period_damping: Result<Judgement, Absent>,
     /// Phugoid.
     pub phugoid: Result<Phugoid, Absent>,

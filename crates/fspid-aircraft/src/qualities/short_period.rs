@@ -63,8 +63,6 @@ pub struct ShortPeriod {
     pub load_per_alpha_g_rad: f64,
     /// Control anticipation parameter in rad²/s² for each multiple of gravity.
     pub cap: f64,
-    /// Damping alone.
-    pub damping_level: Judgement,
     /// Frequency alone.
     pub frequency_level: Judgement,
     /// The two together.
@@ -87,20 +85,17 @@ impl ShortPeriod {
         let load_per_alpha_g_rad = model.airspeed_m_s / model.gravity_m_s2 * lift_rate;
         let frequency = mode.natural_frequency_rad_s;
         let cap = frequency * frequency / load_per_alpha_g_rad;
-        let (damping, bounds) = (mode.damping_ratio, category.pick(DAMPING_BOUNDS));
-        let by_damping = Level::within(damping, bounds);
         Ok(Self {
             mode,
             lift_lag_s: 1.0 / lift_rate,
             load_per_alpha_g_rad,
             cap,
-            damping_level: Judgement::new(&DAMPING, damping, by_damping),
             frequency_level: Judgement::new(
                 &FREQUENCY,
                 cap,
                 Level::within(cap, category.pick(FREQUENCY_BOUNDS)),
             ),
-            cap_level: Judgement::new(&CAP, cap, cap_level(damping, cap, category)),
+            cap_level: Judgement::new(&CAP, cap, cap_level(mode.damping_ratio, cap, category)),
         })
     }
 }

@@ -49,7 +49,7 @@ pub(super) struct MovingGains {
     longest_period_s: f64,
     dt_s: f64,
     /// Speed and height drift beside; only what turns back is a swing.
-    has_to_turn: bool,
+    is_of_aircraft: bool,
 }
 
 impl MovingGains {
@@ -64,8 +64,8 @@ impl MovingGains {
         let longest_period_s =
             periods_s(scenario).map(|(_, period_s)| period_s).fold(0.0, f64::max);
         let dt_s = scenario.timing.dt_s();
-        let has_to_turn = scenario.plant.linear().is_none();
-        Some(Self { width_rad, longest_period_s, dt_s, has_to_turn })
+        let is_of_aircraft = scenario.plant.linear().is_none();
+        Some(Self { width_rad, longest_period_s, dt_s, is_of_aircraft })
     }
 
     /// True where the error at the end of a flight does not shrink.
@@ -88,14 +88,14 @@ impl MovingGains {
             }
             Moved::ByNoise => last_rad >= DOUBLED * before_rad,
         };
-        stays_or_grows && (turns || !self.has_to_turn)
+        stays_or_grows && (turns || !self.is_of_aircraft)
     }
 
     /// True where what is held is left: altitude or airspeed, which go away from what a mode holds or do not come back to it, with
     /// an error that does not stand, for at a limit of an outer loop the pitch stands while they go; or an aircraft's set-point.
     pub(super) fn leave_what_is_held(self, pieces: &Pieces<'_>, moved: Moved) -> bool {
         let Some([fourth, fifth]) = pieces.last_fifths() else { return false };
-        if self.has_to_turn && pieces.shows_errors() && has_gone_off([fourth, fifth], moved) {
+        if self.is_of_aircraft && pieces.shows_errors() && has_gone_off([fourth, fifth], moved) {
             return true;
         }
         let [before, last, all] = [fourth, fifth, pieces.whole()].map(Span::off);
@@ -115,7 +115,7 @@ impl MovingGains {
     /// True where an aircraft that is flown on has been so near a rest, within its limits, for as long as its flight was.
     pub(super) fn have_come_back(self, pieces: &Pieces<'_>) -> bool {
         let last = pieces.last(OWN_LENGTH);
-        self.has_to_turn && !last.meets() && Self::have_stood(pieces, last)
+        self.is_of_aircraft && !last.meets() && Self::have_stood(pieces, last)
     }
 
     fn have_stood(pieces: &Pieces<'_>, part: Span) -> bool {

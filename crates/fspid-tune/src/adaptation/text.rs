@@ -107,8 +107,20 @@ impl Answer {
                 "Whether {name} adapts is open: no two plants fly the same command, disturbances and air."
             );
         }
+        let told = self.what_helps();
+        match self.win.and_then(|it| it.interval) {
+            Some([lower, _]) if lower > 1.0 => {
+                format!("{told} Its error is larger than that of {} all the same.", self.beside())
+            }
+            _ => told,
+        }
+    }
+
+    /// Whether its adaptation and its answers to the moment help, in a sentence.
+    fn what_helps(&self) -> String {
+        let name = &self.controller;
         let (plant, moment) = (self.effect(Treatment::AsItIs), self.effect(Treatment::OtherPlants));
-        let told = match (plant, moment) {
+        match (plant, moment) {
             (Effect::Helps, Effect::Helps) => {
                 format!("{name} adapts to its plant, and it answers the moment.")
             }
@@ -135,12 +147,6 @@ impl Answer {
                 plant.words(),
                 moment.words()
             ),
-        };
-        match self.win.and_then(|it| it.interval) {
-            Some([lower, _]) if lower > 1.0 => {
-                format!("{told} Its error is larger than that of {} all the same.", self.beside())
-            }
-            _ => told,
         }
     }
 

@@ -212,7 +212,7 @@ fn an_aircraft_leaves_its_set_point_where_its_error_grows_by_a_quarter_from_one_
     let controller = self_tuner();
     let ends = Ends::of(&scenario, &controller);
     let of_plants = MovingGains::of(&scenario, &controller).expect("they move");
-    let of_aircraft = MovingGains { has_to_turn: true, ..of_plants };
+    let of_aircraft = MovingGains { is_of_aircraft: true, ..of_plants };
     let rises_under =
         |moved: Moved, may_drift: bool, gains: MovingGains, error_deg: fn(f64) -> f64| {
             let mut pieces = Pieces::new(&scenario, &ends, PERIOD);
@@ -245,7 +245,7 @@ fn an_aircraft_has_come_back_where_it_stood_for_as_long_as_its_flight_was() {
     let controller = self_tuner();
     let ends = Ends::of(&scenario, &controller);
     let of_plants = MovingGains::of(&scenario, &controller).expect("they move");
-    let of_aircraft = MovingGains { has_to_turn: true, ..of_plants };
+    let of_aircraft = MovingGains { is_of_aircraft: true, ..of_plants };
     let climbed = |gains: MovingGains, moving: usize, left_rad: f64, [far_m, off_m]: [f64; 2]| {
         let mut pieces = Pieces::new(&scenario, &ends, PERIOD);
         for k in 0..10 * PERIOD {
