@@ -16,6 +16,10 @@ fn grade<S: Scalar>(kind: &str, params: &[f64], x: S) -> S {
         "gaussian" => Gaussian::grade(&[p(0), p(1)], x),
         "bell" => S::one() / (S::one() + ((x - p(0)) / p(1)).abs().pow(p(2) + p(2))),
         "sigmoid" => S::one() / (S::one() + (-p(0) * (x - p(1))).exp()),
+        "triangle" => {
+            let sides = ((x - p(0)) / (p(1) - p(0))).smaller((p(2) - x) / (p(2) - p(1)));
+            sides.larger(S::zero())
+        }
         "block" => x.if_less(p(0), S::zero(), x.if_less(p(1), S::one(), S::zero())),
         other => panic!("unknown shape {other}"),
     }
@@ -221,6 +225,16 @@ fn the_bisector_of_two_sets_with_nothing_between_holds_the_gap() {
     let quadrature = Quadrature::new(-1.0, 5.0).expect("in order");
     let bisector = quadrature.bisector(&apart).expect("some area");
     assert!(bisector.encloses(Interval::between(1.0, 3.0)), "{bisector:?}");
+    assert!(bisector.width() < 2.0 + 1e-7, "not the whole range: {bisector:?}");
+}
+
+/// Two halves that meet where both of them vanish, in proportion to the distance: known to the root of what the area is known to.
+#[test]
+fn the_bisector_of_two_sets_that_meet_in_a_point_is_known_to_a_millionth() {
+    let meeting = Union::parse("triangle 0.5 0.0 1.0 2.0;triangle 0.5 2.0 3.0 4.0");
+    let quadrature = Quadrature::new(-1.0, 5.0).expect("in order");
+    let bisector = quadrature.bisector(&meeting).expect("some area");
+    assert!(bisector.contains(2.0) && bisector.width() < 6e-6, "{bisector:?}");
 }
 
 proptest! {

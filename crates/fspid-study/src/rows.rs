@@ -57,6 +57,10 @@ pub trait RowAnswers {
     /// # Errors
     /// What is wrong with the row.
     fn answer(&mut self, row: &[f64], line: &mut String) -> Result<(), String>;
+    /// What is to be known of the answers so far, which their lines do not say.
+    fn remarks(&self) -> Vec<String> {
+        Vec::new()
+    }
 }
 
 /// Answers every row of a CSV file, as [`answer_rows`] does. A regular file is checked from end to

@@ -7,7 +7,7 @@ use clap::{ArgGroup, Args};
 
 use super::{Format, Inputs, Which, json_text};
 use crate::argument::InFile;
-use crate::exit::{Failure, print};
+use crate::exit::{Failure, note, print};
 use fspid_scenario::supervisor::Question;
 use fspid_study::fuzzy_system::{self, SystemTable};
 use fspid_study::inference::{self, SupervisorTable};
@@ -91,7 +91,10 @@ fn table(table: &mut impl RowAnswers, path: &Path) -> Result<(), Failure> {
         rows::answer_file(table, path, &mut out)
     };
     match done {
-        Ok(_) => Ok(()),
+        Ok(_) => {
+            table.remarks().iter().for_each(|remark| note(format_args!("warning: {remark}")));
+            Ok(())
+        }
         Err(RowsError::Writing(error)) => Failure::of_writing(&error),
         Err(error) => Err(Failure::input(error)),
     }

@@ -4,7 +4,7 @@ use clap::Args;
 
 use super::{Format, Inputs, Which, drawings, json_text};
 use crate::argument::{Drawings, OutFile, count, written};
-use crate::exit::{Failure, print, wrote};
+use crate::exit::{Failure, note, print, wrote};
 use fspid_scenario::count as counts;
 use fspid_study::fuzzy_system::{SliceQuestion, slice};
 use fspid_study::output;
@@ -57,6 +57,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         nodes: arguments.nodes,
     };
     let slice = slice(&system, &question).map_err(Failure::input)?;
+    slice.remarks().iter().for_each(|remark| note(format_args!("warning: {remark}")));
     if let Some(path) = &arguments.csv {
         output::write(path, slice.csv())?;
         wrote(path);

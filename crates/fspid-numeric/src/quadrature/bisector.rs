@@ -6,6 +6,10 @@ use crate::scalar::{Interval, Scalar};
 /// Steps of Newton's method; beyond them the bracket is answered as it is.
 const STEPS: u32 = 60;
 
+/// A bracket is brought in from a side up to this share of the domain: the area known to 1e-13 of itself tells the sides of a
+/// point apart up to some 1e-7 where the curve vanishes in proportion to the distance.
+const SIDE_SHARE: f64 = 1e-9;
+
 /// Where the bisector may be, and a point of which the area on its left is known.
 #[derive(Clone, Copy, Debug)]
 struct Bracket {
@@ -76,6 +80,7 @@ impl Quadrature<'_> {
             }
         }
         self.enclosed(curve, bracket)
+            .unwrap_or_else(|| self.from_both_sides(curve, tolerance, bracket))
     }
 
     /// The bracket with its point elsewhere.
@@ -90,19 +95,39 @@ impl Quadrature<'_> {
     }
 
     /// The bracket, cut to the points that the curve's least height around its point allows: the
-    /// area missing is at least that height times the distance.
-    fn enclosed<C: Curve>(&self, curve: &C, bracket: Bracket) -> Interval {
+    /// area missing is at least that height times the distance. `None` where the curve may vanish there.
+    fn enclosed<C: Curve>(&self, curve: &C, bracket: Bracket) -> Option<Interval> {
         let Bracket { lower, upper, at, missing } = bracket;
         let whole = Interval::between(lower, upper);
         let reach = Interval::point(4.0 * missing.magnitude() / curve.at(at)).upper();
         let around = Interval::point(at) + Interval::between(-reach, reach);
-        let Some(window) = around.intersection(whole) else { return whole };
-        let height = curve.at(window).lower();
+        let height = curve.at(around.intersection(whole)?).lower();
         let distance = (Interval::point(missing.magnitude()) / Interval::point(height)).upper();
         if !(height > 0.0 && distance <= reach) {
-            return whole;
+            return None;
         }
         let near = Interval::point(at) + Interval::between(-distance, distance);
-        near.intersection(whole).unwrap_or(whole)
+        near.intersection(whole)
+    }
+
+    /// The bracket, brought in from both of its ends up to where nobody knows any more on which side of a point the bisector
+    /// lies: around a gap between two halves, or a point where the curve vanishes.
+    fn from_both_sides<C: Curve>(&self, curve: &C, tolerance: f64, bracket: Bracket) -> Interval {
+        let near = SIDE_SHARE * (self.upper - self.lower);
+        let side = |end: f64| {
+            let (mut known, mut open) = (end, bracket.at);
+            for _ in 0..STEPS {
+                if (open - known).abs() <= near {
+                    break;
+                }
+                let middle = 0.5 * known + 0.5 * open;
+                match self.moved(curve, tolerance, bracket, middle).cut() {
+                    Some(_) => known = middle,
+                    None => open = middle,
+                }
+            }
+            known
+        };
+        Interval::between(side(bracket.lower), side(bracket.upper))
     }
 }

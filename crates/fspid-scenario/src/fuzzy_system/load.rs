@@ -83,7 +83,12 @@ pub fn load(name: &str, options: Options<'_>) -> Result<Loaded, LoadError> {
         false if options.controller.is_some() => return Err(no_scenario()),
         false => read(name, &text, format, options)?,
     };
-    Ok(Loaded { system: changed(loaded.system, options)?, notes: loaded.notes })
+    let mut notes = loaded.notes;
+    // What the notes say of integrals is the file's.
+    if let (Some(sampling), false) = (options.sampling, notes.is_empty()) {
+        notes.push(format!("{name}: every integral is computed by `{sampling}` here, as was asked"));
+    }
+    Ok(Loaded { system: changed(loaded.system, options)?, notes })
 }
 
 fn no_scenario() -> LoadError {

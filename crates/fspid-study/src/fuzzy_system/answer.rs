@@ -255,16 +255,56 @@ fn in_words(value: f64) -> String {
 /// An answer that may be off by more than this share of its range is hardly one.
 const ROUGH: f64 = 1e-6;
 
+/// Why an answer can be rough.
+const WHY_ROUGH: &str = "the set has a gap where it is halved, or could not be integrated";
+
+/// The error bound of an answer that is hardly one.
+pub(super) fn rough_bound(output: &Output, answer: &Answer) -> Option<f64> {
+    let range = output.universe.map_or(f64::INFINITY, |it| it.upper - it.lower);
+    Some(answer.error_bound).filter(|bound| *bound > ROUGH * range)
+}
+
 /// The rule of an answer, and its error bound.
 fn remarks(output: &Output, answer: &Answer) -> String {
     let mut text = rule(output);
-    let range = output.universe.map_or(f64::INFINITY, |it| it.upper - it.lower);
-    match answer.error_bound {
-        bound if bound > ROUGH * range => {
-            text.push_str(&format!(", KNOWN ONLY WITHIN {bound:.1e}: it could not be integrated"));
-        }
-        bound if bound > 0.0 => text.push_str(&format!(", within {bound:.1e}")),
-        _ => {}
+    if let Some(bound) = rough_bound(output, answer) {
+        text.push_str(&format!(", KNOWN ONLY WITHIN {bound:.1e}: {WHY_ROUGH}"));
+    } else if answer.error_bound > 0.0 {
+        text.push_str(&format!(", within {:.1e}", answer.error_bound));
     }
     text
+}
+
+/// How many answers of each output were rough, and how rough, among many that are written without their bounds.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Roughness(Vec<(usize, f64)>);
+
+impl Roughness {
+    /// Counts the answers of all outputs to one question.
+    pub(super) fn count(&mut self, system: &System, answers: &[Answer]) {
+        self.0.resize(system.parts().outputs.len(), (0, 0.0));
+        let outputs = system.parts().outputs.iter().zip(answers);
+        for ((rough, worst), (output, answer)) in self.0.iter_mut().zip(outputs) {
+            if let Some(bound) = rough_bound(output, answer) {
+                *rough += 1;
+                *worst = bound.max(*worst);
+            }
+        }
+    }
+
+    /// How many answers of an output were rough, and the worst bound.
+    pub(super) fn of(&self, output: usize) -> Option<(usize, f64)> {
+        self.0.get(output).copied().filter(|(rough, _)| *rough > 0)
+    }
+
+    /// A sentence for each of these outputs that had rough answers.
+    pub(super) fn in_words(&self, system: &System, asked: &[usize]) -> Vec<String> {
+        let sentence = |&index: &usize| {
+            let ((rough, worst), output) = (self.of(index)?, system.parts().outputs.get(index)?);
+            let answers = if rough == 1 { "1 answer".to_owned() } else { format!("{rough} answers") };
+            let name = &output.name;
+            Some(format!("{answers} of `{name}` KNOWN ONLY WITHIN {worst:.1e}: {WHY_ROUGH}"))
+        };
+        asked.iter().filter_map(sentence).collect()
+    }
 }

@@ -2,7 +2,7 @@
 
 use fspid_fuzzy::system::{System, Workspace};
 
-use super::answer::{check, evaluate};
+use super::answer::{Roughness, check, evaluate};
 use crate::rows::RowAnswers;
 use fspid_diagnostics::lines::add;
 
@@ -13,6 +13,7 @@ pub struct SystemTable<'a> {
     workspace: Workspace,
     /// The answers of the row before, for outputs that keep them.
     previous: Vec<Option<f64>>,
+    roughness: Roughness,
 }
 
 impl<'a> SystemTable<'a> {
@@ -20,7 +21,7 @@ impl<'a> SystemTable<'a> {
     #[must_use]
     pub fn new(system: &'a System) -> Self {
         let previous = vec![None; system.parts().outputs.len()];
-        Self { system, workspace: system.workspace(), previous }
+        Self { system, workspace: system.workspace(), previous, roughness: Roughness::default() }
     }
 }
 
@@ -39,10 +40,11 @@ impl RowAnswers for SystemTable<'_> {
     }
 
     fn answer(&mut self, row: &[f64], line: &mut String) -> Result<(), String> {
-        let Self { system, workspace, previous } = self;
+        let Self { system, workspace, previous, roughness } = self;
         if system.evaluate_after(row, previous, workspace).is_err() {
             return evaluate(system, row, workspace);
         }
+        roughness.count(system, workspace.answers());
         for (index, value) in row.iter().enumerate() {
             let comma = if index > 0 { "," } else { "" };
             add(line, format_args!("{comma}{value:?}"));
@@ -56,5 +58,10 @@ impl RowAnswers for SystemTable<'_> {
         }
         line.push('\n');
         Ok(())
+    }
+
+    fn remarks(&self) -> Vec<String> {
+        let all: Vec<usize> = (0..self.system.parts().outputs.len()).collect();
+        self.roughness.in_words(self.system, &all)
     }
 }

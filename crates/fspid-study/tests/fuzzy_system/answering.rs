@@ -2,7 +2,7 @@
 
 use fspid_scenario::fuzzy_system::{LoadError, Options, load, parse};
 use fspid_study::fuzzy_system::{SliceQuestion, SystemTable, ask, slice};
-use fspid_study::rows::{RowsError, answer_rows};
+use fspid_study::rows::{RowAnswers, RowsError, answer_rows};
 
 use super::{TIP, tip, values};
 
@@ -153,6 +153,64 @@ fn an_output_without_an_answer_is_an_empty_cell_and_one_that_keeps_its_answer_ke
         text.replace("name = \"tip\"\nrange", "name = \"tip\"\nkeep_previous = true\nrange");
     let keeping = parse(&keeping, "tip.toml").expect("good");
     assert_eq!(run(&keeping), "service,food,tip\n2.5,5.0,\n5.0,5.0,15.0\n2.5,5.0,15.0\n");
+}
+
+/// Two equal triangles with a gap between them, whose conclusions are no outline of straight lines.
+const GAP: &str = "Engine: gap
+InputVariable: a
+  enabled: true
+  range: 0 1
+  lock-range: false
+  term: lo Ramp 1 0
+  term: hi Ramp 0 1
+OutputVariable: o
+  enabled: true
+  range: 0 1
+  lock-range: false
+  aggregation: Maximum
+  defuzzifier: Bisector 100
+  default: nan
+  lock-previous: false
+  term: x Triangle 0.1 0.2 0.4
+  term: y Triangle 0.6 0.8 0.9
+RuleBlock: r
+  enabled: true
+  conjunction: none
+  disjunction: none
+  implication: EinsteinProduct
+  activation: General
+  rule: if a is lo then o is x
+  rule: if a is hi then o is y
+";
+
+/// Tables and drawings of answers have no room for what a single answer says of itself.
+#[test]
+fn answers_that_are_hardly_known_are_told_beside_tables_and_slices() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("gap.fll");
+    std::fs::write(&path, GAP).expect("written");
+    let options = Options { sampling: Some("exact"), ..Options::default() };
+    let loaded = load(&path.display().to_string(), options).expect("good");
+    let last = loaded.notes.last().expect("what is asked in place of what the file says");
+    assert!(last.ends_with("every integral is computed by `exact` here, as was asked"), "{last}");
+    let system = loaded.system;
+    let text = ask(&system, &values(&["a=0.5"])).expect("good").text();
+    let told = "KNOWN ONLY WITHIN 1.0e-1: the set has a gap where it is halved";
+    assert!(text.contains(told) && text.contains("0.5000000"), "{text}");
+    let mut table = SystemTable::new(&system);
+    let mut rows = "a\n0.25\n0.5\n0.75\n".as_bytes();
+    answer_rows(&mut table, &mut rows, &mut Vec::new()).expect("good");
+    let remarks = table.remarks();
+    assert_eq!(remarks.len(), 1, "{remarks:?}");
+    assert!(remarks[0].starts_with(&format!("1 answer of `o` {told}")), "{remarks:?}");
+    let of = |nodes| {
+        let question = SliceQuestion { nodes: Some(nodes), ..SliceQuestion::default() };
+        slice(&system, &question).expect("good")
+    };
+    assert_eq!(of(3).remarks(), remarks);
+    let bound = of(3).json()["outputs"][0]["error_bound"].as_f64().expect("told");
+    assert!((bound - 0.1).abs() < 1e-6, "{bound}");
+    assert!(of(4).remarks().is_empty() && of(4).json()["outputs"][0]["error_bound"].is_null());
 }
 
 #[test]

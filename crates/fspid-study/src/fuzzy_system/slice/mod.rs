@@ -10,6 +10,7 @@ use crate::json::present;
 use fspid_plot::{LineFigure, LinePanel, Series, SeriesStyle, Surface, SurfaceKind, Svg};
 use fspid_scenario::supervisor::Refused;
 
+use super::answer::Roughness;
 use question::Asking;
 pub(super) use question::spans;
 
@@ -41,6 +42,7 @@ pub struct Slice<'a> {
     outputs: Vec<usize>,
     /// For each output its values, the first axis running fastest; NaN where there is no answer.
     values: Vec<Vec<f64>>,
+    roughness: Roughness,
 }
 
 /// Evaluates a slice.
@@ -73,6 +75,7 @@ impl Slice<'_> {
                 }
             }
             let answers = self.system.evaluate(&row, &mut workspace).unwrap_or_default();
+            self.roughness.count(self.system, answers);
             for (values, output) in values.iter_mut().zip(&self.outputs) {
                 let answer = answers.get(*output).and_then(|answer| answer.value);
                 values.push(answer.unwrap_or(f64::NAN));
@@ -104,6 +107,12 @@ impl Slice<'_> {
     pub fn fixed_in_words(&self) -> String {
         let pair = |(input, value): &(usize, f64)| format!("{} = {value}", self.input_name(*input));
         self.fixed.iter().map(pair).collect::<Vec<_>>().join(", ")
+    }
+
+    /// What is to be known of values that the drawings and the tables do not say: which of them are hardly known.
+    #[must_use]
+    pub fn remarks(&self) -> Vec<String> {
+        self.roughness.in_words(self.system, &self.outputs)
     }
 
     /// A figure for each output, with its name: a surface over two inputs, a curve over one.
@@ -146,7 +155,8 @@ impl Slice<'_> {
         let values = |(output, values): (&usize, &Vec<f64>)| {
             let values: Vec<Option<f64>> =
                 values.iter().map(|value| Some(*value).filter(|it| it.is_finite())).collect();
-            json!({ "output": self.output_name(*output), "values": values })
+            let worst = self.roughness.of(*output).map(|(_, bound)| bound);
+            present(json!({ "output": self.output_name(*output), "values": values, "error_bound": worst }))
         };
         let has_none = self.values.iter().flatten().any(|value| !value.is_finite());
         present(json!({

@@ -3,7 +3,7 @@
 use fspid_fuzzy::system::{Input, Membership, System, Universe};
 
 use super::{Question, Slice};
-use crate::fuzzy_system::answer::{check, named};
+use crate::fuzzy_system::answer::{Roughness, check, named};
 use fspid_diagnostics::known_words;
 use fspid_scenario::count;
 
@@ -58,7 +58,7 @@ impl<'a> Asking<'a> {
             fixed.extend(value.map(|value| (input, value)));
         }
         let outputs = self.outputs(question.output);
-        Some(Slice { system: self.system, axes, fixed, outputs, values: Vec::new() })
+        Some(Slice { system: self.system, axes, fixed, outputs, values: Vec::new(), roughness: Roughness::default() })
     }
 
     /// The position of an input by its name.
