@@ -96,6 +96,12 @@ pub fn bad_side(name: &str) -> Option<Bad> {
     if name == LEFT_VALIDITY_AT { Some(Bad::Low) } else { Metric::from_name(name)?.bad }
 }
 
+/// True for a measure with a sign that is asked for by its size, by the name of its column.
+#[must_use]
+pub fn is_of_size(name: &str) -> bool {
+    Metric::from_name(name).is_some_and(Metric::is_of_size)
+}
+
 /// The rows of a campaign: which columns they have, and how they are filled.
 #[derive(Clone, Debug)]
 pub struct Rows {

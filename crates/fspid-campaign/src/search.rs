@@ -19,7 +19,7 @@ use crate::campaign::Campaign;
 use crate::engine::{self, FlightResult};
 use crate::error::CampaignError;
 use crate::replay::{changes, command};
-use crate::rows::{LEFT_VALIDITY_AT, measure_names, measured};
+use crate::rows::{Bad, LEFT_VALIDITY_AT, bad_side, is_of_size, measure_names, measured};
 
 /// How far distributions without limits are searched, in standard deviations.
 const FARTHEST: f64 = 3.0;
@@ -41,7 +41,8 @@ const LONGEST_S: f64 = 1e12;
 pub struct Question {
     /// A measure, by the name of its column, or the id of a requirement.
     pub measure: String,
-    /// True where low values are bad. A requirement knows itself.
+    /// True where low values are bad; otherwise that side is which is known of the measure ([`bad_side`]), the size of one
+    /// that is asked for by its size, and the high side of the rest. A requirement knows itself.
     pub lowest: bool,
     /// The controller; the first one if none is named.
     pub controller: Option<String>,
@@ -131,6 +132,8 @@ struct Target<'a> {
     controller: String,
     place: usize,
     is_requirement: bool,
+    /// Which values are bad; those of a large size where neither side is.
+    bad: Option<Bad>,
     /// Share of each coordinate that is left out at its lower and upper end.
     tails: Vec<[f64; 2]>,
     /// What kept a flight from being flown that is not of the flight.
@@ -195,7 +198,23 @@ impl<'a> Target<'a> {
         let controller = name.to_owned();
         let tails = campaign.draws().in_cube(tails);
         let (failed, tally) = (OnceLock::new(), Tally::default());
-        Ok(Self { campaign, question, controller, place, is_requirement, tails, failed, tally })
+        let measure = &question.measure;
+        let bad = match bad_side(measure) {
+            _ if question.lowest => Some(Bad::Low),
+            None if !is_of_size(measure) => Some(Bad::High),
+            known => known,
+        };
+        Ok(Self {
+            campaign,
+            question,
+            controller,
+            place,
+            is_requirement,
+            bad,
+            tails,
+            failed,
+            tally,
+        })
     }
 
     /// Makes it as bad as can be found; flights flown.
@@ -247,7 +266,11 @@ impl<'a> Target<'a> {
         if ending.measured.is_failure() {
             return LOST * FAILED;
         }
-        let towards = |value: f64| if self.question.lowest { value } else { -value };
+        let towards = |value: f64| match self.bad {
+            Some(Bad::Low) => value,
+            Some(Bad::High) => -value,
+            None => -value.abs(),
+        };
         let (cost, absent) = match self.is_requirement {
             true => (self.slack(flight), NOT_EVALUATED),
             // Who never leaves the range is none of those who do.

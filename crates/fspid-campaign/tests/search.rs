@@ -104,6 +104,19 @@ fn a_flight_that_leaves_the_range_of_its_data_is_worse_than_one_that_does_not() 
     }
 }
 
+/// A final error is positive below the set-point: one of -30 % is no better than one of 10 %.
+#[test]
+fn the_worst_final_error_is_the_largest_whatever_its_sign() {
+    let short = "dispersion[]={ name = \"end\", path = \"loop.duration_s\", distribution = \"uniform\", lower = 1.5, upper = 4.0 }";
+    let (campaign, found) = searched(short, "final_error_pct");
+    let found = found.expect("found").value.expect("a value");
+    let of = |lowest: bool| {
+        let asked = search::Question { lowest, budget: 40, ..asked("final_error_pct") };
+        search::search(&campaign, &asked).expect("found").value.expect("a value")
+    };
+    assert!(found.abs() >= of(true).abs(), "{found} {}", of(true));
+}
+
 /// What is found of the campaign with one more change, by a few flights.
 fn searched(change: &str, measure: &str) -> (Campaign, Result<Worst, CampaignError>) {
     let campaign = campaign_of("campaign.toml", &["loop.duration_s=5.0", change]);

@@ -74,14 +74,23 @@ pub(crate) struct Arguments {
 struct AskedFront(Option<Vec<f64>>);
 
 fn front(text: &str) -> Result<AskedFront, String> {
-    let allowed = "a front is `travel`, or `travel=` with two or more numbers of degrees above 0 and at most 1e6, with commas between";
+    let allowed = "a front is `travel`, or `travel=` with two or more different numbers of degrees above 0 and at most 1e6, with commas between";
     if text.trim() == "travel" {
         return Ok(AskedFront(None));
     }
     let given = text.trim().strip_prefix("travel=").ok_or(allowed)?;
     let travel = |part: &str| part.trim().parse().ok().filter(|deg| *deg > 0.0 && *deg <= 1e6);
     let travels: Option<Vec<f64>> = given.split(',').map(travel).collect();
-    travels.filter(|it| it.len() > 1).map(|it| AskedFront(Some(it))).ok_or(allowed.to_owned())
+    travels
+        .filter(|it| it.len() > 1 && all_differ(it))
+        .map(|it| AskedFront(Some(it)))
+        .ok_or(allowed.to_owned())
+}
+
+fn all_differ(travels: &[f64]) -> bool {
+    let mut sorted = travels.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted.is_sorted_by(|low, high| low < high)
 }
 
 /// Holds a contest at every effort.

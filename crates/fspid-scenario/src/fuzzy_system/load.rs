@@ -86,7 +86,8 @@ pub fn load(name: &str, options: Options<'_>) -> Result<Loaded, LoadError> {
     let mut notes = loaded.notes;
     // What the notes say of integrals is the file's.
     if let (Some(sampling), false) = (options.sampling, notes.is_empty()) {
-        notes.push(format!("{name}: every integral is computed by `{sampling}` here, as was asked"));
+        notes
+            .push(format!("{name}: every integral is computed by `{sampling}` here, as was asked"));
     }
     Ok(Loaded { system: changed(loaded.system, options)?, notes })
 }

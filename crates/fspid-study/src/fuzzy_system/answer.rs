@@ -301,7 +301,8 @@ impl Roughness {
     pub(super) fn in_words(&self, system: &System, asked: &[usize]) -> Vec<String> {
         let sentence = |&index: &usize| {
             let ((rough, worst), output) = (self.of(index)?, system.parts().outputs.get(index)?);
-            let answers = if rough == 1 { "1 answer".to_owned() } else { format!("{rough} answers") };
+            let answers =
+                if rough == 1 { "1 answer".to_owned() } else { format!("{rough} answers") };
             let name = &output.name;
             Some(format!("{answers} of `{name}` KNOWN ONLY WITHIN {worst:.1e}: {WHY_ROUGH}"))
         };

@@ -153,6 +153,12 @@ impl Metric {
         }
     }
 
+    /// True for one with a sign whose size is what is asked for: both of its sides are bad.
+    #[must_use]
+    pub fn is_of_size(&self) -> bool {
+        self.bad.is_none() && self.asked.is_some_and(|measure| !measure.is_signed())
+    }
+
     /// True for one of a step.
     pub(crate) const fn is_of_step(&self) -> bool {
         matches!(self.value, Value::Step(_))

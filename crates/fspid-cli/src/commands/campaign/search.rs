@@ -21,7 +21,8 @@ pub(super) struct Arguments {
     /// What shall be as bad as can be: a measure as campaigns name it, or the id of a requirement.
     #[arg(long, value_name = "NAME")]
     measure: String,
-    /// Low values of the measure are the bad ones. Requirements know themselves.
+    /// Low values of the measure are the bad ones. Without it high ones are, of a final error its size, and of the time at
+    /// which the aircraft leaves its range the early ones. Requirements know themselves.
     #[arg(long)]
     lowest: bool,
     /// The controller; the first one if left out.

@@ -156,7 +156,9 @@ impl Slice<'_> {
             let values: Vec<Option<f64>> =
                 values.iter().map(|value| Some(*value).filter(|it| it.is_finite())).collect();
             let worst = self.roughness.of(*output).map(|(_, bound)| bound);
-            present(json!({ "output": self.output_name(*output), "values": values, "error_bound": worst }))
+            present(
+                json!({ "output": self.output_name(*output), "values": values, "error_bound": worst }),
+            )
         };
         let has_none = self.values.iter().flatten().any(|value| !value.is_finite());
         present(json!({

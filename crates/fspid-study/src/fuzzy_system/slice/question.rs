@@ -58,7 +58,14 @@ impl<'a> Asking<'a> {
             fixed.extend(value.map(|value| (input, value)));
         }
         let outputs = self.outputs(question.output);
-        Some(Slice { system: self.system, axes, fixed, outputs, values: Vec::new(), roughness: Roughness::default() })
+        Some(Slice {
+            system: self.system,
+            axes,
+            fixed,
+            outputs,
+            values: Vec::new(),
+            roughness: Roughness::default(),
+        })
     }
 
     /// The position of an input by its name.
