@@ -1,10 +1,11 @@
 //! Local stability of a nonlinear aircraft about each of its trims: the pitch loop, the lateral and airspeed dynamics, and
 //! every mode of the autopilot.
 
+mod blown;
+
 use fspid_core::Gains;
 use fspid_lti::{eigenvalues, modulus};
 
-use crate::air::{Steady, Wind, sum_at};
 use crate::aircraft::{AircraftPlant, Change, Standing, step_s};
 use crate::controller::Controller;
 use crate::error::SimError;
@@ -17,6 +18,7 @@ use crate::sensor::Seeing;
 use crate::stability::{
     GrowthAtRest, MODE_RADIUS, Undecided, Unstable, doubling_s, growth_of_plant, holds,
 };
+use blown::blown;
 
 /// A controller and the gains that it has at rest.
 type Held<'a> = (&'a Controller, Gains<f64>);
@@ -49,45 +51,41 @@ pub(crate) fn growth(
     }
     // Where a flight comes to later is in doubt at most.
     if found.holds() {
-        found.undecided = of_places(scenario, (aircraft, &standings), (controller, gains))?;
+        found.undecided =
+            of_places(scenario, (aircraft, &standings), (controller, gains), |_| true)?;
     }
     let last = standings.iter().rfind(|it| it.by != Change::Fuel);
-    if let Some((own, standing)) = in_wind_of_the_end(scenario).zip(last).filter(|_| found.holds())
-    {
-        let of_it =
-            standing.flown_in(&own).map(|own| of_modes(&own, standing, (controller, gains)));
+    for (own, standing) in blown(scenario).iter().zip(last.into_iter().cycle()) {
+        if !found.holds() {
+            break;
+        }
+        let mine = |mode: usize| own.modes.contains(&mode);
+        let of_it = standing
+            .flown_in(&own.scenario)
+            .map(|it| of_modes(&it, standing, (controller, gains), mine));
         let GrowthAtRest { certain, undecided } = of_it.transpose()?.unwrap_or_default();
-        let grown = certain.map(|Unstable { spectral_radius, .. }| {
-            Undecided::at_trim(Doubt::WindOfTheEnd { spectral_radius })
-        });
+        let grown =
+            certain.map(|it| Undecided::at_trim(own.seen_as.doubt(it.spectral_radius)));
         found.undecided = grown.or(undecided);
         if found.holds() {
-            found.undecided = of_places(&own, (aircraft, &standings), (controller, gains))?;
+            let aircraft = (aircraft, standings.as_slice());
+            found.undecided = of_places(&own.scenario, aircraft, (controller, gains), mine)?;
         }
     }
     Ok(found)
 }
 
-/// The first doubt of where a flight comes to.
+/// The first doubt of where these modes of a flight come to.
 fn of_places(
     scenario: &Scenario,
     (aircraft, standings): (&AircraftPlant, &[Standing]),
     held: Held<'_>,
+    asked: impl Fn(usize) -> bool,
 ) -> Result<Option<Undecided>, SimError> {
     let places = places(scenario, aircraft, standings, held);
-    let mut doubts = places.iter().map(|it| of_place(scenario, it, held));
+    let places = places.iter().filter(|it| it.led.is_none_or(|led| asked(led.mode)));
+    let mut doubts = places.map(|it| of_place(scenario, it, held));
     doubts.find_map(Result::transpose).transpose()
-}
-
-/// The scenario with an autopilot in the wind of its end as if it stayed, where that is another one than that of the start.
-fn in_wind_of_the_end(scenario: &Scenario) -> Option<Scenario> {
-    let weather = scenario.autopilot.as_ref().and(scenario.surroundings.weather.as_ref())?;
-    let [start, end] = [0.0, scenario.timing.end_s()]
-        .map(|time_s| sum_at(&weather.winds, &weather.course.place(time_s)).earth_m_s);
-    let mut own = scenario.clone();
-    own.surroundings.weather.as_mut()?.winds = vec![Wind::Steady(Steady { earth_m_s: end })];
-    let differs = start.iter().zip(&end).any(|(one, other)| (one - other).abs() > 0.0);
-    differs.then_some(own)
 }
 
 fn doubted(doubt: Doubt) -> GrowthAtRest {
@@ -120,7 +118,7 @@ fn of_standing(
     }
     Ok(found.and(match &scenario.autopilot {
         None => alone(scenario, (controller, gains)),
-        Some(_) => of_modes(scenario, standing, (controller, gains))?,
+        Some(_) => of_modes(scenario, standing, (controller, gains), |_| true)?,
     }))
 }
 
@@ -222,13 +220,14 @@ fn of_seeing(seeing: Seeing, spectral_radius: f64) -> Doubt {
     }
 }
 
-/// The first mode of the autopilot in which something grows.
+/// The first of these modes of the autopilot in which something grows.
 fn of_modes(
     scenario: &Scenario,
     standing: &Standing,
     held: Held<'_>,
+    asked: impl Fn(usize) -> bool,
 ) -> Result<GrowthAtRest, SimError> {
-    let modes = standing.modes(scenario);
+    let modes = standing.modes(scenario).into_iter().filter(|(number, _)| asked(*number));
     let last = scenario.autopilot.as_ref().map_or(0, |it| it.modes().len()).saturating_sub(1);
     let mut found = GrowthAtRest::default();
     for (number, begins_s) in modes {

@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
-use super::{GrowthAtRest, in_wind_of_the_end, of_mode};
+use super::blown::{SeenAs, blown};
+use super::{GrowthAtRest, of_mode};
 use crate::air::{Along, Steady, TableRow, Wind, WindTable};
-use crate::autopilot::{Autopilot, Moves, OuterLoop, Quantity};
+use crate::autopilot::{Autopilot, Engagement, Mode, Moves, OuterLoop, Quantity};
 use crate::controller::Controller;
 use crate::in_tests::{ALTITUDE_M, DT_S, SPEED_M_S, mode, navion, outer, pitch, scenario};
 use crate::rest::Doubt;
@@ -52,7 +53,7 @@ fn in_winds(scenario: Scenario, winds: Vec<Wind>) -> Scenario {
 fn a_mode_is_asked_in_the_wind_of_the_end_where_that_is_another_than_at_the_start() {
     let end = [-4.0, 2.0, 0.5];
     let constant = steady([-1.0, 3.0, 0.0]);
-    let asked = |winds: Vec<Wind>| in_wind_of_the_end(&in_winds(flight(Vec::new()), winds));
+    let asked = |winds: Vec<Wind>| blown(&in_winds(flight(Vec::new()), winds));
     for (winds, expected) in [
         (vec![], None),
         (vec![constant.clone()], None),
@@ -67,14 +68,62 @@ fn a_mode_is_asked_in_the_wind_of_the_end_where_that_is_another_than_at_the_star
         (vec![constant, table([[0.0; 3], [0.0; 3], end, end])], Some([-5.0, 5.0, 0.5])),
     ] {
         let found = asked(winds.clone());
-        let weather = found.as_ref().and_then(|it| it.surroundings.weather.as_ref());
-        let found = weather.map(|it| it.winds.clone());
-        assert_eq!(found, expected.map(|end| vec![steady(end)]), "{winds:?}");
+        let found: Vec<_> = found
+            .iter()
+            .map(|it| (winds_of(&it.scenario), it.modes.as_slice(), it.seen_as))
+            .collect();
+        let expected = expected.map(|end| (vec![steady(end)], [0].as_slice(), SeenAs::AtTheEnd));
+        assert_eq!(found, Vec::from_iter(expected), "{winds:?}");
     }
     // Nobody but an autopilot sees the ground.
     let alone = scenario(navion(), None);
     let winds = vec![table([[0.0; 3], [0.0; 3], [0.0; 3], end])];
-    assert!(in_wind_of_the_end(&in_winds(alone, winds)).is_none());
+    assert!(blown(&in_winds(alone, winds)).is_empty());
+}
+
+fn winds_of(scenario: &Scenario) -> Vec<Wind> {
+    scenario.surroundings.weather.as_ref().map_or(Vec::new(), |it| it.winds.clone())
+}
+
+/// Modes one after the other of which each turns to a heading or flies a bank, deg, or neither.
+fn turning(turns: &[(Option<f64>, f64)]) -> Scenario {
+    let heading = outer("heading", Quantity::Heading, Moves::Bank, [1.0, 0.0, 0.0]);
+    let modes = turns.iter().enumerate().map(|(place, &(heading_deg, bank_deg))| {
+        let engaged: &[usize] = if heading_deg.is_some() { &[0] } else { &[] };
+        let target = heading_deg
+            .map(|it| Engagement { quantity: Quantity::Heading, target: it.to_radians() });
+        let mut own = mode("turn", engaged);
+        own.name = format!("turn {place}");
+        own.entry.at_s = 10.0 * place as f64;
+        Mode { targets: Vec::from_iter(target), bank_rad: bank_deg.to_radians(), ..own }
+    });
+    let autopilot = Autopilot::new(vec![heading], None, None, modes.collect());
+    scenario(navion(), Some(autopilot.expect("makes sense")))
+}
+
+/// It was asked in the wind as it blows on the heading of the start alone.
+#[test]
+fn a_mode_is_asked_on_the_heading_that_it_turns_to_and_the_next_on_the_one_that_it_finds() {
+    let wind = [5.0, 0.0, 0.0];
+    let asked = |turns: &[(Option<f64>, f64)]| {
+        let found = blown(&in_winds(turning(turns), vec![steady(wind)]));
+        let of = |it: &super::blown::Blown| {
+            assert_eq!(winds_of(&it.scenario), [steady(wind)]);
+            assert_eq!(it.seen_as, SeenAs::OnAnotherHeading);
+            let course = it.scenario.surroundings.weather.as_ref().map(|it| it.course);
+            let degrees = course.expect("there").heading_rad.to_degrees();
+            (degrees.round(), it.modes.clone())
+        };
+        found.iter().map(of).collect::<Vec<_>>()
+    };
+    assert_eq!(asked(&[(None, 0.0), (Some(0.0), 0.0), (Some(360.0), 0.0)]), []);
+    assert_eq!(
+        asked(&[(None, 0.0), (Some(180.0), 0.0), (None, 0.0), (Some(90.0), 0.0)]),
+        [(180.0, vec![1, 2]), (90.0, vec![3])]
+    );
+    // A turn without end comes to every heading, and what follows it keeps any; a bank that a loop moves is none.
+    assert_eq!(asked(&[(None, 0.0), (None, 20.0), (None, 0.0)]), [(180.0, vec![1, 2])]);
+    assert_eq!(asked(&[(Some(0.0), 20.0)]), []);
 }
 
 fn vertical_speed(gains: [f64; 3]) -> OuterLoop {

@@ -141,6 +141,15 @@ pub enum Doubt {
         /// Spectral radius of everything that the mode engages.
         spectral_radius: f64,
     },
+    /// In the wind as it blows on a heading that a mode of the autopilot turns to, that mode grows.
+    #[error(
+        "in the wind as it blows on a heading that a mode of the autopilot turns to, that mode is unstable ({}): a longer flight shows it",
+        in_words(*spectral_radius)
+    )]
+    WindOnAHeading {
+        /// Spectral radius of everything that the mode engages.
+        spectral_radius: f64,
+    },
     /// The trim of an aircraft lies on a kink of its data, or at a jump of its engine, where no linear model is that of its small
     /// motions.
     #[error(
@@ -221,6 +230,7 @@ impl Doubt {
             | Self::Led { .. }
             | Self::LedNowhere(_)
             | Self::WindOfTheEnd { .. }
+            | Self::WindOnAHeading { .. }
             | Self::Kink
             | Self::FastMotion
             | Self::OuterGains
@@ -261,6 +271,7 @@ mod tests {
                 Doubt::HeldOn { spectral_radius },
                 Doubt::Led { led, spectral_radius },
                 Doubt::WindOfTheEnd { spectral_radius },
+                Doubt::WindOnAHeading { spectral_radius },
             ] {
                 let words = doubt.to_string();
                 assert!(words.contains("it grows within a few samples"), "{words}");
