@@ -64,8 +64,7 @@ pub(crate) fn growth(
             .flown_in(&own.scenario)
             .map(|it| of_modes(&it, standing, (controller, gains), mine));
         let GrowthAtRest { certain, undecided } = of_it.transpose()?.unwrap_or_default();
-        let grown =
-            certain.map(|it| Undecided::at_trim(own.seen_as.doubt(it.spectral_radius)));
+        let grown = certain.map(|it| Undecided::at_trim(own.seen_as.doubt(it.spectral_radius)));
         found.undecided = grown.or(undecided);
         if found.holds() {
             let aircraft = (aircraft, standings.as_slice());

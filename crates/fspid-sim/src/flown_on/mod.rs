@@ -26,7 +26,7 @@ use crate::scenario::Scenario;
 use crate::signal::{Disturbance, Entry};
 use crate::trace::{EndCause, Outcome, Trace};
 use moved::{Afterwards, Moved, changes_late, has_swings, held_on, is_noisy, swings_by_command};
-use moving_gains::MovingGains;
+use moving_gains::{MovingGains, leave_what_a_mode_holds};
 use pieces::{Outer, Pieces, Shown};
 
 /// So many times as long a flight is flown on.
@@ -70,6 +70,7 @@ pub(crate) fn doubt(
         return in_doubt(
             is_linear
                 || is_lost(trace.outcome, swings_itself(), &pieces)
+                || leave_at_limits(&pieces, moved)
                 || gains.is_some_and(|it| has_gone_away(trace.outcome, it, &pieces, moved)),
         );
     }
@@ -141,11 +142,14 @@ fn pieces_of<'a>(scenario: &Scenario, ends: &'a Ends, trace: &Trace) -> Pieces<'
 fn outer_of(trace: &Trace) -> impl Fn(usize) -> Outer {
     let held = [["altitude_m", "altitude_target_m"], ["airspeed_m_s", "airspeed_target_m_s"]];
     let held = held.map(|names| names.map(|name| trace.column(name)));
+    let lateral = ["bank_rad", "aileron_rad"].map(|name| trace.column(name));
     let modes = trace.column("mode");
     move |k| {
         let at = |column: Option<&[f64]>| column.and_then(|it| it.get(k)).copied();
         let off = held.map(|[is, wanted]| Some(at(is)? - at(wanted)?));
-        Outer { off: off.map(Option::unwrap_or_default), mode: at(modes).unwrap_or_default() }
+        let lateral_rad = lateral.map(|it| at(it).unwrap_or_default());
+        let mode = at(modes).unwrap_or_default();
+        Outer { off: off.map(Option::unwrap_or_default), mode, lateral_rad }
     }
 }
 
@@ -159,7 +163,8 @@ fn outer_at(instant: &Instant) -> Outer {
         aircraft.altitude_m - wanted(Quantity::Altitude),
         aircraft.airspeed_m_s - wanted(Quantity::Airspeed),
     ];
-    Outer { off, mode: f64::from(autopilot.mode) }
+    let lateral_rad = [aircraft.bank_rad, aircraft.aileron_rad];
+    Outer { off, mode: f64::from(autopilot.mode), lateral_rad }
 }
 
 /// What comes to rest, or swings: the error of the pitch loop; with an autopilot, whose swings move the set-point, the pitch itself.
@@ -264,6 +269,7 @@ fn doubt_flown_on(
         None => {
             pieces.swings_on(moved, moves)
                 || is_lost(outcome, swings_itself, &pieces)
+                || leave_at_limits(&pieces, moved)
                 || gains.is_some() && diverged(outcome)
         }
     };
@@ -294,6 +300,13 @@ fn diverged(outcome: Outcome) -> bool {
 /// True of a flight with gains that move that is lost by them: it diverged, or went away from what is held.
 fn has_gone_away(outcome: Outcome, gains: MovingGains, pieces: &Pieces<'_>, moved: Moved) -> bool {
     diverged(outcome) || gains.leave_what_is_held(pieces, moved)
+}
+
+/// True of an aircraft that leaves, at a limit, the altitude or the airspeed that a mode holds: its elevator is at its stop, or what
+/// an outer loop may ask for does not suffice.
+fn leave_at_limits(pieces: &Pieces<'_>, moved: Moved) -> bool {
+    let meet = pieces.last_fifths().is_some_and(|it| it.iter().all(|part| part.meets()));
+    meet && leave_what_a_mode_holds(pieces, moved)
 }
 
 /// True of an aircraft that ends early out of a swing at limits, or on its back at them; without either it comes down to the ground

@@ -98,13 +98,7 @@ impl MovingGains {
         if self.is_of_aircraft && pieces.shows_errors() && has_gone_off([fourth, fifth], moved) {
             return true;
         }
-        let [before, last, all] = [fourth, fifth, pieces.whole()].map(Span::off);
-        let times = if moved == Moved::Nothing { STAYS } else { DOUBLED };
-        let goes = |place: usize| {
-            let [[_, before], [moves, last], [_, all]] = [before, last, all].map(|it| it[place]);
-            last > NEAR[place] && last >= times * before && moves > STANDS * all
-        };
-        fourth.and(fifth).is_of_one_mode() && (0..NEAR.len()).any(goes)
+        leave_what_a_mode_holds(pieces, moved)
     }
 
     /// True where an aircraft's flight ends so near a rest that its gains are those of the rest.
@@ -123,6 +117,18 @@ impl MovingGains {
         let stands = |place: usize| moves[place][0] <= NEAR[place].max(STANDS * all[place][1]);
         pieces.moves_by_at_most(part, STANDS) && (0..NEAR.len()).all(stands)
     }
+}
+
+/// True where altitude or airspeed go away from what one mode holds through the last two fifths, or do not come back to it.
+pub(super) fn leave_what_a_mode_holds(pieces: &Pieces<'_>, moved: Moved) -> bool {
+    let Some([fourth, fifth]) = pieces.last_fifths() else { return false };
+    let [before, last, all] = [fourth, fifth, pieces.whole()].map(Span::off);
+    let times = if moved == Moved::Nothing { STAYS } else { DOUBLED };
+    let goes = |place: usize| {
+        let [[_, before], [moves, last], [_, all]] = [before, last, all].map(|it| it[place]);
+        last > NEAR[place] && last >= times * before && moves > STANDS * all
+    };
+    fourth.and(fifth).is_of_one_mode() && (0..NEAR.len()).any(goes)
 }
 
 /// True where the error has become so much larger from one fifth of a flight to the next that what drifts would not, nor chance

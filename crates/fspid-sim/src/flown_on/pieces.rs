@@ -1,5 +1,7 @@
 //! A flight in pieces: how far error and command move in each, and which of them meet a limit.
 
+use fspid_aircraft::{ForceModel, Range};
+
 use super::moved::Moved;
 use crate::held_limits::{Ends, Moves};
 use crate::scenario::Scenario;
@@ -80,6 +82,8 @@ pub(super) struct Outer {
     pub(super) off: [f64; 2],
     /// Number of the mode.
     pub(super) mode: f64,
+    /// Bank and aileron, rad.
+    pub(super) lateral_rad: [f64; 2],
 }
 
 /// What error, command and elevator do over some samples, and whether a limit was met in them.
@@ -93,9 +97,14 @@ pub(super) struct Span {
     /// Of [`Outer::off`], and of the modes.
     off: [Reach; 2],
     modes: Reach,
+    bank: Reach,
+    /// How far the bank went, there and back.
+    bank_way_rad: f64,
     samples: usize,
     /// At how many of them a limit was met.
     met: usize,
+    /// At how many of them the aileron stood at one of its stops.
+    aileron_met: usize,
 }
 
 impl Span {
@@ -106,8 +115,11 @@ impl Span {
         elevator: Reach::NONE,
         off: [Reach::NONE; 2],
         modes: Reach::NONE,
+        bank: Reach::NONE,
+        bank_way_rad: 0.0,
         samples: 0,
         met: 0,
+        aileron_met: 0,
     };
 
     pub(super) fn and(self, other: Self) -> Self {
@@ -118,14 +130,17 @@ impl Span {
             elevator: self.elevator.and(other.elevator),
             off: [0, 1].map(|place| self.off[place].and(other.off[place])),
             modes: self.modes.and(other.modes),
+            bank: self.bank.and(other.bank),
+            bank_way_rad: self.bank_way_rad + other.bank_way_rad,
             samples: self.samples + other.samples,
             met: self.met + other.met,
+            aileron_met: self.aileron_met + other.aileron_met,
         }
     }
 
     /// True where a limit was met.
     pub(super) const fn meets(self) -> bool {
-        self.met > 0
+        self.met > 0 || self.aileron_met > 0
     }
 
     pub(super) fn error_size_rad(self) -> f64 {
@@ -161,6 +176,12 @@ impl Span {
         self.way_rad >= TURNS * self.error.size_rad()
     }
 
+    /// True where the bank went there and back, and the aileron stood at its stops for as long.
+    fn banks_at_stops(self) -> bool {
+        self.aileron_met * AT_LIMITS >= self.samples
+            && self.bank_way_rad >= TURNS * self.bank.size_rad()
+    }
+
     fn of(spans: &[Self]) -> Self {
         spans.iter().fold(Self::NONE, |all, one| all.and(*one))
     }
@@ -169,6 +190,8 @@ impl Span {
 /// A flight in pieces of one length; the last may be shorter.
 pub(super) struct Pieces<'a> {
     ends: &'a Ends,
+    /// Travel of the aileron, of an aircraft that has one.
+    aileron_rad: Option<Range>,
     pub(super) length: usize,
     /// An error that moves by no more has not moved for a sensor of such a resolution.
     unseen_rad: f64,
@@ -185,8 +208,10 @@ impl<'a> Pieces<'a> {
             scenario.surroundings.pitch_sensor.map_or(0.0, |it| it.model().resolution);
         let unseen_rad = UNSEEN * resolution_rad;
         let may_drift = scenario.autopilot.is_some();
+        let aircraft = scenario.plant.aircraft();
+        let aileron_rad = aircraft.map(|it| it.aircraft().model().travel().aileron_rad);
         let (samples, all, before) = (0, Vec::new(), None);
-        Self { ends, length, unseen_rad, may_drift, samples, all, before }
+        Self { ends, aileron_rad, length, unseen_rad, may_drift, samples, all, before }
     }
 
     /// True where what moves is the error of the pitch loop, and not the pitch itself.
@@ -205,6 +230,9 @@ impl<'a> Pieces<'a> {
                 command_rad - before.command_rad,
                 elevator_rad - before.elevator_rad,
             );
+        let [[bank_rad, aileron_rad], [bank_before_rad, _]] =
+            [shown, before].map(|it| it.outer.lateral_rad);
+        let is_at_a_stop = |it: Range| aileron_rad <= it.min || aileron_rad >= it.max;
         let sample = Span {
             error: Reach::at(moving_rad),
             way_rad: (moving_rad - before.moving_rad).abs(),
@@ -212,8 +240,11 @@ impl<'a> Pieces<'a> {
             elevator: Reach::at(elevator_rad),
             off: shown.outer.off.map(Reach::at),
             modes: Reach::at(shown.outer.mode),
+            bank: Reach::at(bank_rad),
+            bank_way_rad: (bank_rad - bank_before_rad).abs(),
             samples: 1,
             met: usize::from(meets),
+            aileron_met: usize::from(self.aileron_rad.is_some_and(is_at_a_stop)),
         };
         self.before = Some(shown);
         if self.samples.is_multiple_of(self.length) {
@@ -316,7 +347,15 @@ impl<'a> Pieces<'a> {
         let times = if moved == Moved::Nothing { STAYS } else { GROWN_IN_NOISE };
         let is_at_limits = fourth.is_at_limits() && fifth.is_at_limits();
         let swings = !self.may_drift || end.turns();
-        is_at_limits && swings && !stands && self.grows(times)
+        (is_at_limits && swings && !stands && self.grows(times)) || self.banks_on(times)
+    }
+
+    /// True where the bank swings at the stops of the aileron through the last two fifths, and does not shrink.
+    fn banks_on(&self, times: f64) -> bool {
+        let [.., fourth, fifth] = self.fifths();
+        let stands = self.stands(fourth.and(fifth), |it| it.bank);
+        let at_stops = fourth.banks_at_stops() && fifth.banks_at_stops();
+        at_stops && !stands && fifth.bank.size_rad() >= times * fourth.bank.size_rad()
     }
 
     /// True where limits are met again and again at the end of a flight.
