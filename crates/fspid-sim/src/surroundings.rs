@@ -72,6 +72,13 @@ pub struct Weather {
     pub turbulence: Option<Turbulence>,
 }
 
+/// A velocity over ground, north, east and down, along the axes of who flies level on a heading: ahead, to the right, down. That of
+/// the opposite heading is its inverse.
+pub(crate) fn seen([north, east, down]: [f64; 3], heading_rad: f64) -> [f64; 3] {
+    let (sine, cosine) = sin_cos(heading_rad);
+    [north * cosine + east * sine, east * cosine - north * sine, down]
+}
+
 impl Course {
     /// Where the aircraft is at a time. It drifts with no wind: a linear model has small gusts.
     #[must_use]

@@ -9,7 +9,7 @@ pub(super) const DUTCH_ROLL: Requirement = Requirement {
     title: "Dutch roll",
     clause: "MIL-F-8785C 3.3.1.1, table VI",
     confidence: Confidence::Transcribed,
-    note: "damping, its product with the frequency, and the frequency; more damping for large ratios of roll to sideslip is not asked for here",
+    note: "damping, its product with the frequency, and the frequency; the more damping that large ratios of roll to sideslip take (3.3.1.1, frequency squared times ratio above 20) is NOT ASKED FOR here",
 };
 
 /// Time constant of the roll.

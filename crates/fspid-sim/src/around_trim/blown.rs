@@ -6,6 +6,7 @@ use crate::air::{Steady, Wind, sum_at};
 use crate::autopilot::{Autopilot, Mode, Moves, Quantity, Target};
 use crate::rest::Doubt;
 use crate::scenario::Scenario;
+use crate::surroundings::seen;
 
 /// A scenario in a wind as if it stayed, and the numbers of the modes that come to it.
 #[derive(Clone, Debug)]
@@ -76,20 +77,19 @@ fn add(all: &mut Vec<Blown>, mode: usize, (scenario, seen_as): (Scenario, SeenAs
     }
 }
 
-/// The scenario as if this wind stayed, on a heading.
+/// The scenario as if this wind stayed, turned as it is seen on a heading: the aircraft keeps the heading of its start.
 fn in_it(scenario: &Scenario, earth_m_s: [f64; 3], heading_rad: f64) -> Scenario {
     let mut own = scenario.clone();
     if let Some(weather) = &mut own.surroundings.weather {
+        let start_rad = weather.course.heading_rad;
+        let is_turned = (heading_rad - start_rad).abs() > 0.0;
+        let earth_m_s = match is_turned {
+            true => seen(seen(earth_m_s, heading_rad), -start_rad),
+            false => earth_m_s,
+        };
         weather.winds = vec![Wind::Steady(Steady { earth_m_s })];
-        weather.course.heading_rad = heading_rad;
     }
     own
-}
-
-/// A wind along the axes of an aircraft that flies straight on a heading: ahead, to the right, down.
-fn seen([north, east, down]: [f64; 3], heading_rad: f64) -> [f64; 3] {
-    let (sine, cosine) = crate::math::sin_cos(heading_rad);
-    [north * cosine + east * sine, east * cosine - north * sine, down]
 }
 
 fn is_same(one: [f64; 3], other: [f64; 3]) -> bool {

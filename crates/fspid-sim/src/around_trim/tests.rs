@@ -108,21 +108,20 @@ fn a_mode_is_asked_on_the_heading_that_it_turns_to_and_the_next_on_the_one_that_
     let asked = |turns: &[(Option<f64>, f64)]| {
         let found = blown(&in_winds(turning(turns), vec![steady(wind)]));
         let of = |it: &super::blown::Blown| {
-            assert_eq!(winds_of(&it.scenario), [steady(wind)]);
             assert_eq!(it.seen_as, SeenAs::OnAnotherHeading);
-            let course = it.scenario.surroundings.weather.as_ref().map(|it| it.course);
-            let degrees = course.expect("there").heading_rad.to_degrees();
-            (degrees.round(), it.modes.clone())
+            let [Wind::Steady(blows)] = winds_of(&it.scenario)[..] else { panic!("one wind") };
+            (blows.earth_m_s.map(|it| it.round() + 0.0), it.modes.clone())
         };
         found.iter().map(of).collect::<Vec<_>>()
     };
     assert_eq!(asked(&[(None, 0.0), (Some(0.0), 0.0), (Some(360.0), 0.0)]), []);
+    // From the left of an aircraft that flies to the east comes what blows to the north: to its left, which is the west of the start.
     assert_eq!(
         asked(&[(None, 0.0), (Some(180.0), 0.0), (None, 0.0), (Some(90.0), 0.0)]),
-        [(180.0, vec![1, 2]), (90.0, vec![3])]
+        [([-5.0, 0.0, 0.0], vec![1, 2]), ([0.0, -5.0, 0.0], vec![3])]
     );
     // A turn without end comes to every heading, and what follows it keeps any; a bank that a loop moves is none.
-    assert_eq!(asked(&[(None, 0.0), (None, 20.0), (None, 0.0)]), [(180.0, vec![1, 2])]);
+    assert_eq!(asked(&[(None, 0.0), (None, 20.0), (None, 0.0)]), [([-5.0, 0.0, 0.0], vec![1, 2])]);
     assert_eq!(asked(&[(Some(0.0), 20.0)]), []);
 }
 

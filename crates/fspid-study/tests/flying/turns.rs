@@ -1,6 +1,8 @@
-//! Turns of an aircraft in moving air.
+//! Turns of an aircraft: in moving air, at the stops of aileron and elevator.
 
-use crate::flying::result;
+use fspid_sim::Doubt;
+
+use crate::flying::{column, doubt, result};
 
 const TURN: &str = include_str!("../../../../scenarios/gallery/turn.toml");
 
@@ -16,4 +18,235 @@ fn a_steady_wind_carries_a_turn_along_and_changes_nothing_about_it() {
     let off = banks(20.0).into_iter().zip(banks(0.001)).map(|(one, other)| (one - other).abs());
     let most_rad = off.fold(0.0, f64::max);
     assert!(most_rad < 1e-6, "{most_rad} rad");
+}
+
+/// A small unmanned aircraft that holds its path over the ground begins in a tailwind and turns into it.
+const INTO_THE_WIND: &str = r#"
+schema = 1
+name = "Aerosonde turns from a tailwind into a headwind"
+[aircraft]
+name = "aerosonde"
+airspeed_m_s = 25.0
+altitude_m = 200.0
+thrust = "constant"
+[actuator]
+time_constant_s = 0.05
+[loop]
+sample_period_s = 0.01
+duration_s = 30.0
+[setpoint]
+kind = "step"
+amplitude_deg = 0.0
+[wind]
+kind = "steady"
+speed_m_s = 15.0
+from_deg = 180.0
+[[outer_loop]]
+name = "flight path"
+kind = "pid"
+holds = "flight-path"
+moves = "pitch"
+kp = 5
+ki = 0.5
+[[outer_loop]]
+name = "autothrottle"
+kind = "pid"
+holds = "airspeed"
+moves = "throttle"
+kp = 0.05
+ki = 0.01
+[[outer_loop]]
+name = "heading"
+kind = "pid"
+holds = "heading"
+moves = "bank"
+kp = 1.0
+least = -20.0
+most = 20.0
+[[mode]]
+name = "level"
+engage = ["flight path", "autothrottle", "heading"]
+[[mode]]
+name = "turn back"
+at_s = 2.0
+engage = ["flight path", "autothrottle", "heading"]
+target = { flight_path_deg = 0.001, heading_deg = 180.0 }
+[[controller]]
+name = "PID"
+kind = "pid"
+kp = 0.5
+ki = 0.5
+kd = 0.03
+derivative_filter_s = 0.02
+"#;
+
+/// It was asked in the tailwind of its start alone: "stable" of a path that swings by 12 deg for ever.
+#[test]
+fn a_mode_is_asked_in_the_wind_as_it_blows_on_the_heading_that_it_turns_to() {
+    let told = doubt(&result(INTO_THE_WIND, &[]));
+    assert!(matches!(told, Some(Doubt::WindOnAHeading { .. })), "{told:?}");
+    let long = result(INTO_THE_WIND, &["loop.duration_s=200.0"]);
+    let path = &column(&long.trace, "flight_path_rad")[15_000..];
+    let ends = |ends: [f64; 2], it: &f64| [ends[0].min(*it), ends[1].max(*it)];
+    let [least, most] = path.iter().fold([f64::INFINITY, f64::NEG_INFINITY], ends);
+    assert!((most - least).to_degrees() > 10.0, "{least} {most}");
+    // It holds with the wind from the side, and in less of it.
+    for calm in ["mode[1].target.heading_deg=90.0", "wind.speed_m_s=5.0"] {
+        let flight = result(INTO_THE_WIND, &[calm]);
+        assert!(flight.at_rest.unstable.is_none() && doubt(&flight).is_none(), "{calm}");
+    }
+}
+
+/// Small motions jumped there from one end of the circle to the other: "doubles every 0.0006 s".
+#[test]
+fn who_begins_to_the_south_is_as_stable_as_who_begins_to_the_north() {
+    for heading_deg in [180.0, -180.0, 179.9] {
+        let set = ["aircraft.heading_deg", "mode[1].target.heading_deg"]
+            .map(|path| format!("{path}={heading_deg:?}"));
+        let flight = result(INTO_THE_WIND, &[&set[0], &set[1], "wind.from_deg=0.0"]);
+        assert!(flight.at_rest.unstable.is_none() && doubt(&flight).is_none(), "{heading_deg}");
+    }
+}
+
+/// A steep turn in which altitude and airspeed are held.
+const STEEP: &str = r#"
+schema = 1
+name = "a turn that sinks"
+[aircraft]
+name = "aerosonde"
+airspeed_m_s = 25.0
+altitude_m = 200.0
+[lateral]
+bank_time_s = 0.3
+yaw_damping = 0.0
+[actuator]
+time_constant_s = 0.05
+[loop]
+sample_period_s = 0.02
+duration_s = 40.0
+[setpoint]
+kind = "step"
+amplitude_deg = 0.0
+[[outer_loop]]
+name = "altitude"
+kind = "pid"
+holds = "altitude"
+moves = "vertical speed"
+kp = 0.15
+least = -5.0
+most = 5.0
+[[outer_loop]]
+name = "vertical speed"
+kind = "pid"
+holds = "vertical-speed"
+moves = "pitch"
+kp = 2.0
+ki = 0.2
+[[outer_loop]]
+name = "autothrottle"
+kind = "pid"
+holds = "airspeed"
+moves = "throttle"
+kp = 0.05
+ki = 0.02
+[[mode]]
+name = "straight"
+engage = ["altitude", "vertical speed", "autothrottle"]
+[[mode]]
+name = "a turn that sinks"
+at_s = 2.0
+engage = ["altitude", "vertical speed", "autothrottle"]
+bank_deg = 58.0
+[[controller]]
+name = "PID"
+kind = "pid"
+kp = 1.2
+ki = 0.2
+kd = 0.08
+derivative_filter_s = 0.05
+"#;
+
+/// Its pitch rate takes more elevator than the load alone, and a leveller lets the bank come out steeper than it is asked for: it
+/// was "stable", flown for 400 s as well, in which it sank to the ground with its elevator at the stop.
+#[test]
+fn a_turn_that_leaves_its_altitude_at_the_stop_of_the_elevator_is_in_doubt() {
+    for set in [&[][..], &["loop.duration_s=400.0"]] {
+        let flight = result(STEEP, set);
+        assert_eq!(doubt(&flight), Some(Doubt::SwingAtLimits), "{set:?}");
+    }
+    let flight = result(STEEP, &["mode[1].bank_deg=40.0"]);
+    assert!(flight.at_rest.unstable.is_none() && doubt(&flight).is_none());
+}
+
+/// A transport whose heading loop asks for more than its aileron gives.
+const SWINGING: &str = r#"
+schema = 1
+name = "heading swings at the limits of bank and aileron"
+[aircraft]
+name = "b747-cruise-low"
+airspeed_m_s = 205.0
+altitude_m = 6096.0
+[lateral]
+bank_time_s = 0.5
+yaw_damping = 0.7
+[actuator]
+time_constant_s = 0.05
+[loop]
+sample_period_s = 0.05
+duration_s = 60.0
+[setpoint]
+kind = "step"
+amplitude_deg = 0.0
+[[outer_loop]]
+name = "heading"
+kind = "pid"
+holds = "heading"
+moves = "bank"
+kp = 16.0
+least = -30.0
+most = 30.0
+[[outer_loop]]
+name = "altitude"
+kind = "pid"
+holds = "altitude"
+moves = "pitch"
+kp = 0.1
+ki = 0.01
+kd = 0.1
+least = -10.0
+most = 10.0
+[[outer_loop]]
+name = "autothrottle"
+kind = "pid"
+holds = "airspeed"
+moves = "throttle"
+kp = 0.1
+ki = 0.01
+[[mode]]
+name = "straight"
+engage = ["heading", "altitude", "autothrottle"]
+[[mode]]
+name = "turn"
+at_s = 2.0
+engage = ["heading", "altitude", "autothrottle"]
+target = { heading_deg = 90.0 }
+[[controller]]
+name = "PID"
+kind = "pid"
+kp = 1.5
+ki = 0.5
+kd = 1.2
+derivative_filter_s = 0.05
+"#;
+
+/// Its bank swings by 25 deg from stop to stop of the aileron for ever, with a pitch that hardly moves: it was "stable" after any
+/// time.
+#[test]
+fn a_bank_that_swings_at_the_stops_of_the_aileron_is_in_doubt() {
+    for set in [&[][..], &["loop.duration_s=600.0"], &["mode[1].target.heading_deg=1.0"]] {
+        let flight = result(SWINGING, set);
+        assert_eq!(doubt(&flight), Some(Doubt::SwingAtLimits), "{set:?}");
+    }
+    let flight = result(SWINGING, &["outer_loop[0].kp=2.0"]);
+    assert!(flight.at_rest.unstable.is_none() && doubt(&flight).is_none());
 }

@@ -11,7 +11,7 @@ use crate::loop_model::{Sensing, comes_again_after};
 use crate::rest::settled;
 use crate::scenario::{Prepared, Scenario};
 use crate::sensor::{Seeing, Sensor};
-use crate::surroundings::{Surroundings, Weather};
+use crate::surroundings::{Surroundings, Weather, seen};
 use crate::timing::Timing;
 
 /// Samples flown before anything is moved, beside those that sensors remember: all loops are engaged then.
@@ -88,15 +88,22 @@ pub(super) fn still_alone(scenario: &Scenario, seeing: Seeing) -> Result<Scenari
     Ok(still)
 }
 
-/// The wind in which a flight begins, as if it stayed: what is counted over the ground moves by it more or less for the same
-/// motion through the air.
+/// The wind in which a flight begins, as if it stayed, of an aircraft that is turned to the north: what is counted over the ground
+/// moves by it more or less for the same motion through the air.
 fn wind_of_the_start(weather: &Weather) -> Option<Wind> {
     let earth_m_s = sum_at(&weather.winds, &weather.course.place(0.0)).earth_m_s;
+    let earth_m_s = seen(earth_m_s, weather.course.heading_rad);
     let blows = earth_m_s.iter().any(|part| *part != 0.0);
     blows.then_some(Wind::Steady(Steady { earth_m_s }))
 }
 
-/// The scenario at rest in the wind of its start with one mode engaged for good, nothing of it limited.
+/// The heading that a scenario begins on, rad.
+fn begins_on_rad(scenario: &Scenario) -> f64 {
+    scenario.surroundings.weather.as_ref().map_or(0.0, |it| it.course.heading_rad)
+}
+
+/// The scenario at rest in the wind of its start with one mode engaged for good, nothing of it limited, and turned to the north:
+/// a heading of half a turn is one that small motions jump across.
 pub(super) fn still(
     scenario: &Scenario,
     autopilot: &Autopilot,
@@ -108,15 +115,19 @@ pub(super) fn still(
         still.surroundings.weather.as_mut().zip(scenario.surroundings.weather.as_ref())
     {
         air.winds.extend(wind_of_the_start(own));
+        air.course.heading_rad = 0.0;
     }
+    let heading_rad = begins_on_rad(scenario);
     let dt_s = scenario.timing.dt_s();
     // A scale would move the trim of what is not counted from it.
     let late = |sensor: Option<Sensor>| {
         sensor.map(|it| it.around_rest(dt_s, seeing)).map(Sensor::without_scale)
     };
     let beam = autopilot.glide_slope().zip(scenario.plant.aircraft()).map(|(beam, plant)| {
-        let (sine, cosine) = crate::math::sin_cos(beam.course_rad);
+        let course_rad = beam.course_rad - heading_rad;
+        let (sine, cosine) = crate::math::sin_cos(course_rad);
         GlideSlope {
+            course_rad,
             angle_rad: 0.0,
             antenna_m: [FAR_M * cosine, FAR_M * sine],
             altitude_m: plant.trim().target.altitude_m,

@@ -234,9 +234,11 @@ impl Judged {
     }
 }
 
-/// What should be known about the requirements whose numbers are not sure.
+/// What should be known about the requirements: how sure their numbers are, and what of them is not asked here.
 fn notes(judgements: &[Judgement]) -> Vec<String> {
-    let unsure = judgements.iter().map(|judgement| judgement.requirement);
-    let unsure = unsure.filter(|requirement| requirement.confidence != Confidence::Transcribed);
-    unsure.map(|requirement| format!("{}: {}", requirement.title, requirement.note)).collect()
+    let requirements = judgements.iter().map(|judgement| judgement.requirement);
+    let mut notes: Vec<String> =
+        requirements.map(|it| format!("{}: {}", it.title, it.note)).collect();
+    notes.dedup();
+    notes
 }
