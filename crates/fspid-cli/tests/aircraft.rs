@@ -345,6 +345,15 @@ fn qualities_have_the_handbooks_values_and_name_their_clauses() {
     assert!(refused(&["qualities", "navion", "--delay", "1h"]).contains("known are ms, s"));
 }
 
+/// It stood in JSON alone.
+#[test]
+fn what_is_not_asked_of_a_requirement_is_told_in_the_text() {
+    let words = text(&["qualities", "navion", "--class", "I", "--category", "a"]);
+    let words = words.split_whitespace().collect::<Vec<_>>().join(" ");
+    let told = "Dutch roll: damping, its product with the frequency, and the frequency; the more damping that large ratios of roll to sideslip take";
+    assert!(words.contains(told) && words.contains("is NOT ASKED FOR here"), "{words}");
+}
+
 #[test]
 fn an_envelope_says_at_each_point_what_holds_or_what_is_in_the_way() {
     let folder = folder();
