@@ -171,6 +171,11 @@ impl Span {
         self.met * AT_LIMITS >= self.samples
     }
 
+    /// True where limits were met all the time, but for a tenth of it.
+    pub(super) const fn stands_at_limits(self) -> bool {
+        10 * self.met >= 9 * self.samples
+    }
+
     /// True where the error went there and back: what drifts one way at a limit is no swing.
     pub(super) fn turns(self) -> bool {
         self.way_rad >= TURNS * self.error.size_rad()
