@@ -80,6 +80,8 @@ pub enum SimError {
     Autopilot(Box<AutopilotError>),
     /// A question about a linear loop, of an aircraft that is none.
     NotLinear,
+    /// A question about one loop, where a sensor with a clock of its own makes it another at every sample.
+    ChangingAges,
     /// An aircraft that does not stay about its trim for the few samples from which small motions are taken.
     LeavesTrim {
         /// Number of the autopilot's mode that was engaged, from 0.
@@ -201,6 +203,9 @@ impl fmt::Display for SimError {
             Self::NotLinear => {
                 f.write_str("a nonlinear aircraft has no linear loop; allowed is a linear plant")
             }
+            Self::ChangingAges => f.write_str(
+                "a sensor has a clock of its own, so that the age of its values changes and the loop has no poles of one sample; allowed are sensors without a clock; whether the loop holds, `analyse` says",
+            ),
             Self::Structure => f.write_str(
                 "gains along a flight are derived for supervisors whose rules conclude labels and that see the error and its change through even sets, and for controllers of which only the gains move",
             ),

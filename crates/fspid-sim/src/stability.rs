@@ -298,36 +298,50 @@ pub(crate) fn doubling_s(spectral_radius: f64, dt_s: f64) -> f64 {
     if rate > 0.0 { dt_s * core::f64::consts::LN_2 / rate } else { f64::INFINITY }
 }
 
-/// Spectral radius of the sampled loop of one plant with fixed gains and no limits.
+/// Spectral radius of the sampled loop of one plant with fixed gains and no limits. That of a sensor with a clock of its own is
+/// no one loop and is refused: [`growth_at_rest`] asks all its ages as they come.
 ///
 /// # Errors
-/// [`SimError`] where the plant is an aircraft, cannot be discretised or the eigenvalues are not found.
+/// [`SimError`] where the plant is an aircraft, cannot be discretised or the eigenvalues are not found, and
+/// [`SimError::ChangingAges`] where what a sensor shows changes its age.
 pub fn loop_spectral_radius(
     scenario: &Scenario,
     gains: Gains<f64>,
     config: &PidConfig<f64>,
 ) -> Result<f64, SimError> {
-    scenario.plant.require_equations()?;
-    let plant = scenario.plant.linear().ok_or(SimError::NotLinear)?;
-    Ok(spectral_radius(&closed_loop(scenario, plant, gains, config)?)?)
+    Ok(spectral_radius(&one_loop(scenario, gains, config)?)?)
 }
 
 /// Poles of the sampled loop of one plant with fixed gains and no limits.
 ///
 /// # Errors
-/// [`SimError`] where the plant is an aircraft, cannot be discretised or the eigenvalues are not found.
+/// As [`loop_spectral_radius`].
 pub fn loop_poles(
     scenario: &Scenario,
     gains: Gains<f64>,
     config: &PidConfig<f64>,
 ) -> Result<Vec<Complex>, SimError> {
-    scenario.plant.require_equations()?;
-    let plant = scenario.plant.linear().ok_or(SimError::NotLinear)?;
-    Ok(eigenvalues(&closed_loop(scenario, plant, gains, config)?)?)
+    Ok(eigenvalues(&one_loop(scenario, gains, config)?)?)
 }
 
-/// The one-sample matrix of the loop with the set-point at zero.
-pub(crate) fn closed_loop(
+/// The one-sample matrix of a loop that is the same at every sample.
+fn one_loop(
+    scenario: &Scenario,
+    gains: Gains<f64>,
+    config: &PidConfig<f64>,
+) -> Result<Matrix, SimError> {
+    scenario.plant.require_equations()?;
+    let plant = scenario.plant.linear().ok_or(SimError::NotLinear)?;
+    let model = LoopModel::of(scenario, plant, config, Memory::of_gains(gains, config))?;
+    if model.has_changing_ages() {
+        return Err(SimError::ChangingAges);
+    }
+    model.closed_matrix(gains)
+}
+
+/// The one-sample matrix of the loop with the set-point at zero, as if ages that change were none: a question about numbers, and
+/// none about whether the loop holds.
+fn closed_loop(
     scenario: &Scenario,
     plant: &LinearPlant,
     gains: Gains<f64>,

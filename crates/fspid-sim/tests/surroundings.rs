@@ -9,7 +9,7 @@ use fspid_sim::actuator::{Actuator, Lag};
 use fspid_sim::air::{Follows, Intensity, Severity, Specification, Turbulence, WindKind};
 use fspid_sim::sensor::{PITCH, RATE, Sensor, SensorModel, SensorPreset};
 use fspid_sim::signal::{Profile, Shape};
-use fspid_sim::stability::{instability, loop_spectral_radius};
+use fspid_sim::stability::{instability, loop_poles, loop_spectral_radius};
 use fspid_sim::{
     Controller, Course, ElevatorSign, LinearPlant, LongitudinalDerivatives, NamedController,
     PlantChange, Scenario, SimError, Surroundings, Timing, Trace, Weather, fly, simulate,
@@ -256,6 +256,23 @@ fn a_servo_by_legs_has_the_spectral_radius_that_it_has_as_one_with_its_plant() {
         flight.actuator = by_legs(servo);
         let by_legs = loop_spectral_radius(&flight, gains, &config).expect("found");
         assert!((as_one - by_legs).abs() < 1e-12, "{as_one} {by_legs}");
+    }
+}
+
+/// It was the radius of the loop without that sensor.
+#[test]
+fn no_one_radius_and_no_poles_are_told_of_a_sensor_with_a_clock_of_its_own() {
+    let mut flight = scenario(navion(), pid(1.0, 0.2, 0.3), 0.1);
+    let (gains, config) = (Gains { kp: 1.0, ki: 0.2, kd: 0.3 }, PidConfig::sampled_every(DT_S));
+    for (period_s, is_told) in [(0.0, true), (0.005, true), (0.024, false)] {
+        let model = SensorModel { period_s, delay_s: 0.03, ..SensorModel::default() };
+        flight.surroundings.pitch_sensor = Some(Sensor::new(model, 0, PITCH).expect("allowed"));
+        let radius = loop_spectral_radius(&flight, gains, &config);
+        let poles = loop_poles(&flight, gains, &config);
+        assert_eq!((radius.is_ok(), poles.is_ok()), (is_told, is_told), "{period_s} {radius:?}");
+        if let Err(error) = radius {
+            assert!(error.to_string().contains("a sensor has a clock of its own"), "{error}");
+        }
     }
 }
 

@@ -13,8 +13,9 @@ use fspid_study::output;
 /// Trim and linearise an aircraft at every speed and altitude of a grid.
 ///
 /// The summary goes to standard output. --csv has every point, and why one cannot be flown; --svg draws a map of each
-/// quantity. With --scenario, the sampled loop of its controller, with the gains that its schedule makes there, is judged
-/// around the linear model of every point: of the aircraft, loading and air that are asked for, not of the scenario's.
+/// quantity. With --scenario, the sampled loop of its controller, with the gains that its schedule makes there, is judged at
+/// every point as `fspid analyse` judges it, at rest and with nothing commanded: stable, unstable, or undecided and why,
+/// with the ages of what sensors show as they come. The aircraft, loading and air are those asked for, not the scenario's.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
@@ -28,7 +29,7 @@ pub(super) struct Arguments {
     /// For what flying qualities are judged.
     #[arg(long, value_enum, ignore_case = true, default_value_t = Category::B)]
     category: Category,
-    /// A scenario with the autopilot: its servo, sample period and controller.
+    /// A scenario with the autopilot: its servo, sensors, sample period, controller, leveller and damper.
     #[arg(long, value_name = "FILE.toml")]
     scenario: Option<InFile>,
     /// The controller of the scenario, if it has several.

@@ -2,49 +2,25 @@
 
 use std::path::Path;
 
-use fspid_core::{Gains, PidConfig};
-use fspid_lti::TransferFunction;
-use fspid_sim::stability::loop_spectral_radius;
-use fspid_sim::{Controller, ElevatorSign, LinearPlant, NamedController, Scenario};
+use fspid_aircraft::{Aircraft, TrimTarget};
+use fspid_core::{Gains, Pid, PidConfig};
+use fspid_sim::aircraft::{AircraftPlant, Forces};
+use fspid_sim::signal::{Profile, Shape};
+use fspid_sim::{Controller, NamedController, Scenario, SimError, Surroundings};
 
+use super::judged::Loop;
+use crate::analysis::{AnalysedLoop, Analysis, Question};
 use fspid_scenario::aircraft::AircraftFailure;
 use fspid_scenario::file::{self, GainSource, LoadError, Schedule, Study};
 use fspid_scenario::supervisor::Refused;
 
-/// A radius this close below 1 counts as unstable, as in the simulation.
-const MARGIN: f64 = 1e-9;
-
-/// End of the search for a gain margin.
-pub(super) const MOST_DB: f64 = 40.0;
-
-/// Steps of that search, either way: two changes within one of them are not seen.
-const STEP_DB: f64 = 0.5;
-
-/// A sampled loop around rest, with the gains that it starts from there and without limits.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Loop {
-    /// Below 1 if it is stable.
-    pub(super) spectral_radius: f64,
-    /// How fast its slowest motion dies out; negative if it grows.
-    pub(super) decay_per_s: f64,
-    /// How far the gains may rise or fall, whichever is less, before it is unstable; none if it is unstable already.
-    pub(super) gain_margin_db: Option<f64>,
-}
-
-/// A controller with the servo and the sample period of its scenario.
+/// A controller with the servo, the sensors and the sample period of its scenario.
 #[derive(Clone, Debug)]
 pub(super) struct Autopilot {
     scenario: Scenario,
     controller: NamedController,
     /// What its gains follow, and the factor that is in them.
     schedule: Option<(Schedule, f64)>,
-}
-
-/// The loop of a controller around one plant.
-struct Around {
-    scenario: Scenario,
-    gains: Gains<f64>,
-    config: PidConfig<f64>,
 }
 
 impl Autopilot {
@@ -87,7 +63,7 @@ impl Autopilot {
 
     /// Whose aircraft it is asked around.
     pub(super) const fn whose(&self) -> &'static str {
-        "aircraft, loading and air are those of this command; of the scenario there are controller, actuator and sensors"
+        "aircraft, loading and air are those of this command; of the scenario there are controller, actuator, sensors, leveller and damper, and neither set-point, disturbances nor outer loops"
     }
 
     /// All of that in a line.
@@ -95,80 +71,81 @@ impl Autopilot {
         format!("{}; {}", self.words(), self.whose())
     }
 
-    /// How the sampled loop around a plant stands, with the gains that it has at a dynamic pressure.
-    pub(super) fn judge(&self, plant: &TransferFunction, pressure_pa: f64) -> Option<Loop> {
-        let (above, below) = (plant.numerator(), plant.denominator());
-        let sign = ElevatorSign::NoseDownPositive;
-        let plant = LinearPlant::new(above.coefficients(), below.coefficients(), sign).ok()?;
-        let plant = fspid_sim::Plant::Linear(plant);
-        let around = self.around(plant, pressure_pa)?;
-        let radius = around.radius(1.0)?;
-        let stable = is_stable(radius);
-        let gain_margin_db = if stable { around.gain_margin_db() } else { None };
-        let decay_per_s = -libm::log(radius) / self.dt_s();
-        Some(Loop { spectral_radius: radius, decay_per_s, gain_margin_db })
+    /// How the sampled loop around an aircraft in a flight stands, with the gains that it has at a dynamic pressure.
+    pub(super) fn judge(
+        &self,
+        aircraft: &Aircraft<Forces>,
+        target: TrimTarget,
+        pressure_pa: f64,
+    ) -> Loop {
+        let dt_s = self.controller.controller.config().dt_s;
+        match self.analysed(aircraft, target, pressure_pa) {
+            Ok(found) => Loop::of(&found, dt_s),
+            Err(reason) => Loop::not_asked(reason),
+        }
     }
 
-    fn dt_s(&self) -> f64 {
-        self.controller.controller.config().dt_s
+    /// The loop as `analyse` sees it, or why it cannot.
+    fn analysed(
+        &self,
+        aircraft: &Aircraft<Forces>,
+        target: TrimTarget,
+        pressure_pa: f64,
+    ) -> Result<AnalysedLoop, String> {
+        let in_words = |error: SimError| error.to_string();
+        let controller = self.controller_at(pressure_pa)?;
+        let scenario = self.around(aircraft, target, controller).map_err(in_words)?;
+        let question = Question { map_points: 0, ..Question::default() };
+        let mut analysis = Analysis::of_scenario(&scenario, question).map_err(in_words)?;
+        analysis.loops.pop().ok_or_else(|| in_words(SimError::NotLinear))
     }
 
-    /// The loop around a plant; none where the schedule makes no gains at this pressure.
-    fn around(&self, plant: fspid_sim::Plant, pressure_pa: f64) -> Option<Around> {
-        let scenario = Scenario { plant, controllers: Vec::new(), ..self.scenario.clone() };
-        let controller = &self.controller.controller;
-        let own = Around { scenario, gains: controller.nominal(), config: *controller.config() };
-        let Some((schedule, own_factor)) = self.schedule else { return Some(own) };
-        let factor = schedule.factor(pressure_pa) / own_factor;
+    /// The controller with fixed gains, those that its schedule makes at this pressure.
+    fn controller_at(&self, pressure_pa: f64) -> Result<Controller, String> {
+        let own = &self.controller.controller;
+        let factor = match self.schedule {
+            Some((schedule, own_factor)) => schedule.factor(pressure_pa) / own_factor,
+            None => 1.0,
+        };
         // Written so that NaN fails.
-        (factor > 0.0 && factor.is_finite()).then(|| own.times(factor))
+        if !(factor > 0.0 && factor.is_finite()) {
+            return Err("the schedule makes no gains there".to_owned());
+        }
+        let (gains, config) = scaled((own.nominal(), *own.config()), factor);
+        Pid::new(gains, config).map(Controller::Fixed).map_err(|error| error.to_string())
+    }
+
+    /// The aircraft at rest in a flight with this controller: nothing is commanded, no air moves, no loop is around the pitch loop.
+    fn around(
+        &self,
+        aircraft: &Aircraft<Forces>,
+        target: TrimTarget,
+        controller: Controller,
+    ) -> Result<Scenario, SimError> {
+        let plant = AircraftPlant::trimmed(aircraft.clone(), target)?;
+        let plant = match self.scenario.plant.aircraft() {
+            Some(own) => plant.with_lateral(own.lateral())?,
+            None => plant,
+        };
+        let Scenario { name, timing, actuator, surroundings, .. } = &self.scenario;
+        let setpoint = Profile::new(0.0, Shape::Step { at_s: 0.0 })?;
+        Ok(Scenario {
+            actuator: *actuator,
+            surroundings: Surroundings { weather: None, ..surroundings.clone() },
+            controllers: vec![NamedController { controller, ..self.controller.clone() }],
+            ..Scenario::new(name, plant, *timing, setpoint)
+        })
     }
 }
 
-impl Around {
-    /// The loop with everything that the controller commands times a factor.
-    fn times(self, factor: f64) -> Self {
-        let (gains, config) = self.scaled(factor);
-        Self { gains, config, ..self }
-    }
-
-    fn scaled(&self, factor: f64) -> (Gains<f64>, PidConfig<f64>) {
-        let (Gains { kp, ki, kd }, mut config) = (self.gains, self.config);
-        config.rate_gain_s *= factor;
-        config.feedforward *= factor;
-        (Gains { kp: kp * factor, ki: ki * factor, kd: kd * factor }, config)
-    }
-
-    /// Spectral radius with everything that the controller commands times a factor.
-    fn radius(&self, factor: f64) -> Option<f64> {
-        let (gains, config) = self.scaled(factor);
-        loop_spectral_radius(&self.scenario, gains, &config).ok()
-    }
-
-    /// The nearest factor to 1, upwards or downwards, at which the loop is not stable, as its size in dB; the end of the
-    /// search where there is none.
-    fn gain_margin_db(&self) -> Option<f64> {
-        let mut inside_db = 0.0;
-        while inside_db < MOST_DB {
-            let outside_db = inside_db + STEP_DB;
-            let (up, down) =
-                (self.end((inside_db, outside_db), 1.0)?, self.end((inside_db, outside_db), -1.0)?);
-            if let Some(nearest_db) = up.into_iter().chain(down).min_by(f64::total_cmp) {
-                return Some(nearest_db);
-            }
-            inside_db = outside_db;
-        }
-        Some(MOST_DB)
-    }
-
-    /// Where the loop, stable at the nearer of two sizes of a change one way, stops to be so; an inner none where it does not.
-    fn end(&self, (inside_db, outside_db): (f64, f64), way: f64) -> Option<Option<f64>> {
-        let holds = |db: f64| Some(is_stable(self.radius(libm::pow(10.0, way * db / 20.0))?));
-        match holds(outside_db)? {
-            true => Some(None),
-            false => bisected((inside_db, outside_db), holds).map(Some),
-        }
-    }
+/// Everything that a controller commands times a factor.
+fn scaled(
+    (Gains { kp, ki, kd }, mut config): (Gains<f64>, PidConfig<f64>),
+    factor: f64,
+) -> (Gains<f64>, PidConfig<f64>) {
+    config.rate_gain_s *= factor;
+    config.feedforward *= factor;
+    (Gains { kp: kp * factor, ki: ki * factor, kd: kd * factor }, config)
 }
 
 /// What the gains of a controller follow, and the factor at the scenario's own trim.
@@ -178,26 +155,6 @@ fn schedule(study: &Study, name: &str) -> Option<(Schedule, f64)> {
         GainSource::Schedule { schedule, factor, .. } => Some((schedule, factor)),
         GainSource::Regulator => None,
     }
-}
-
-/// Where a condition that holds at the first end stops to hold, to a hundredth of a decibel.
-fn bisected(
-    (mut below, mut above): (f64, f64),
-    holds: impl Fn(f64) -> Option<bool>,
-) -> Option<f64> {
-    while above - below > 0.01 {
-        let middle = 0.5 * (below + above);
-        match holds(middle)? {
-            true => below = middle,
-            false => above = middle,
-        }
-    }
-    Some(below)
-}
-
-/// Whether a loop of this spectral radius is stable; NaN is not.
-pub(super) fn is_stable(radius: f64) -> bool {
-    radius < 1.0 - MARGIN
 }
 
 fn unusable(error: LoadError) -> AircraftFailure {

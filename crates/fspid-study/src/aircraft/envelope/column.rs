@@ -16,7 +16,7 @@ pub(super) struct Column {
     /// False for what a map would not show.
     pub(super) drawn: bool,
     /// True for what an autopilot has to be there for.
-    needs_autopilot: bool,
+    pub(super) needs_autopilot: bool,
     read: fn(&Held) -> Option<f64>,
 }
 
@@ -81,15 +81,15 @@ static COLUMNS: [Column; 16] = [
         })
     },
     autopilot("loop, smaller gain margin up to 40 dB", "loop_gain_margin", Kind::Decibel, |held| {
-        held.beside?.gain_margin_db
+        held.beside.as_ref()?.gain_margin_db
     }),
     autopilot("loop, decay of its slowest motion", "loop_decay", Kind::Rate, |held| {
-        Some(held.beside?.decay_per_s)
+        held.beside.as_ref()?.decay_per_s
     }),
     Column {
         drawn: false,
         ..autopilot("loop, spectral radius", "loop_spectral_radius", Kind::Plain, |held| {
-            Some(held.beside?.spectral_radius)
+            held.beside.as_ref()?.spectral_radius
         })
     },
 ];

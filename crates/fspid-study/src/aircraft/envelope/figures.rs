@@ -1,14 +1,16 @@
 //! The envelope as drawings: a map a quantity, or a curve where there is only one altitude or speed.
 
 use super::Envelope;
-use super::autopilot::is_stable;
 use super::column::Column;
-use super::point::{Point, short_period};
+use super::point::{Point, loop_at, short_period};
+use crate::analysis::Stability;
 use fspid_plot::{LineFigure, LinePanel, Series, SeriesStyle, Surface, Svg, Tiles};
 use fspid_scenario::aircraft::units::{Kind, Units};
 
 /// What a hatched place means.
 const MISSING: &str = "no trim there; the CSV says why";
+/// The same where a loop is asked for a number.
+const NO_NUMBER: &str = "no trim there, or no loop that is known to have one; the CSV says why";
 
 impl Envelope {
     /// A drawing for each quantity, with its name.
@@ -56,7 +58,7 @@ impl Envelope {
             values: self.rows(&self.values(column)),
             limit: None,
         };
-        surface.map_with_gaps(MISSING)
+        surface.map_with_gaps(if column.needs_autopilot { NO_NUMBER } else { MISSING })
     }
 
     fn curve(&self, column: &Column, kind: Kind, nodes: &[f64]) -> Svg {
@@ -81,10 +83,13 @@ impl Envelope {
     fn stability(&self) -> Option<(&'static str, Svg)> {
         let autopilot = self.autopilot.as_ref()?;
         let class = |point: &Point| {
-            let judged = point.flight.as_ref().ok()?.beside?;
-            Some(usize::from(!is_stable(judged.spectral_radius)))
+            Some(match loop_at(point)?.stability {
+                Stability::Stable => 0,
+                Stability::Undecided => 1,
+                Stability::Unstable => 2,
+            })
         };
-        let names = [("+", "stable"), ("!", "unstable")];
+        let names = [("+", "stable"), ("?", "undecided; the CSV says why"), ("!", "unstable")];
         let tiles = self.tiles(&autopilot.words(), &names, class);
         Some(("loop_stability", tiles.render()))
     }

@@ -4,6 +4,7 @@ mod autopilot;
 mod column;
 mod csv;
 mod figures;
+mod judged;
 mod point;
 mod text;
 
@@ -16,13 +17,17 @@ use serde_json::{Map, Value, json};
 use super::condition::{AirChoice, Question};
 use super::facts::key;
 use super::parse::span;
+use crate::analysis::Stability;
 use crate::json::with_null_reasons;
 use autopilot::Autopilot;
 use column::{Column, columns};
 use fspid_scenario::aircraft::AircraftFailure;
 use fspid_scenario::aircraft::units::{Kind, LENGTHS, SPEEDS, Units};
 use fspid_scenario::supervisor::Refused;
-use point::{Point, reason};
+use point::{Point, loop_at, reason};
+
+/// Why there is no radius, and no decay.
+const NO_RADIUS: &str = "the loop is undecided, or too fast or too slow for a number, or the aircraft does not fly there";
 
 /// Speeds and altitudes, and whose loop is judged there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,7 +88,7 @@ pub fn envelope(question: &EnvelopeQuestion<'_>) -> Result<Envelope, AircraftFai
         let target = linear.trim.target;
         let density_kg_m3 = aircraft.environment().air_at(target.altitude_m).density_kg_m3;
         let pressure_pa = 0.5 * density_kg_m3 * target.airspeed_m_s * target.airspeed_m_s;
-        autopilot.as_ref()?.judge(&linear.theta_over_elevator().ok()?, pressure_pa)
+        Some(autopilot.as_ref()?.judge(&aircraft, target, pressure_pa))
     });
     let (title, name) = (data.title, data.name);
     let air = question.question.air;
@@ -115,6 +120,18 @@ impl Envelope {
         columns(self.autopilot.is_some())
     }
 
+    /// At how many of the points that can be flown the loop stands so.
+    fn loops(&self, stability: Stability) -> usize {
+        self.points.iter().filter_map(loop_at).filter(|it| it.stability == stability).count()
+    }
+
+    /// The same of each word that there is.
+    fn loop_points(&self) -> Value {
+        let all = [Stability::Stable, Stability::Unstable, Stability::Undecided];
+        let counts = all.map(|it| (it.word().to_owned(), json!(self.loops(it))));
+        Value::Object(counts.into_iter().collect())
+    }
+
     /// The envelope for programs.
     #[must_use]
     pub fn json(&self) -> Value {
@@ -129,15 +146,29 @@ impl Envelope {
         put("category", json!(format!("{:?}", self.category)));
         put("controller", json!(self.autopilot.as_ref().map(Autopilot::name)));
         put("loop", json!(self.autopilot.as_ref().map(Autopilot::in_words)));
+        put("loop_points", json!(self.autopilot.as_ref().map(|_| self.loop_points())));
         let speeds = list(Kind::Speed, &self.speeds_m_s);
         put(&key("airspeeds", Kind::Speed, units), json!(speeds));
         let altitudes = list(Kind::Length, &self.altitudes_m);
         put(&key("altitudes", Kind::Length, units), json!(altitudes));
         let points: Vec<Value> = self.points.iter().map(|point| self.point_json(point)).collect();
         put("points", Value::Array(points));
+        let decay = key("loop_decay", Kind::Rate, units);
         let reasons = [
             ("controller", "no controller was asked for"),
             ("loop", "no controller was asked for"),
+            ("loop_points", "no controller was asked for"),
+            ("loop_stability", "the aircraft does not fly there"),
+            (
+                "loop_reason",
+                "the loop is stable and has a margin, or the aircraft does not fly there",
+            ),
+            (
+                "loop_gain_margin_db",
+                "the loop is not known to be stable, as loop_reason says, or has no margin",
+            ),
+            (decay.as_str(), NO_RADIUS),
+            ("loop_spectral_radius", NO_RADIUS),
             (
                 "longitudinal_time_to_double_s",
                 "no longitudinal motion runs away, or the aircraft does not fly there",
@@ -161,6 +192,12 @@ impl Envelope {
         for column in self.columns() {
             let value = column.of(point).map(|value| units.told(column.kind, value));
             entry.insert(key(column.key, column.kind, units), json!(value));
+        }
+        if self.autopilot.is_some() {
+            let found = loop_at(point);
+            let stability = found.map(|it| it.stability.word());
+            entry.insert("loop_stability".to_owned(), json!(stability));
+            entry.insert("loop_reason".to_owned(), json!(found.and_then(|it| it.reason.clone())));
         }
         Value::Object(entry)
     }

@@ -5,7 +5,7 @@ use fspid_aircraft::qualities::ShortPeriod;
 use fspid_aircraft::{Growth, ModeName};
 use fspid_lti::Mode;
 
-use super::autopilot::Loop;
+use super::judged::Loop;
 use fspid_scenario::aircraft::departure;
 use fspid_scenario::aircraft::units::Units;
 
@@ -14,6 +14,11 @@ pub(super) type Point = EnvelopeRow<Option<Loop>>;
 
 /// A flight that is held, with the sampled loop where there is an autopilot.
 pub(super) type Held = EnvelopeFlight<Option<Loop>>;
+
+/// The loop at a point that can be flown, where there is an autopilot.
+pub(super) fn loop_at(point: &Point) -> Option<&Loop> {
+    point.flight.as_ref().ok()?.beside.as_ref()
+}
 
 /// Why a point cannot be flown, in a line.
 pub(super) fn reason(point: &Point, units: Units) -> Option<String> {

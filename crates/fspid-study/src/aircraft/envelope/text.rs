@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use super::Envelope;
-use super::autopilot::is_stable;
 use super::column::Column;
-use super::point::{Point, doubles_s};
+use super::point::{Point, doubles_s, loop_at};
 use crate::aircraft::condition::AirChoice;
 use crate::aircraft::table::table;
+use crate::analysis::Stability;
 use fspid_scenario::aircraft::number::significant;
 use fspid_scenario::aircraft::quantity;
 use fspid_scenario::aircraft::units::Kind;
@@ -99,17 +99,32 @@ impl Envelope {
 
     fn loop_in_words(&self) -> String {
         let Some(autopilot) = &self.autopilot else { return String::new() };
-        let held = self.points.iter().filter_map(|point| point.flight.as_ref().ok());
-        let (flown, stable) = held.fold((0, 0), |(flown, stable), held| {
-            (
-                flown + 1,
-                stable
-                    + usize::from(
-                        held.beside.is_some_and(|judged| is_stable(judged.spectral_radius)),
-                    ),
-            )
-        });
+        let flown = self.points.iter().filter_map(loop_at).count();
+        let others = [Stability::Unstable, Stability::Undecided].map(|it| (it, self.loops(it)));
+        let others = others.iter().filter(|(_, count)| *count > 0);
+        let others: String =
+            others.map(|(it, count)| format!(", {} at {count}", it.word())).collect();
+        let stable = self.loops(Stability::Stable);
         let (words, whose) = (autopilot.words(), autopilot.whose());
-        format!("\n{words}\n  stable at {stable} of {flown} points\n  {whose}\n")
+        let firsts = self.first_reasons();
+        format!("\n{words}\n  stable at {stable} of {flown} points{others}\n{firsts}  {whose}\n")
+    }
+
+    /// The first point that is undecided, and the first that is stable without a margin, with why.
+    fn first_reasons(&self) -> String {
+        let mut all = String::new();
+        for (stability, what) in [
+            (Stability::Undecided, "undecided first"),
+            (Stability::Stable, "stable without a gain margin first"),
+        ] {
+            let mut reasons = self.points.iter().filter_map(|point| {
+                let found = loop_at(point).filter(|it| it.stability == stability)?;
+                Some((point, found.reason.as_ref()?))
+            });
+            if let Some((point, reason)) = reasons.next() {
+                all.push_str(&format!("  {what} at {}: {reason}\n", self.place(point)));
+            }
+        }
+        all
     }
 }
