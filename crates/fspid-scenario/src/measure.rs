@@ -90,6 +90,10 @@ pub enum Measure {
     PhugoidDamping,
     /// Time in which the phugoid doubles, s.
     PhugoidDoubling,
+    /// The same of one that swings, s.
+    PhugoidOscillationDoubling,
+    /// The same of one that creeps, s.
+    PhugoidDivergenceDoubling,
     /// Equivalent delay between command and elevator, s.
     EquivalentDelay,
     /// Largest load factor, g.
@@ -156,7 +160,7 @@ const fn row(
 
 /// One row a measure, in the order of the enumeration.
 #[rustfmt::skip] // a table: one row a measure
-const ROWS: [Row; 51] = {
+const ROWS: [Row; 53] = {
     use Family::{Aircraft, Airframe, Flight, Frozen, Loop, Proof, Step};
     use Measure as M;
     [
@@ -193,7 +197,9 @@ const ROWS: [Row; 51] = {
         row(M::ShortPeriodDamping, ("short_period_damping", ""), Airframe, &[], "damping ratio of the aircraft's short period"),
         row(M::ControlAnticipation, ("cap_rad_s2_per_g", "rad/s² per g"), Airframe, &[], "control anticipation parameter"),
         row(M::PhugoidDamping, ("phugoid_damping", ""), Airframe, &[], "damping ratio of the aircraft's phugoid; 1 or -1 where it creeps"),
-        row(M::PhugoidDoubling, ("phugoid_doubling_s", "s"), Airframe, &[], "time in which the phugoid doubles"),
+        row(M::PhugoidDoubling, ("phugoid_doubling_s", "s"), Airframe, &[], "time in which the phugoid doubles, whether it swings or creeps"),
+        row(M::PhugoidOscillationDoubling, ("phugoid_oscillation_doubling_s", "s"), Airframe, &[], "time in which a phugoid that swings doubles; infinite for one that creeps"),
+        row(M::PhugoidDivergenceDoubling, ("phugoid_divergence_doubling_s", "s"), Airframe, &[], "time in which a phugoid that creeps doubles; infinite for one that swings"),
         row(M::EquivalentDelay, ("equivalent_delay_s", "s"), Airframe, &[], "delay of servo, whole samples and half a sample of the hold"),
         row(M::LargestLoadFactor, ("largest_load_factor_g", "g"), Aircraft, TIMES, "largest load factor along the body's upward axis; 1 in level flight"),
         row(M::LeastLoadFactor, ("least_load_factor_g", "g"), Aircraft, TIMES, "least load factor along the body's upward axis; its limits may be below 0"),

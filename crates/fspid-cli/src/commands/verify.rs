@@ -99,7 +99,8 @@ The same at the worst gains that the supervisor produces over its range, held st
 The loop while its gains move, for all set-points and loads that the scenario commands, as certify proves it:
   certified
 Measures of the aircraft without its controller, behind servo and dead time:
-  short_period_damping cap_rad_s2_per_g phugoid_damping phugoid_doubling_s equivalent_delay_s
+  short_period_damping cap_rad_s2_per_g phugoid_damping phugoid_doubling_s
+  phugoid_oscillation_doubling_s phugoid_divergence_doubling_s equivalent_delay_s
 
 Ready sets and their choices, the first of each if left out:
   mil-f-9490d  speed=normal|below|limit|beyond, air=smooth|turbulent, first_aeroelastic_mode_hz=HZ

@@ -193,6 +193,13 @@ fn a_phugoid_that_creeps_is_damped_where_it_falls_and_not_where_it_grows() {
             "numerator = [1.0, 0.8, 0.02]\ndenominator = {denominator}\nelevator_sign = \"nose-up-positive\""
         );
         let text = JUMBO.replace("preset = \"b747-paper\"", &plant);
+        let [either, swings, creeps] = [
+            Measure::PhugoidDoubling,
+            Measure::PhugoidOscillationDoubling,
+            Measure::PhugoidDivergenceDoubling,
+        ]
+        .map(|measure| values(&text, measure, "", &[])[0]);
+        assert!(swings.is_infinite() && creeps.total_cmp(&either).is_eq(), "{swings} {creeps}");
         [Measure::PhugoidDamping, Measure::PhugoidDoubling]
             .map(|measure| values(&text, measure, "", &[])[0])
     };

@@ -131,15 +131,18 @@ fn the_web_course_asks_for_its_four_numbers_at_a_step_of_two_tenths_of_a_radian(
 
 #[test]
 fn phugoid_and_delay_are_those_of_the_handbook_at_every_level() {
-    let of = |level: i32, measures: [Measure; 3]| -> Vec<Asked> {
+    let of = |level: i32, measures: [Measure; 4]| -> Vec<Asked> {
         let all = asked("mil-f-8785c", &format!("level = {level}"));
         all.into_iter().filter(|asked| measures.contains(&asked.0)).collect()
     };
-    let measures = [Measure::PhugoidDamping, Measure::PhugoidDoubling, Measure::EquivalentDelay];
+    let [swings, creeps] =
+        [Measure::PhugoidOscillationDoubling, Measure::PhugoidDivergenceDoubling];
+    let measures = [Measure::PhugoidDamping, swings, creeps, Measure::EquivalentDelay];
     let delay = |most: f64| (Measure::EquivalentDelay, None, Some(most));
     assert_eq!(of(1, measures), [(Measure::PhugoidDamping, Some(0.04), None), delay(0.10)]);
     assert_eq!(of(2, measures), [(Measure::PhugoidDamping, Some(0.0), None), delay(0.20)]);
-    assert_eq!(of(3, measures), [(Measure::PhugoidDoubling, Some(55.0), None), delay(0.25)]);
+    let level_3 = [(swings, Some(55.0), None), (creeps, Some(6.0), None), delay(0.25)];
+    assert_eq!(of(3, measures), level_3);
 }
 
 /// The flying qualities of `fspid aircraft qualities` and the set must not differ.

@@ -63,7 +63,9 @@ fn value(
         Measure::ShortPeriodDamping => short_period_damping(&model, Category::B)?.value,
         Measure::ControlAnticipation => ShortPeriod::of(&model, Category::B)?.cap,
         Measure::PhugoidDamping => phugoid_damping(&Phugoid::of(&model)?),
-        Measure::PhugoidDoubling => phugoid_doubling_s(&Phugoid::of(&model)?),
+        Measure::PhugoidDoubling => doubling_s(&Phugoid::of(&model)?, |_| true),
+        Measure::PhugoidOscillationDoubling => doubling_s(&Phugoid::of(&model)?, swings),
+        Measure::PhugoidDivergenceDoubling => doubling_s(&Phugoid::of(&model)?, |it| !swings(it)),
         // The equivalent delay, and nothing else comes here.
         _ => EquivalentDelay::of(&model)?.delay_s,
     })
@@ -78,11 +80,15 @@ fn phugoid_damping(phugoid: &Phugoid) -> f64 {
     }
 }
 
-/// Time to double; infinite for a phugoid that does not grow.
-fn phugoid_doubling_s(phugoid: &Phugoid) -> f64 {
+const fn swings(phugoid: &Phugoid) -> bool {
+    matches!(phugoid, Phugoid::Oscillation { .. })
+}
+
+/// Time to double; infinite for a phugoid that does not grow, or is not asked.
+fn doubling_s(phugoid: &Phugoid, is_asked: impl Fn(&Phugoid) -> bool) -> f64 {
     let (Phugoid::Oscillation { growth, .. } | Phugoid::Creep { growth, .. }) = phugoid;
     match growth {
-        Growth::Doubles(time_s) => *time_s,
-        Growth::Halves(_) | Growth::Stays => f64::INFINITY,
+        Growth::Doubles(time_s) if is_asked(phugoid) => *time_s,
+        Growth::Doubles(_) | Growth::Halves(_) | Growth::Stays => f64::INFINITY,
     }
 }
