@@ -5,6 +5,7 @@
 use fspid_fuzzy::OutOfRange;
 use fspid_fuzzy::hedge::Hedge;
 use fspid_fuzzy::membership::ShapeKind;
+use fspid_fuzzy::norm::{SNormKind, TNormKind};
 use fspid_fuzzy::system::{
     Activation, Antecedent, Conclusion, Consequent, Defuzzifier, Fallback, Input, Membership,
     Output, OutputTerm, Parts, Rule, RuleBlock, Sampling, SetReading, Statement, System, Term,
@@ -200,4 +201,22 @@ fn an_exact_interval_of_curved_sets_is_refused_with_what_to_do() {
         Membership::Shape { kind: ShapeKind::Gaussian, params: vec![0.0, 1.0], height: 1.0 };
     let errors = System::new(parts).expect_err("curved");
     assert!(errors[0].to_string().contains("endpoints:101"), "{}", errors[0]);
+}
+
+/// The default used to be told as the answer of such an output wherever its rules fire.
+#[test]
+fn an_exact_interval_of_sets_that_do_not_stay_straight_is_refused_with_what_to_do() {
+    let refused = |change: fn(&mut Parts)| {
+        let exact = Defuzzifier::Centroid(Sampling::Exact);
+        let mut parts = system(0.2, 0.0, exact, false).parts().clone();
+        change(&mut parts);
+        let errors = System::new(parts.clone()).expect_err("neither has a closed form");
+        let text = errors[0].to_string();
+        assert!(text.starts_with("output `y`: the exact centroid"), "{text}");
+        assert!(text.contains("endpoints:101"), "{text}");
+        parts.outputs[0].defuzzifier = Defuzzifier::Centroid(Sampling::Endpoints(101));
+        assert!(System::new(parts).is_ok());
+    };
+    refused(|parts| parts.outputs[0].aggregation = SNormKind::AlgebraicSum.into());
+    refused(|parts| parts.blocks[0].implication = TNormKind::EinsteinProduct.into());
 }

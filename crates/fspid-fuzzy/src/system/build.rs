@@ -90,7 +90,9 @@ impl System {
         if !errors.is_empty() {
             return Err(errors);
         }
-        Ok(Self::resolved(parts))
+        let system = Self::resolved(parts);
+        let errors = type2::without_outline(&system);
+        if errors.is_empty() { Ok(system) } else { Err(errors) }
     }
 
     /// What the system consists of.

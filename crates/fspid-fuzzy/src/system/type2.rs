@@ -5,11 +5,13 @@
 //! centroid (or weighted average) that the bounds allow, exactly
 //! ([`karnik_mendel`](crate::karnik_mendel)), and its answer is the middle of that interval.
 
+use alloc::format;
 use alloc::vec;
 use alloc::vec::Vec;
 
 use super::build::{ResolvedOutput, System};
-use super::defuzzifier::{Defuzzifier, SetReading};
+use super::defuzzifier::{Defuzzifier, Sampling, SetReading};
+use super::error::{SystemError, SystemProblem};
 use super::firing::hedged;
 use super::output::{AggregatedSet, Outline, Room, roomy_clone, value};
 use super::parts::{
@@ -86,11 +88,11 @@ pub(crate) fn conflict(output: &Output) -> Option<(&'static str, &'static str)> 
         _ => true,
     });
     match output.defuzzifier {
-        Defuzzifier::Centroid(super::Sampling::Exact) if !all_straight => Some((
+        Defuzzifier::Centroid(Sampling::Exact) if !all_straight => Some((
             "the exact centroid of interval type-2 sets",
             "piecewise-linear sets, or a sampled rule such as endpoints:101",
         )),
-        Defuzzifier::Centroid(super::Sampling::Vertices(_)) => {
+        Defuzzifier::Centroid(Sampling::Vertices(_)) => {
             Some(("the rule `vertices` for interval type-2 sets", "another rule"))
         }
         Defuzzifier::Centroid(_)
@@ -98,6 +100,26 @@ pub(crate) fn conflict(output: &Output) -> Option<(&'static str, &'static str)> 
         | Defuzzifier::WeightedSum(_) => None,
         _ => Some(("an interval type-2 output", "centroid, weighted-average or weighted-sum")),
     }
+}
+
+/// Outputs with an exact centroid whose sets do not stay straight where they are shaped or joined:
+/// their interval has no closed form.
+pub(crate) fn without_outline(system: &System) -> Vec<SystemError> {
+    let outlines = system.type2.iter().flat_map(|type2| &type2.outlines);
+    let exact = |output: &Output| output.defuzzifier == Defuzzifier::Centroid(Sampling::Exact);
+    let lacking = system.parts.outputs.iter().zip(outlines);
+    let lacking =
+        lacking.filter(|(output, both)| exact(output) && both.iter().any(Option::is_none));
+    let error = |(output, _): (&Output, _)| SystemError {
+        place: format!("output `{}`", output.name),
+        problem: SystemProblem::Conflict {
+            what: "the exact centroid of interval type-2 sets",
+            needs: "the aggregation maximum, bounded-sum, normalized-sum or unbounded-sum and the \
+                    implication minimum or algebraic-product, or a sampled rule such as \
+                    endpoints:101",
+        },
+    };
+    lacking.map(error).collect()
 }
 
 /// As [`conflict`], for a block of rules.
