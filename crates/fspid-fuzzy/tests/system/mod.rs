@@ -2,7 +2,7 @@
 
 #![allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")]
 
-mod build;
+pub(crate) mod build;
 mod integral;
 mod maximum;
 mod oracle;

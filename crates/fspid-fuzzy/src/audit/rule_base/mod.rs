@@ -11,7 +11,8 @@ use alloc::vec::Vec;
 use crate::hedge::Hedge;
 use crate::norm::SNormKind;
 use crate::system::{
-    Activation, Antecedent, Consequent, Defuzzifier, Rule, RuleBlock, System, TNorm, Variable,
+    Activation, Antecedent, Consequent, Defuzzifier, Rule, RuleBlock, Statement, System, TNorm,
+    Variable,
 };
 pub(super) use antecedent::canonical;
 use antecedent::implied_by;
@@ -193,7 +194,6 @@ fn contradictions(earlier: &Rule, later: &Rule) -> Vec<(usize, [usize; 2])> {
     found
 }
 
-/// True if `rule` changes no answer as long as `other` is there.
 /// True if what a rule concludes rises with the strength of its antecedent, and that with the grades of its statements: a
 /// formula may fall, and `not` makes much of little.
 fn rises_with_strength(rule: &ActiveRule<'_>) -> bool {
@@ -203,6 +203,29 @@ fn rises_with_strength(rule: &ActiveRule<'_>) -> bool {
         && !rule.rule.consequents.iter().any(falls)
 }
 
+/// True if rules further down may notice a rule, or it notices those between: some rule asks how strongly
+/// one of its conclusions has been drawn so far, or it asks that of an output itself.
+fn takes_part_in_a_chain(system: &System, rule: &Rule) -> bool {
+    let asks = asks_outputs(&rule.antecedent);
+    asks || rule.consequents.iter().any(|it| is_asked(system, it.output, it.term))
+}
+
+fn asks_outputs(antecedent: &Antecedent) -> bool {
+    match antecedent {
+        Antecedent::Always => false,
+        Antecedent::Is(statement) => matches!(statement.variable, Variable::Output(_)),
+        Antecedent::All(parts) | Antecedent::Any(parts) => parts.iter().any(asks_outputs),
+        Antecedent::Not(part) => asks_outputs(part),
+    }
+}
+
+/// True if some rule asks how strongly a term of an output has been concluded.
+pub(super) fn is_asked(system: &System, output: usize, term: usize) -> bool {
+    let asked = |it: &Statement| it.variable == Variable::Output(output) && it.term == Some(term);
+    system.program.statements.iter().any(asked)
+}
+
+/// True if `rule` changes no answer as long as `other` is there.
 fn makes_superfluous(system: &System, other: &ActiveRule<'_>, rule: &ActiveRule<'_>) -> bool {
     // With an s-norm that adds up, in an average, or where rules compete, every rule counts.
     let keeps_strongest = |consequent: &Consequent| {
@@ -219,7 +242,8 @@ fn makes_superfluous(system: &System, other: &ActiveRule<'_>, rule: &ActiveRule<
         && rule.block.implication == other.block.implication
         && rule.block.and == other.block.and
         && rule.rule.consequents.iter().all(keeps_strongest)
-        && rises_with_strength(rule);
+        && rises_with_strength(rule)
+        && !takes_part_in_a_chain(system, rule.rule);
     plain
         && rule.rule.weight <= other.rule.weight
         && concludes_all(other.rule, rule.rule)

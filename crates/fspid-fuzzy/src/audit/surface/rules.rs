@@ -6,7 +6,7 @@ use super::continuity::{Jumps, jumps_of};
 use super::field::Field;
 use super::firing::{Firing, Slope, has_value, unknown_slope};
 use super::options::SurfaceOptions;
-use crate::audit::rule_base::{RulePosition, rule_base};
+use crate::audit::rule_base::{RulePosition, is_asked, rule_base};
 use crate::audit::search::{Effort, Extreme, Objective, maximum};
 use crate::hedge::Hedge;
 use crate::norm::SNormKind;
@@ -138,10 +138,12 @@ fn effect(
 }
 
 /// True if leaving a rule out does not change how strongly the others act: not where strengths are
-/// divided by their sum, or rules are counted or ranked.
+/// divided by their sum, rules are counted or ranked, or others ask what it concludes.
 fn stands_alone(system: &System, rule: usize) -> bool {
     let block = system.rules.get(rule).and_then(|rule| system.parts.blocks.get(rule.block));
+    let mut own = system.conclusions.iter().filter(|conclusion| conclusion.rule == rule);
     block.is_some_and(|block| block.activation == Activation::General)
+        && !own.any(|it| is_asked(system, it.output, it.term))
 }
 
 /// A search that is content with a point where the lead is nearly as large as it gets.
