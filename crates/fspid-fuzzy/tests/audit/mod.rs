@@ -7,6 +7,7 @@ mod reach;
 mod rule_base;
 mod soundness;
 mod surface;
+mod type2;
 
 use fspid_fuzzy::system::{Parts, System};
 use fspid_fuzzy::{Defuzzifier, OutOfRange, RuleTable, Supervisor};

@@ -5,6 +5,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use super::field::Field;
+use super::firing::has_two_grades;
 use super::objective::{Coverage as Strongest, StrongestGrade};
 use super::options::SurfaceOptions;
 use crate::audit::Statement;
@@ -20,7 +21,8 @@ const TOLERANCE: f64 = 1e-9;
 pub struct Coverage {
     /// The smallest strength of the strongest rule.
     pub least: Extreme,
-    /// Whether some rule fires everywhere; refuted by a point where none does.
+    /// Whether some rule fires everywhere; refuted by a point where none does. Open where inputs have
+    /// type-2 sets.
     pub statement: Statement<Vec<f64>>,
 }
 
@@ -31,6 +33,11 @@ pub(super) fn of_output(
     options: &SurfaceOptions,
 ) -> Coverage {
     let system = field.firing.system;
+    if has_two_grades(system) {
+        let bounds = [0.0, f64::INFINITY];
+        let least = Extreme { bounds, at: middle(domain), boxes: 0, settled: false };
+        return Coverage { least, statement: Statement::Open };
+    }
     let conclusions = system.conclusions.iter().filter(|c| c.output == output);
     let mut rules: Vec<usize> = conclusions.map(|conclusion| conclusion.rule).collect();
     rules.dedup();

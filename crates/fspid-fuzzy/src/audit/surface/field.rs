@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use super::envelope::{Bounds, Envelope};
-use super::firing::{Firing, Slope, unknown_slope};
+use super::firing::{Firing, Slope, has_two_grades, unknown_slope};
 use super::gradient::{self, Gradient, Known, Level};
 use super::layers::Layers;
 use super::masses::Masses;
@@ -103,9 +103,7 @@ impl<'a> Field<'a> {
 
 fn method(system: &System, index: usize) -> Method {
     let Some(output) = system.parts.outputs.get(index) else { return Method::Unknown };
-    // Of type-2 sets there is no telling here how their two grades are used.
-    let mut terms = system.parts.inputs.iter().flat_map(|input| &input.terms);
-    if terms.any(|term| term.lower.is_some()) {
+    if has_two_grades(system) {
         return Method::Unknown;
     }
     if output.defuzzifier.sampling().is_none() {

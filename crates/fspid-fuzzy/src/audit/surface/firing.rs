@@ -277,6 +277,13 @@ fn grade_of(grades: &[Slope], statement: usize) -> Slope {
     grades.get(statement).copied().unwrap_or(Slope::zero())
 }
 
+/// True if a statement has two grades: only the upper ones are followed here, which says little of how
+/// strongly rules fire.
+pub(super) fn has_two_grades(system: &System) -> bool {
+    let mut terms = system.parts.inputs.iter().flat_map(|input| &input.terms);
+    terms.any(|term| term.lower.is_some())
+}
+
 /// True if a statement is known to have a grade everywhere in a box.
 fn has_grade(system: &System, statement: &Statement, inputs: &[Slope]) -> bool {
     let Variable::Input(index) = statement.variable else { return false };

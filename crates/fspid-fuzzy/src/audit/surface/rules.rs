@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use super::continuity::{Jumps, jumps_of};
 use super::field::Field;
-use super::firing::{Firing, Slope, has_value, unknown_slope};
+use super::firing::{Firing, Slope, has_two_grades, has_value, unknown_slope};
 use super::options::SurfaceOptions;
 use crate::audit::rule_base::{RulePosition, is_asked, rule_base};
 use crate::audit::search::{Effort, Extreme, Objective, maximum};
@@ -45,7 +45,7 @@ pub enum RuleEffect {
         /// Change of each output there if the rule is left out; `None` where there is no answer.
         changes: Vec<Option<f64>>,
     },
-    /// Neither was proved.
+    /// Neither was proved; of other rules than superfluous ones it never is where inputs have type-2 sets.
     Open {
         /// The rule.
         rule: RulePosition,
@@ -118,6 +118,9 @@ fn effect(
     effort: Effort,
 ) -> RuleEffect {
     let system = field.firing.system;
+    if has_two_grades(system) {
+        return RuleEffect::Open { rule: position };
+    }
     let mut all_none = stands_alone(system, rule);
     for rivals in rivals(system, rule) {
         let mut lead = Lead { firing: &mut field.firing, rule, rivals: &rivals };
