@@ -81,6 +81,11 @@ impl Formula {
         self.code.contains(&Operation::Variable(variable))
     }
 
+    /// True if nothing in it may jump, wherever it [has a value](Self::has_value).
+    pub(crate) fn is_continuous(&self) -> bool {
+        self.code.iter().all(|part| part.is_continuous())
+    }
+
     /// The names of all functions.
     pub fn functions() -> impl Iterator<Item = &'static str> {
         FUNCTIONS.iter().map(|&(name, _)| name)

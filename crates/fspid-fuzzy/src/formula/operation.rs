@@ -194,6 +194,54 @@ impl Two {
     }
 }
 
+impl Operation {
+    /// True if it cannot jump wherever it [has a value](super::Formula::has_value).
+    pub(super) fn is_continuous(self) -> bool {
+        match self {
+            Self::Number(_) | Self::Variable(_) => true,
+            Self::One(function) => function.is_continuous(),
+            Self::Two(function) => function.is_continuous(),
+        }
+    }
+}
+
+impl One {
+    fn is_continuous(self) -> bool {
+        match self {
+            Self::Abs
+            | Self::Asinh
+            | Self::Atan
+            | Self::Cos
+            | Self::Cosh
+            | Self::Cube
+            | Self::Exp
+            | Self::Negate
+            | Self::Sin
+            | Self::Sinh
+            | Self::Square
+            | Self::Tan
+            | Self::Tanh => true,
+            Self::Ceil | Self::Floor | Self::Not | Self::Round | Self::Sign => false,
+            // Steeper than anything at the ends of their domains.
+            Self::Acos | Self::Acosh | Self::Asin | Self::Atanh | Self::Sqrt => false,
+            Self::Log | Self::Log10 | Self::Log1p => false,
+        }
+    }
+}
+
+impl Two {
+    fn is_continuous(self) -> bool {
+        match self {
+            Self::Add | Self::Divide | Self::Max | Self::Min | Self::Multiply | Self::Subtract => {
+                true
+            }
+            Self::And | Self::Or | Self::Atan2 | Self::Power | Self::Remainder => false,
+            Self::Equal | Self::Greater | Self::GreaterOrEqual => false,
+            Self::Less | Self::LessOrEqual | Self::NotEqual => false,
+        }
+    }
+}
+
 /// True for 0, 1, 2 …
 fn is_count(number: f64) -> bool {
     number >= 0.0 && libm::floor(number).total_cmp(&number).is_eq()

@@ -3,6 +3,7 @@
 #![allow(clippy::float_cmp, reason = "what is exact is asked for exactly")]
 
 mod chained;
+mod formulas;
 mod reach;
 mod rule_base;
 mod soundness;

@@ -10,12 +10,6 @@ use fspid_numeric::scalar::Interval;
 
 /// A shape that changes by more than this across a corner is taken to jump there.
 const JUMP: f64 = 1e-6;
-/// Words of a formula that may make it jump, or that have no value for some arguments.
-const JUMPING_WORDS: [&str; 24] = [
-    "floor", "ceil", "round", "sign", "fmod", "%", "eq", "ge", "gt", "le", "lt", "and", "or",
-    "not", "!", "atan2", "pow", "^", "sqrt", "log", "asin", "acos", "atanh", "acosh",
-];
-
 /// Where a statement's grade may jump.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Jumps {
@@ -65,12 +59,7 @@ pub(super) fn continuous_join(norm: &SNorm) -> bool {
 
 /// True if a formula joins any two grades, and cannot jump.
 fn joins_everywhere(formula: &Formula) -> bool {
-    is_continuous(formula) && formula.has_value(&[Interval::UNIT; 2])
-}
-
-/// True if a formula has no word that may make it jump where it [has a value](Formula::has_value).
-pub(super) fn is_continuous(formula: &Formula) -> bool {
-    !JUMPING_WORDS.iter().any(|word| formula.text().contains(word))
+    formula.is_continuous() && formula.has_value(&[Interval::UNIT; 2])
 }
 
 fn jumps(system: &System, statement: &Statement) -> Jumps {
@@ -85,7 +74,7 @@ fn jumps(system: &System, statement: &Statement) -> Jumps {
 pub(super) fn jumps_of(membership: &Membership) -> Jumps {
     let (kind, params) = match membership {
         Membership::Shape { kind, params, .. } => (kind, params),
-        Membership::Formula { formula, .. } if is_continuous(formula) => {
+        Membership::Formula { formula, .. } if formula.is_continuous() => {
             return Jumps::At(Vec::new());
         }
         Membership::Formula { .. } => return Jumps::Anywhere,

@@ -2,7 +2,6 @@
 
 use alloc::vec::Vec;
 
-use super::continuity::is_continuous;
 use super::firing::{Firing, Slope, unknown_slope};
 use super::masses::average_bounds;
 use crate::system::{Conclusion, Defuzzifier, Membership, SetReading};
@@ -93,7 +92,7 @@ impl Firing<'_> {
                     return unknown_slope(Interval::ENTIRE);
                 }
                 let value = formula.evaluate(&self.inputs);
-                if is_continuous(formula) { value } else { unknown_slope(value.value) }
+                if formula.is_continuous() { value } else { unknown_slope(value.value) }
             }
             Conclusion::Set { lower: Some(_), .. } => unknown_slope(Interval::ENTIRE),
             Conclusion::Set { membership, lower: None } => {
