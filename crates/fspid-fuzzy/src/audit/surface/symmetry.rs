@@ -33,7 +33,11 @@ impl Mirror<'_> {
 
     fn check(&self, parts: &Parts, index: usize) -> Option<()> {
         let output = parts.outputs.get(index)?;
-        let terms = self.output_terms(output)?;
+        let sets = parts.inputs.iter().flat_map(|input| &input.terms);
+        if sets.into_iter().any(|term| depends_on_others(&term.membership, parts)) {
+            return None;
+        }
+        let terms = self.output_terms(parts, output)?;
         let inputs: Option<Vec<_>> =
             (0..parts.inputs.len()).map(|input| self.input_terms(parts, input)).collect();
         let inputs = inputs?;
@@ -87,15 +91,17 @@ impl Mirror<'_> {
     }
 
     /// For each term of the output the one that is its image.
-    fn output_terms(&self, output: &Output) -> Option<Vec<usize>> {
+    fn output_terms(&self, parts: &Parts, output: &Output) -> Option<Vec<usize>> {
         // These depend on the order of the rules.
         let is_formula = matches!(output.aggregation, SNorm::Formula(_));
         if is_formula || output.aggregation.is(SNormKind::NormalizedSum) {
             return None;
         }
         let all = output.terms.iter();
-        let plain = output.terms.iter().all(|term| {
-            matches!(term.conclusion, Conclusion::Constant(_) | Conclusion::Set { lower: None, .. })
+        let plain = output.terms.iter().all(|term| match &term.conclusion {
+            Conclusion::Constant(_) => true,
+            Conclusion::Set { membership, lower: None } => !depends_on_others(membership, parts),
+            _ => false,
         });
         let Some(about) = self.about else {
             return plain.then_some((0..output.terms.len()).collect());
@@ -117,6 +123,15 @@ impl Mirror<'_> {
             })
         });
         images.collect()
+    }
+}
+
+/// True if a set is a formula in more than its own variable: it is another set at the mirrored point.
+fn depends_on_others(set: &Membership, parts: &Parts) -> bool {
+    let others = parts.inputs.len() + parts.outputs.len();
+    match set {
+        Membership::Formula { formula, .. } => (1..=others).any(|other| formula.uses(other)),
+        Membership::Shape { .. } => false,
     }
 }
 
