@@ -2,7 +2,10 @@
 
 use fspid_fuzzy::audit::{RuleEffect, SurfaceAudit, SurfaceOptions, rule_base, surface};
 use fspid_fuzzy::membership::ShapeKind;
-use fspid_fuzzy::system::{Antecedent, Parts, Rule, Statement, System, Variable};
+use fspid_fuzzy::norm::SNormKind;
+use fspid_fuzzy::system::{
+    Antecedent, Conclusion, Defuzzifier, Parts, Rule, SetReading, Statement, System, Variable,
+};
 
 use crate::system::build::{
     answers, block, input, is, output, parts, rule, sets, shape, system, then, triangle,
@@ -50,4 +53,31 @@ fn a_rule_that_asks_an_output_is_not_superfluous_beside_an_earlier_one_that_says
     assert!(rule_base(&with).redundant.is_empty());
     let idle = audited(&with).rules.into_iter().find(|it| matches!(it, RuleEffect::None { .. }));
     assert_eq!(idle, None);
+}
+
+/// Such bounds used to end at 1, as if nothing could be concluded more strongly.
+#[test]
+fn what_is_asked_of_an_output_may_be_above_one_where_conclusions_or_grades_add_up() {
+    let sum = Defuzzifier::WeightedSum(SetReading::Tsukamoto);
+    let outputs = || [0, 1].map(|_| output(0.0, 1.0, vec![Conclusion::Constant(1.0)]));
+    let input = || input(0.0, 1.0, vec![shape(ShapeKind::Ramp, &[0.0, 1.0])]);
+    let up = || rule(is(0, 0), then(0, 0));
+    let mut added = parts(
+        vec![input()],
+        outputs().into(),
+        vec![block(vec![up(), up(), up(), rule(concluded(0, 0), then(1, 0))])],
+    );
+    added.outputs.iter_mut().for_each(|output| output.defuzzifier = sum);
+    let mut graded = added.clone();
+    added.outputs[0].aggregation = SNormKind::UnboundedSum.into();
+    let any = Antecedent::Any(vec![is(0, 0), is(0, 0), is(0, 0)]);
+    graded.blocks[0].rules[0].antecedent = any;
+    graded.blocks[0].or = SNormKind::UnboundedSum.into();
+    for parts in [added, graded] {
+        let system = system(parts);
+        let found = answers(&system, &[1.0])[1].value.expect("rules fire");
+        assert!((found - 3.0).abs() < 1e-12, "{found}");
+        let proved = &audited(&system).outputs[1];
+        assert!(proved.least.bounds[0] <= 0.0 && found <= proved.most.bounds[1], "{proved:?}");
+    }
 }

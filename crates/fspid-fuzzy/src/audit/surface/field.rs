@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use super::envelope::{Bounds, Envelope};
-use super::firing::{Firing, Slope, has_two_grades, unknown_slope};
+use super::firing::{Firing, Slope, asks_beyond_unit, has_two_grades, unknown_slope};
 use super::gradient::{self, Gradient, Known, Level};
 use super::layers::Layers;
 use super::masses::Masses;
@@ -108,6 +108,9 @@ fn method(system: &System, index: usize) -> Method {
     }
     if output.defuzzifier.sampling().is_none() {
         return Method::Weighted;
+    }
+    if asks_beyond_unit(system) {
+        return Method::Unknown;
     }
     match Layers::of(system, index) {
         Some(layers) => {

@@ -27,6 +27,8 @@ pub(super) fn unknown_slope(value: Interval) -> Slope {
 pub(super) struct Firing<'a> {
     pub(super) system: &'a System,
     continuity: Continuity,
+    /// Whether what is asked about outputs [may be above 1](asks_beyond_unit).
+    asks_beyond_unit: bool,
     pub(super) inputs: Vec<Slope>,
     room: Vec<Slope>,
     stack: Vec<Slope>,
@@ -53,6 +55,7 @@ impl<'a> Firing<'a> {
         Self {
             system,
             continuity: Continuity::of(system),
+            asks_beyond_unit: asks_beyond_unit(system),
             inputs: vec![zero; system.parts.inputs.len()],
             room: vec![zero; system.room()],
             stack: vec![zero; STACK],
@@ -107,11 +110,8 @@ impl<'a> Firing<'a> {
                 true => unknown_slope(degree.value.hull(Interval::ZERO)),
                 false => degree,
             };
-            *place = if keeps_to_unit(self.system, conclusion.block) {
-                within_unit(degree)
-            } else {
-                degree
-            };
+            let bounded = keeps_to_unit(self.system, conclusion.block, self.asks_beyond_unit);
+            *place = if bounded { within_unit(degree) } else { degree };
         }
     }
 
@@ -138,7 +138,8 @@ impl<'a> Firing<'a> {
         {
             // What an output has been concluded so far is not followed.
             if matches!(statement.variable, Variable::Output(_)) {
-                *place = unknown_slope(Interval::UNIT);
+                let beyond = self.asks_beyond_unit;
+                *place = unknown_slope(if beyond { Interval::ENTIRE } else { Interval::UNIT });
                 continue;
             }
             let grade = match straight_grade(self.system, statement, &self.inputs, &mut self.room) {
@@ -184,7 +185,8 @@ impl<'a> Firing<'a> {
         let strength =
             self.system.rule_strength(rule, &mut self.stack, |s| grade_of(&self.grades, s));
         let block = self.system.rules.get(rule).map(|rule| rule.block);
-        let bounded = block.is_some_and(|block| keeps_to_unit(self.system, block));
+        let beyond = self.asks_beyond_unit;
+        let bounded = block.is_some_and(|block| keeps_to_unit(self.system, block, beyond));
         let strength = if bounded { within_unit(strength) } else { strength };
         match block.and_then(|block| self.continuity.blocks.get(block)) {
             Some(true) => strength,
@@ -250,7 +252,7 @@ impl<'a> Firing<'a> {
             else {
                 continue;
             };
-            activate(block, strengths, acting);
+            activate(block, self.asks_beyond_unit, strengths, acting);
         }
     }
 
@@ -362,23 +364,38 @@ fn within_unit(grade: Slope) -> Slope {
 }
 
 /// Whether rules of a block act no more strongly than 1: sums without a bound may go above it.
-fn keeps_to_unit(system: &System, block: usize) -> bool {
-    system.parts.blocks.get(block).is_some_and(is_bounded)
+fn keeps_to_unit(system: &System, block: usize, asks_beyond_unit: bool) -> bool {
+    !asks_beyond_unit && system.parts.blocks.get(block).is_some_and(is_bounded)
 }
 
 fn is_bounded(block: &RuleBlock) -> bool {
     !block.or.is(SNormKind::UnboundedSum)
 }
 
+/// Whether some rule asks an output how strongly it has been concluded that may have been so more
+/// strongly than 1. Nothing at all is known of the answer: hedges and norms mean nothing there.
+pub(super) fn asks_beyond_unit(system: &System) -> bool {
+    let adds_up = |output: usize| {
+        let output = system.parts.outputs.get(output);
+        output.is_some_and(|output| output.aggregation.is(SNormKind::UnboundedSum))
+    };
+    let bounded = system.parts.blocks.iter().all(is_bounded);
+    system.program.statements.iter().any(|statement| match statement.variable {
+        Variable::Output(output) => !bounded || adds_up(output),
+        Variable::Input(_) => false,
+    })
+}
+
 /// How strongly the rules of a block act.
-fn activate(block: &RuleBlock, strengths: &[Slope], acting: &mut [Slope]) {
+fn activate(block: &RuleBlock, asks_beyond_unit: bool, strengths: &[Slope], acting: &mut [Slope]) {
     match block.activation {
         Activation::General => acting.copy_from_slice(strengths),
         Activation::Proportional => {
             let sum = strengths.iter().fold(Slope::zero(), |sum, &strength| sum + strength);
+            let bounded = !asks_beyond_unit && is_bounded(block);
             for (place, &strength) in acting.iter_mut().zip(strengths) {
                 let share = strength / sum;
-                *place = match (is_bounded(block), sum.value.lower() > 0.0) {
+                *place = match (bounded, sum.value.lower() > 0.0) {
                     (true, _) => within_unit(share),
                     (false, true) => share,
                     // Where nothing is left over, nothing acts.
