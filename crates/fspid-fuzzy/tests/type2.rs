@@ -220,3 +220,32 @@ fn an_exact_interval_of_sets_that_do_not_stay_straight_is_refused_with_what_to_d
     refused(|parts| parts.outputs[0].aggregation = SNormKind::AlgebraicSum.into());
     refused(|parts| parts.blocks[0].implication = TNormKind::EinsteinProduct.into());
 }
+
+/// Such a rule used to conclude all that is not its conclusion, or all there is, as strongly as can be.
+#[test]
+fn a_rule_that_does_not_fire_concludes_nothing_whatever_its_hedges() {
+    for hedge in [Hedge::Not, Hedge::Any] {
+        let exact = Defuzzifier::Centroid(Sampling::Exact);
+        let mut parts = system(0.0, 0.0, exact, false).parts().clone();
+        parts.inputs[0].terms[1].membership = triangle([2.0, 3.0, 4.0], 1.0);
+        let mut hedged = parts.blocks[0].rules[2].clone();
+        parts.blocks[0].rules.truncate(1);
+        let Antecedent::Is(statement) = &mut hedged.antecedent else { panic!("a statement") };
+        (statement.term, statement.hedges) = (Some(1), Vec::new());
+        hedged.consequents[0].hedges = vec![hedge];
+        parts.blocks[0].rules.push(hedged);
+        let ordinary = System::new(parts.clone()).expect("allowed");
+        for term in &mut parts.inputs[0].terms {
+            term.lower = Some(term.membership.clone());
+        }
+        let both = System::new(parts.clone()).expect("allowed");
+        let known = ask(&ordinary, [0.2, 0.3]).0;
+        let (_, [lower, upper]) = ask(&both, [0.2, 0.3]);
+        assert!((lower - known).abs() < 1e-12 && (upper - known).abs() < 1e-12, "{hedge:?}");
+        // Where it may fire or not, both count.
+        parts.inputs[0].terms[1].membership = triangle([-1.0, 0.2, 1.0], 1.0);
+        parts.inputs[0].terms[1].lower = Some(triangle([2.0, 3.0, 4.0], 1.0));
+        let (_, [lower, upper]) = ask(&System::new(parts).expect("allowed"), [0.2, 0.3]);
+        assert!(lower <= known + 1e-12 && known + 0.1 < upper, "{hedge:?} {lower} {upper}");
+    }
+}

@@ -196,7 +196,7 @@ impl System {
         }
         for (index, conclusion) in self.conclusions.iter().enumerate() {
             let strength = room.strengths.get(conclusion.rule).copied().unwrap_or_default();
-            let bounds = hedged_bounds(&conclusion.hedges, strength);
+            let bounds = concluded_bounds(&conclusion.hedges, strength);
             let places =
                 (room.degrees.get_mut(index), room.lower.get_mut(index), degrees.get_mut(index));
             if let (Some(both), Some(lower), Some(upper)) = places {
@@ -366,6 +366,17 @@ fn copy(joined: &AggregatedSet, straight: &mut Vec<Straight>) {
 fn hedged_bounds(hedges: &[Hedge], bounds: Bounds) -> Bounds {
     let [a, b] = bounds.map(|end| hedged(hedges, end));
     [a.min(b), a.max(b)]
+}
+
+/// The hedges of a conclusion acting on a rule's strength: a rule that does not fire concludes nothing,
+/// not even `not`.
+fn concluded_bounds(hedges: &[Hedge], [lower, upper]: Bounds) -> Bounds {
+    let bounds = hedged_bounds(hedges, [lower, upper]);
+    match (lower > 0.0, upper > 0.0) {
+        (true, _) => bounds,
+        (false, true) => [0.0, bounds[1]],
+        (false, false) => [0.0; 2],
+    }
 }
 
 /// Smallest and largest $\sum w_i z_i$.
