@@ -249,3 +249,22 @@ fn a_rule_that_does_not_fire_concludes_nothing_whatever_its_hedges() {
         assert!(lower <= known + 1e-12 && known + 0.1 < upper, "{hedge:?} {lower} {upper}");
     }
 }
+
+/// The number of the largest strength alone used to be told, as an interval without width.
+#[test]
+fn sets_that_are_read_by_a_strength_which_is_an_interval_are_refused() {
+    let exact = Defuzzifier::Centroid(Sampling::Exact);
+    for reading in [SetReading::Tsukamoto, SetReading::InverseTsukamoto] {
+        for method in [Defuzzifier::WeightedAverage(reading), Defuzzifier::WeightedSum(reading)] {
+            let mut parts = system(0.2, 0.3, exact, false).parts().clone();
+            parts.outputs[0].defuzzifier = method;
+            for term in &mut parts.outputs[0].terms {
+                let (kind, params) = (ShapeKind::Ramp, vec![0.0, 1.0]);
+                let membership = Membership::Shape { kind, params, height: 1.0 };
+                term.conclusion = Conclusion::Set { membership, lower: None };
+            }
+            let errors = System::new(parts).expect_err("no interval of numbers");
+            assert!(errors[0].to_string().contains("needs numbers, intervals"), "{}", errors[0]);
+        }
+    }
+}

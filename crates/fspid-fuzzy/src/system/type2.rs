@@ -87,7 +87,13 @@ pub(crate) fn conflict(output: &Output) -> Option<(&'static str, &'static str)> 
         }
         _ => true,
     });
+    let reads_sets = output.terms.iter().any(|t| matches!(t.conclusion, Conclusion::Set { .. }));
     match output.defuzzifier {
+        // A number for each strength between two bounds: more than an interval of numbers.
+        Defuzzifier::WeightedAverage(_) | Defuzzifier::WeightedSum(_) if reads_sets => Some((
+            "a set that is read by its rule's strength, in an interval type-2 system,",
+            "numbers, intervals, planes or formulas in its place, or the defuzzifier centroid",
+        )),
         Defuzzifier::Centroid(Sampling::Exact) if !all_straight => Some((
             "the exact centroid of interval type-2 sets",
             "piecewise-linear sets, or a sampled rule such as endpoints:101",
