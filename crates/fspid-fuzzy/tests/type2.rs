@@ -268,3 +268,30 @@ fn sets_that_are_read_by_a_strength_which_is_an_interval_are_refused() {
         }
     }
 }
+
+/// The exact rule used to take such a lower set as it is, and samples to take the smaller of both.
+#[test]
+fn exact_and_sampled_answers_agree_where_a_lower_set_is_above_its_upper_one() {
+    let lowers = [
+        triangle([1.0, 1.8, 2.4], 1.0),
+        Membership::Shape { kind: ShapeKind::Rectangle, params: vec![0.5, 1.5], height: 0.9 },
+        triangle([-0.5, 0.5, 2.9], 0.4),
+    ];
+    for set in lowers {
+        let [exact, sampled] = [Sampling::Exact, Sampling::Midpoint(40_000)].map(|sampling| {
+            let method = Defuzzifier::Centroid(sampling);
+            let mut parts = system(0.2, 0.3, method, false).parts().clone();
+            let Conclusion::Set { lower, .. } = &mut parts.outputs[0].terms[1].conclusion else {
+                panic!("a set")
+            };
+            *lower = Some(set.clone());
+            System::new(parts).expect("allowed")
+        });
+        for point in POINTS {
+            let ((_, known), (_, close)) = (ask(&exact, point), ask(&sampled, point));
+            for (a, b) in known.into_iter().zip(close) {
+                assert!((a - b).abs() < 1e-6, "{set:?} {point:?} {known:?} {close:?}");
+            }
+        }
+    }
+}

@@ -109,7 +109,8 @@ pub struct Term {
     pub name: String,
     /// Membership function; of an interval type-2 set the upper one.
     pub membership: Membership,
-    /// Lower membership function of an interval type-2 set.
+    /// Lower membership function of an interval type-2 set; where it is above the upper one, that one
+    /// stands for both.
     pub lower: Option<Membership>,
 }
 
@@ -174,7 +175,8 @@ pub enum Conclusion {
     Set {
         /// Membership function; of an interval type-2 set the upper one.
         membership: Membership,
-        /// Lower membership function of an interval type-2 set.
+        /// Lower membership function of an interval type-2 set; where it is above the upper one, that
+        /// one stands for both.
         lower: Option<Membership>,
     },
     /// A number (Takagi–Sugeno of order 0; a singleton).

@@ -13,7 +13,7 @@ use super::build::{ResolvedOutput, System};
 use super::defuzzifier::{Defuzzifier, Sampling, SetReading};
 use super::error::{SystemError, SystemProblem};
 use super::firing::hedged;
-use super::output::{AggregatedSet, Outline, Room, roomy_clone, value};
+use super::output::{AggregatedSet, Outline, Room, roomy_clone, smaller_set, value};
 use super::parts::{
     Activation, Antecedent, Conclusion, Membership, Output, Parts, RuleBlock, Statement, Variable,
 };
@@ -341,14 +341,14 @@ impl System {
     }
 }
 
-/// The output with its lower or its upper sets only.
+/// The output with its lower or its upper sets only; an upper set stands where its lower one is above it.
 fn ordinary(output: &Output, lowered: bool) -> Output {
     let mut ordinary = output.clone();
     for term in &mut ordinary.terms {
         if let Conclusion::Set { membership, lower } = &mut term.conclusion
             && let (Some(lower), true) = (lower.take(), lowered)
         {
-            *membership = lower;
+            *membership = smaller_set(&lower, membership).unwrap_or(lower);
         }
     }
     ordinary

@@ -26,7 +26,7 @@ use fspid_numeric::lanes::One;
 pub(crate) use actors::{Activations, Level};
 pub(crate) use integral::Integral;
 pub use joined::{AggregatedSet, Piece};
-pub(crate) use outline::{Outline, Room};
+pub(crate) use outline::{Outline, Room, smaller_set};
 pub(crate) use partition::Partition;
 pub(crate) use sampled::{Concluded, Sampled, Samples};
 pub use way::{Actor, Cell, Join, Line, Way};

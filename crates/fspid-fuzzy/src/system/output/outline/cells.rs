@@ -1,10 +1,11 @@
 //! The universe cut at every corner of every set.
 
+use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Range;
 
 use super::super::super::parts::{Conclusion, Membership};
-use crate::membership::Vertex;
+use crate::membership::{ShapeKind, Vertex};
 
 /// A part of the universe in which every set is straight.
 #[derive(Clone, Debug)]
@@ -24,16 +25,50 @@ pub(super) struct Line {
 
 /// The corners of a piecewise-linear type-1 set, its height included.
 pub(super) fn polyline(conclusion: &Conclusion) -> Option<Vec<Vertex>> {
-    let Conclusion::Set { membership: Membership::Shape { kind, params, height }, lower: None } =
-        conclusion
-    else {
-        return None;
-    };
+    match conclusion {
+        Conclusion::Set { membership, lower: None } => corners(membership),
+        _ => None,
+    }
+}
+
+/// The corners of a piecewise-linear set, its height included.
+fn corners(set: &Membership) -> Option<Vec<Vertex>> {
+    let Membership::Shape { kind, params, height } = set else { return None };
     let mut corners = Vec::new();
     kind.vertices(params, &mut |vertex| {
         corners.push(Vertex { grade: vertex.grade * height, ..vertex });
     });
     (kind.is_piecewise_linear() && !corners.is_empty()).then_some(corners)
+}
+
+/// The first of two piecewise-linear sets where it is nowhere above the second, else the smaller of
+/// both at each place.
+pub(crate) fn smaller_set(set: &Membership, limit: &Membership) -> Option<Membership> {
+    let (own, other) = (corners(set)?, corners(limit)?);
+    let mut places = vec![f64::NEG_INFINITY, f64::INFINITY];
+    places.extend(own.iter().chain(&other).map(|vertex| vertex.x));
+    places.sort_by(f64::total_cmp);
+    places.dedup();
+    let (mut params, mut is_above): (Vec<f64>, bool) = (Vec::new(), false);
+    let mut add = |x: f64, grade: f64| {
+        if x.is_finite() && !params.ends_with(&[x, grade]) {
+            params.extend([x, grade]);
+        }
+    };
+    for ends in places.windows(2) {
+        let &[from, to] = ends else { continue };
+        let (own, other) = (line(&own, from, to), line(&other, from, to));
+        let above = [own[0] - other[0], own[1] - other[1]];
+        is_above |= above.iter().any(|&by| by > 0.0);
+        add(from, own[0].min(other[0]));
+        if above[0].min(above[1]) < 0.0 && above[0].max(above[1]) > 0.0 {
+            let share = above[0] / (above[0] - above[1]);
+            add(from + (to - from) * share, own[0] + (own[1] - own[0]) * share);
+        }
+        add(to, own[1].min(other[1]));
+    }
+    let smaller = || Membership::Shape { kind: ShapeKind::Points, params, height: 1.0 };
+    Some(if is_above { smaller() } else { set.clone() })
 }
 
 /// The cells between all corners inside the universe, and the lines in them.

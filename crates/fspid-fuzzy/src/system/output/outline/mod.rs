@@ -19,6 +19,7 @@ use super::roomy_clone;
 use super::way::{self, Join, Way};
 use crate::membership::Vertex;
 use crate::norm::{SNormKind, TNormKind};
+pub(crate) use cells::smaller_set;
 use cells::{Cell, Line, cells, polyline};
 use edge::{Active, Edge, highest, sum};
 
