@@ -85,15 +85,20 @@ fn symmetry(audit: &Audit<'_>, surface: &OutputSurface) -> Finding {
     let (name, nearer) = if is_odd { ("odd", &surface.odd) } else { ("even", &surface.even) };
     let (mark, sentence) = match &nearer.statement {
         Statement::Proved => (Mark::Holds, format!("the surface is {name} about its middle")),
-        Statement::Refuted(_) => (Mark::Worth, departure(audit, name, nearer)),
-        Statement::Open => (Mark::Open, departure(audit, name, nearer)),
+        Statement::Refuted(_) => {
+            (Mark::Worth, format!("the surface is not {name}: {}", departure(audit, nearer)))
+        }
+        Statement::Open => {
+            let departure = departure(audit, nearer);
+            (Mark::Open, format!("not proved whether the surface is {name}: {departure}"))
+        }
     };
     finding(mark, "symmetry", sentence)
 }
 
-fn departure(audit: &Audit<'_>, name: &str, symmetry: &Symmetry) -> String {
+fn departure(audit: &Audit<'_>, symmetry: &Symmetry) -> String {
     let (size, at) = (between(symmetry.departure.bounds), audit.point(&symmetry.departure.at));
-    format!("the surface is not {name}: opposite points differ by up to {size}, at {at}")
+    format!("opposite points differ by up to {size}, at {at}")
 }
 
 /// Terms that no rule concludes.
