@@ -2,8 +2,11 @@
 
 use crate::common;
 
-use common::problems;
+use common::{EXACT, problems};
+use fspid_formats::fcl::Dialect;
 use fspid_formats::{fcl, fll};
+use fspid_fuzzy::SNormKind;
+use fspid_fuzzy::system::{Antecedent, Variable};
 
 #[test]
 fn every_problem_of_a_broken_text_is_told_at_once() {
@@ -130,4 +133,32 @@ fn brackets_beyond_64_levels_are_refused_where_they_are() {
     assert_eq!(nested(65), format!("5:78: `x`: {message}"));
     let nots = format!("RULE 1 : IF {} x IS low THEN y IS a;", "NOT ".repeat(65));
     assert!(told_of_rule(&nots).contains(message));
+}
+
+/// One word for a block stands for all its outputs: it used to be that of the first, whatever rules ask.
+#[test]
+fn weighted_outputs_that_rules_ask_are_not_written_with_the_aggregation_of_another() {
+    let text = "FUNCTION_BLOCK f VAR_INPUT x : REAL; END_VAR VAR_OUTPUT y : REAL; z : REAL; END_VAR \
+        FUZZIFY x TERM up := (0, 0) (1, 1); END_FUZZIFY \
+        DEFUZZIFY y TERM big := 1; METHOD : COGS; RANGE := (0 .. 1); END_DEFUZZIFY \
+        DEFUZZIFY z TERM big := 2; METHOD : COGS; RANGE := (0 .. 2); END_DEFUZZIFY \
+        RULEBLOCK b AND : MIN; ACT : MIN; ACCU : MAX; \
+        RULE 1 : IF x IS up THEN z IS big; RULE 2 : IF x IS up THEN y IS big; \
+        RULE 3 : IF y IS big THEN z IS big; END_RULEBLOCK END_FUNCTION_BLOCK";
+    for dialect in [Dialect::Iec, Dialect::JFuzzyLogic] {
+        let mut parts = fcl::read(text).expect("a system").parts;
+        assert!(fcl::write(&parts, dialect, EXACT).is_ok());
+        parts.outputs[1].aggregation = SNormKind::BoundedSum.into();
+        // The output that nobody asks is free, that of the one that is asked comes back.
+        let written = fcl::write(&parts, dialect, EXACT).expect("z is not asked").text;
+        let again = fcl::read(&written).expect("a system").parts;
+        assert!(again.outputs[0].aggregation.is(SNormKind::Maximum), "{written}");
+        let asking = parts.blocks[0].rules[2].clone();
+        parts.blocks[0].rules.push(asking);
+        if let Antecedent::Is(statement) = &mut parts.blocks[0].rules[3].antecedent {
+            statement.variable = Variable::Output(1);
+        }
+        let told = fcl::write(&parts, dialect, EXACT).expect_err("both are asked").to_string();
+        assert!(told.contains("is joined in another way"), "{told}");
+    }
 }

@@ -9,8 +9,8 @@ use fspid_formats::fcl::{self, Dialect};
 use fspid_formats::{MAX_INPUT_BYTES, fis, fml};
 use fspid_fuzzy::membership::ShapeKind;
 use fspid_fuzzy::system::{
-    Antecedent, Conclusion, Defuzzifier, FallbackValue, Membership, Parts, Sampling, System,
-    Universe,
+    Antecedent, Conclusion, Defuzzifier, FallbackValue, Membership, Parts, Sampling, Statement,
+    System, Universe, Variable,
 };
 use fspid_fuzzy::{Hedge, OutOfRange, SNormKind, TNormKind};
 
@@ -421,4 +421,25 @@ fn a_singleton_that_is_integrated_is_no_number_of_fcl() {
         let told = fcl::write(&parts, dialect, LOSSY).unwrap_err().to_string();
         assert!(told.contains("is read as a number in FCL"), "{told}");
     }
+}
+
+/// What rules ask used to come back added up, with other answers and without a word.
+#[test]
+fn the_aggregation_of_a_weighted_output_that_rules_ask_is_a_loss_that_is_told() {
+    let mut parts = read(PLANES);
+    let variable = Variable::Output(0);
+    let asking = Antecedent::Is(Statement { variable, term: Some(0), hedges: vec![] });
+    let mut rule = parts.blocks[0].rules[0].clone();
+    rule.antecedent = asking;
+    parts.blocks[0].rules.push(rule);
+    assert!(parts.outputs[0].defuzzifier.sampling().is_none());
+    assert!(parts.outputs[0].aggregation.is(SNormKind::UnboundedSum));
+    assert!(fml::write(&parts, EXACT).is_ok());
+    parts.outputs[0].aggregation = SNormKind::Maximum.into();
+    let told = fml::write(&parts, EXACT).expect_err("another aggregation").to_string();
+    assert!(told.contains("how that is joined has no words in FML"), "{told}");
+    let writing = fml::write(&parts, LOSSY).expect("allowed");
+    assert!(read(&writing.text).outputs[0].aggregation.is(SNormKind::UnboundedSum));
+    parts.blocks[0].rules.pop();
+    assert!(fml::write(&parts, EXACT).is_ok(), "nobody asks");
 }

@@ -1,13 +1,13 @@
 //! The text of a system that a dialect can say.
 
 use fspid_fuzzy::system::{
-    Conclusion, FallbackValue, Input, Membership, Output, Parts, RuleBlock, Sampling,
+    Conclusion, Consequent, FallbackValue, Input, Membership, Output, Parts, RuleBlock, Sampling,
 };
 use fspid_fuzzy::{OutOfRange, SNormKind};
 
 use super::statement::{range, statement};
 use super::{options, set};
-use crate::adapt::{check_formula, formula_names};
+use crate::adapt::{check_formula, formula_names, is_asked};
 use crate::fcl::Dialect;
 use crate::loss::Loss;
 use crate::number::{written as number, written_all};
@@ -179,15 +179,21 @@ impl Writer<'_> {
         Style { upper: !own, negation: !own, hedges: own, carries: own, between }
     }
 
-    /// The accumulation of the outputs that a block concludes.
+    /// The accumulation of the outputs that a block concludes: one for all that are joined, or asked.
     fn block_accu(&mut self, block: &RuleBlock) -> String {
         let concluded = block.rules.iter().flat_map(|rule| &rule.consequents);
-        let outputs = || concluded.clone().filter_map(|c| self.parts.outputs.get(c.output));
-        let integrates = |output: &&Output| output.defuzzifier.sampling().is_some();
-        let Some(first) = outputs().find(integrates).or_else(|| outputs().next()) else {
+        let outputs = || {
+            let with_index = |c: &Consequent| Some((c.output, self.parts.outputs.get(c.output)?));
+            concluded.clone().filter_map(with_index)
+        };
+        let counts = |&(index, output): &(usize, &Output)| {
+            output.defuzzifier.sampling().is_some() || is_asked(self.parts, index)
+        };
+        let Some((_, first)) = outputs().find(counts).or_else(|| outputs().next()) else {
             return String::new();
         };
-        let other = outputs().filter(integrates).find(|o| o.aggregation != first.aggregation);
+        let other = outputs().filter(counts).map(|(_, output)| output);
+        let other = other.into_iter().find(|output| output.aggregation != first.aggregation);
         if let Some(other) = other {
             let message =
                 format!("is joined in another way than `{}` in the same rules", first.name);

@@ -2,13 +2,15 @@
 
 use fspid_fuzzy::membership::ShapeKind;
 use fspid_fuzzy::system::{
-    Activation, Antecedent, Conclusion, Defuzzifier, FallbackValue, Input, Membership, Output,
-    Parts, RuleBlock, SNorm, Sampling, SetReading, TNorm, Universe, Variable,
+    Activation, Conclusion, Defuzzifier, FallbackValue, Input, Membership, Output, Parts,
+    RuleBlock, SNorm, Sampling, SetReading, TNorm, Universe, Variable,
 };
 use fspid_fuzzy::{OutOfRange, SNormKind};
 
 use super::Kind;
-use crate::adapt::{TYPE_1, numbered_fallback, reach, sampled, without_disabled_rules};
+use crate::adapt::{
+    TYPE_1, asks, is_asked, numbered_fallback, reach, sampled, without_disabled_rules,
+};
 use crate::fit;
 use crate::fml::shape;
 use crate::fml::words::{S_NORMS, T_NORMS, word_of};
@@ -34,6 +36,7 @@ pub(super) fn adapted(parts: &Parts, loss: &mut Loss) -> Parts {
     left_out(&mut parts, loss);
     parts.inputs.iter_mut().for_each(|found| input(found, loss));
     parts.outputs.iter_mut().for_each(|found| output(found, loss));
+    added_up(&mut parts, loss);
     let kinds: Vec<Kind> = parts.outputs.iter().map(Kind::of).collect();
     parts.blocks.iter_mut().for_each(|found| block(found, &kinds, loss));
     parts
@@ -145,6 +148,19 @@ fn joined(output: &mut Output, loss: &mut Loss) {
     s_norm(&name, "accumulation", &mut output.aggregation, loss);
 }
 
+/// Weighted outputs have no accumulation in the language: a rule that asks one finds conclusions added up.
+fn added_up(parts: &mut Parts, loss: &mut Loss) {
+    let asked: Vec<bool> = (0..parts.outputs.len()).map(|index| is_asked(parts, index)).collect();
+    for (output, asked) in parts.outputs.iter_mut().zip(asked) {
+        let weighs = output.defuzzifier.sampling().is_none();
+        if asked && weighs && !output.aggregation.is(SNormKind::UnboundedSum) {
+            let message = "rules ask how strongly it was concluded, and how that is joined has no words in FML";
+            loss.lose(&output.name, message, "the unbounded sum");
+            output.aggregation = SNormKind::UnboundedSum.into();
+        }
+    }
+}
+
 fn terms(output: &mut Output, loss: &mut Loss) {
     let kind = Kind::of(output);
     for term in &mut output.terms {
@@ -253,25 +269,17 @@ fn block(block: &mut RuleBlock, kinds: &[Kind], loss: &mut Loss) {
             loss.cannot(&name, message, "a norm with a name");
         }
     }
+    let is_output = |variable| matches!(variable, Variable::Output(_));
     let concluded = |rule: &fspid_fuzzy::system::Rule| {
         let own = rule.consequents.iter().filter_map(|found| kinds.get(found.output));
         own.copied().collect::<Vec<_>>()
     };
     let all: Vec<Kind> = block.rules.iter().flat_map(concluded).collect();
     let mixed = all.iter().any(|kind| Some(kind) != all.first());
-    if mixed && block.rules.iter().any(|rule| asks_output(&rule.antecedent)) {
+    if mixed && block.rules.iter().any(|rule| asks(&rule.antecedent, &is_output)) {
         let message =
             "rules about sets and about numbers that ask about outputs keep no order in FML";
         loss.cannot(&name, message, "rule blocks of one kind");
-    }
-}
-
-fn asks_output(antecedent: &Antecedent) -> bool {
-    match antecedent {
-        Antecedent::Always => false,
-        Antecedent::Is(statement) => matches!(statement.variable, Variable::Output(_)),
-        Antecedent::All(parts) | Antecedent::Any(parts) => parts.iter().any(asks_output),
-        Antecedent::Not(part) => asks_output(part),
     }
 }
 
