@@ -18,7 +18,7 @@ use crate::sensor::Seeing;
 use crate::stability::{
     GrowthAtRest, MODE_RADIUS, Undecided, Unstable, doubling_s, growth_of_plant, holds,
 };
-use blown::blown;
+use blown::{Blown, blown};
 
 /// A controller and the gains that it has at rest.
 type Held<'a> = (&'a Controller, Gains<f64>);
@@ -54,24 +54,31 @@ pub(crate) fn growth(
         found.undecided =
             of_places(scenario, (aircraft, &standings), (controller, gains), |_| true)?;
     }
-    let last = standings.iter().rfind(|it| it.by != Change::Fuel);
-    for (own, standing) in blown(scenario).iter().zip(last.into_iter().cycle()) {
-        if !found.holds() {
-            break;
-        }
-        let mine = |mode: usize| own.modes.contains(&mode);
-        let of_it = standing
-            .flown_in(&own.scenario)
-            .map(|it| of_modes(&it, standing, (controller, gains), mine));
-        let GrowthAtRest { certain, undecided } = of_it.transpose()?.unwrap_or_default();
-        let grown = certain.map(|it| Undecided::at_trim(own.seen_as.doubt(it.spectral_radius)));
-        found.undecided = grown.or(undecided);
-        if found.holds() {
-            let aircraft = (aircraft, standings.as_slice());
-            found.undecided = of_places(&own.scenario, aircraft, (controller, gains), mine)?;
+    if let Some(last) = standings.iter().rfind(|it| it.by != Change::Fuel) {
+        for own in blown(scenario) {
+            if found.holds() {
+                found.undecided = of_air(&own, last, (aircraft, &standings), (controller, gains))?;
+            }
         }
     }
     Ok(found)
+}
+
+/// The first doubt of the modes that come to another air, of the aircraft that there is last.
+fn of_air(
+    own: &Blown,
+    last: &Standing,
+    (aircraft, standings): (&AircraftPlant, &[Standing]),
+    held: Held<'_>,
+) -> Result<Option<Undecided>, SimError> {
+    let mine = |mode: usize| own.modes.contains(&mode);
+    let of_it = last.flown_in(&own.scenario).map(|it| of_modes(&it, last, held, mine));
+    let GrowthAtRest { certain, undecided } = of_it.transpose()?.unwrap_or_default();
+    let grown = certain.map(|it| Undecided::at_trim(own.seen_as.doubt(it.spectral_radius)));
+    match grown.or(undecided) {
+        None => of_places(&own.scenario, (aircraft, standings), held, mine),
+        doubt => Ok(doubt),
+    }
 }
 
 /// The first doubt of where these modes of a flight come to.

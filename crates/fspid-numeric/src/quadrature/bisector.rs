@@ -79,8 +79,7 @@ impl Quadrature<'_> {
                 _ => break,
             }
         }
-        self.enclosed(curve, bracket)
-            .unwrap_or_else(|| self.from_both_sides(curve, tolerance, bracket))
+        self.enclosed(curve, bracket).unwrap_or_else(|| self.brought_in(curve, tolerance, bracket))
     }
 
     /// The bracket with its point elsewhere.
@@ -112,7 +111,7 @@ impl Quadrature<'_> {
 
     /// The bracket, brought in from both of its ends up to where nobody knows any more on which side of a point the bisector
     /// lies: around a gap between two halves, or a point where the curve vanishes.
-    fn from_both_sides<C: Curve>(&self, curve: &C, tolerance: f64, bracket: Bracket) -> Interval {
+    fn brought_in<C: Curve>(&self, curve: &C, tolerance: f64, bracket: Bracket) -> Interval {
         let near = SIDE_SHARE * (self.upper - self.lower);
         let side = |end: f64| {
             let (mut known, mut open) = (end, bracket.at);

@@ -133,7 +133,6 @@ pub(super) fn still(
             altitude_m: plant.trim().target.altitude_m,
             angle_sensor: late(beam.angle_sensor),
             range_sensor: late(beam.range_sensor),
-            ..*beam
         }
     });
     let loops = autopilot.loops().iter().map(|outer| {
