@@ -235,6 +235,18 @@ fn files_from_before_version_6_are_read_and_told() {
     );
 }
 
+/// Of such rules fspid had 5.61 where fuzzylite has 2, without a word.
+#[test]
+fn rules_that_ask_what_their_block_concludes_say_where_fuzzylite_answers_otherwise() {
+    let asking = TIPPER.replace("if service is good then", "if tip is cheap then");
+    assert_ne!(asking, TIPPER);
+    for (activation, differs) in [("General", false), ("First 1 0.0", false), ("Highest 2", true)] {
+        let text = asking.replace("activation: General", &format!("activation: {activation}"));
+        let told = notes(&fll::read(&text).expect("allowed")).join("\n");
+        assert_eq!(told.contains("ANSWERS DIFFER"), differs, "{activation}: {told}");
+    }
+}
+
 #[test]
 fn a_bisector_says_how_far_that_of_fuzzylite_may_be_away() {
     let told = |text: &str| notes(&fll::read(text).unwrap()).join("\n");

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use fspid_fuzzy::system::{
-    Conclusion, Consequent, Defuzzifier, Input, Membership, Output, Parts, Rule, RuleBlock,
-    Sampling, SetReading, Term,
+    Activation, Conclusion, Consequent, Defuzzifier, Input, Membership, Output, Parts, Rule,
+    RuleBlock, Sampling, SetReading, Term, Variable,
 };
 use fspid_fuzzy::{OutOfRange, SNormKind, TNormKind};
 
@@ -12,6 +12,7 @@ use super::lines::{self};
 use super::output;
 use super::sections::{FllSection, HEADINGS, Kindred};
 use super::term::{distinct, membership, needs, terms};
+use crate::adapt::asks;
 use crate::cursor::Cursor;
 use crate::lexer::{Kind, Lexer};
 use crate::names::Names;
@@ -47,6 +48,7 @@ fn tell(parts: &Parts, report: &mut Report) {
     if parts.formulas_name_outputs() {
         report.note_whole(term::OUTPUTS_IN_FORMULAS);
     }
+    parts.blocks.iter().for_each(|block| asked_in_turn(block, parts, report));
     for output in &parts.outputs {
         let weighted = output.defuzzifier.sampling().is_none();
         if weighted && !output.aggregation.is(SNormKind::UnboundedSum) {
@@ -95,6 +97,27 @@ fn concluded_again(parts: &Parts, report: &mut Report) {
                 "`{}`, `{}`: each of its {count} conclusions has a value by its own strength, as in fuzzylite before version 8; \
                  from that version on their strengths are joined first",
                 output.name, term.name
+            ));
+        }
+    }
+}
+
+/// Tells of outputs that are asked by the block that concludes them and that does not let every rule act.
+///
+/// Seen of pyfuzzylite 8.0.6: of General and First the answers are the same.
+fn asked_in_turn(block: &RuleBlock, parts: &Parts, report: &mut Report) {
+    if matches!(block.activation, Activation::General | Activation::First { .. }) {
+        return;
+    }
+    for (index, output) in parts.outputs.iter().enumerate() {
+        let is_it = |variable| variable == Variable::Output(index);
+        let concludes = |rule: &Rule| rule.consequents.iter().any(|it| it.output == index);
+        let is_asked = block.rules.iter().any(|rule| asks(&rule.antecedent, &is_it));
+        if is_asked && block.rules.iter().any(concludes) {
+            report.note_whole(format!(
+                "`{}`: rules of the block that concludes it ask it, and not every rule of the block acts: here they ask what all rules \
+                 before them conclude, in fuzzylite what those conclude that act, so that ANSWERS DIFFER",
+                output.name
             ));
         }
     }
