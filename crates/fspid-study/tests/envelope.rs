@@ -244,11 +244,8 @@ fn an_undecided_point_of_an_envelope_is_counted_and_told_wherever_points_are() {
     let gyro = include_str!("../../../scenarios/gallery/sensor-vertical-gyro.toml");
     let found = at(["176ft/s:200ft/s:2", "1000ft:1000ft:1"], gyro);
     let (text, csv, json) = (found.text(), found.csv(), found.json());
-    let count = |word: &str| number(&json["loop_points"][word]);
-    assert!(
-        count("undecided") > 0.0 && (count("stable") + count("undecided") - 2.0).abs() < 1e-9,
-        "{json}"
-    );
+    let count = |word: &str| json["loop_points"][word].as_u64().expect("a count");
+    assert!(count("undecided") > 0 && count("stable") + count("undecided") == 2, "{json}");
     assert!(
         text.contains(&format!(" of 2 points, undecided at {}\n", count("undecided"))),
         "{text}"
