@@ -2,7 +2,7 @@
 
 use fspid_fuzzy::Formula;
 use fspid_fuzzy::system::{
-    Antecedent, FallbackValue, Input, Membership, Output, Parts, Sampling, Universe, Variable,
+    FallbackValue, Input, Membership, Output, Parts, Sampling, Universe, Variable,
 };
 
 use crate::loss::Loss;
@@ -26,17 +26,7 @@ pub(crate) fn without_disabled_rules(parts: &mut Parts, loss: &mut Loss) {
 /// weighted method makes nothing of it.
 pub(crate) fn is_asked(parts: &Parts, output: usize) -> bool {
     let mut rules = parts.blocks.iter().flat_map(|block| &block.rules);
-    rules.any(|rule| asks(&rule.antecedent, &|variable| variable == Variable::Output(output)))
-}
-
-/// True if an antecedent has a statement about a variable that is so.
-pub(crate) fn asks(antecedent: &Antecedent, is_so: &dyn Fn(Variable) -> bool) -> bool {
-    match antecedent {
-        Antecedent::Always => false,
-        Antecedent::Is(statement) => is_so(statement.variable),
-        Antecedent::All(parts) | Antecedent::Any(parts) => parts.iter().any(|it| asks(it, is_so)),
-        Antecedent::Not(part) => asks(part, is_so),
-    }
+    rules.any(|rule| rule.antecedent.asks(&|variable| variable == Variable::Output(output)))
 }
 
 /// For formats whose rules have no names.

@@ -12,7 +12,6 @@ use super::lines::{self};
 use super::output;
 use super::sections::{FllSection, HEADINGS, Kindred};
 use super::term::{distinct, membership, needs, terms};
-use crate::adapt::asks;
 use crate::cursor::Cursor;
 use crate::lexer::{Kind, Lexer};
 use crate::names::Names;
@@ -112,7 +111,7 @@ fn asked_in_turn(block: &RuleBlock, parts: &Parts, report: &mut Report) {
     for (index, output) in parts.outputs.iter().enumerate() {
         let is_it = |variable| variable == Variable::Output(index);
         let concludes = |rule: &Rule| rule.consequents.iter().any(|it| it.output == index);
-        let is_asked = block.rules.iter().any(|rule| asks(&rule.antecedent, &is_it));
+        let is_asked = block.rules.iter().any(|rule| rule.antecedent.asks(&is_it));
         if is_asked && block.rules.iter().any(concludes) {
             report.note_whole(format!(
                 "`{}`: rules of the block that concludes it ask it, and not every rule of the block acts: here they ask what all rules \

@@ -329,6 +329,24 @@ pub enum Antecedent {
     Not(Box<Self>),
 }
 
+impl Antecedent {
+    /// True if it has a statement about a variable that is so.
+    pub fn asks(&self, is_so: &impl Fn(Variable) -> bool) -> bool {
+        match self {
+            Self::Always => false,
+            Self::Is(statement) => is_so(statement.variable),
+            Self::All(parts) | Self::Any(parts) => parts.iter().any(|it| it.asks(is_so)),
+            Self::Not(part) => part.asks(is_so),
+        }
+    }
+
+    /// True if it asks how strongly some output has been concluded.
+    #[must_use]
+    pub fn asks_outputs(&self) -> bool {
+        self.asks(&|variable| matches!(variable, Variable::Output(_)))
+    }
+}
+
 /// `variable is hedges term`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Statement {

@@ -15,7 +15,7 @@ use super::error::{SystemError, SystemProblem};
 use super::firing::hedged;
 use super::output::{AggregatedSet, Outline, Room, roomy_clone, smaller_set, value};
 use super::parts::{
-    Activation, Antecedent, Conclusion, Membership, Output, Parts, RuleBlock, Statement, Variable,
+    Activation, Conclusion, Membership, Output, Parts, RuleBlock, Statement, Variable,
 };
 use super::program::{STACK, Step};
 use super::workspace::Workspace;
@@ -130,22 +130,13 @@ pub(crate) fn without_outline(system: &System) -> Vec<SystemError> {
 
 /// As [`conflict`], for a block of rules.
 pub(crate) fn block_conflict(block: &RuleBlock) -> Option<(&'static str, &'static str)> {
-    let asks_output = block.rules.iter().any(|rule| asks_output(&rule.antecedent));
+    let asks_output = block.rules.iter().any(|rule| rule.antecedent.asks_outputs());
     if block.activation != Activation::General {
         Some(("an interval type-2 system", "the activation `general`"))
     } else if asks_output {
         Some(("an interval type-2 system", "rules that ask about inputs only"))
     } else {
         None
-    }
-}
-
-fn asks_output(antecedent: &Antecedent) -> bool {
-    match antecedent {
-        Antecedent::Always => false,
-        Antecedent::Is(statement) => matches!(statement.variable, Variable::Output(_)),
-        Antecedent::All(parts) | Antecedent::Any(parts) => parts.iter().any(asks_output),
-        Antecedent::Not(part) => asks_output(part),
     }
 }
 

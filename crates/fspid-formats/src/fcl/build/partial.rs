@@ -74,19 +74,10 @@ pub(super) fn leave_out(rules: &mut [RuleBlock], variables: &[Variable], report:
 
 fn keeps(rule: &mut Rule, outputs: usize) -> bool {
     rule.consequents.retain(|consequent| consequent.output < outputs);
-    !rule.consequents.is_empty() && !asks(&rule.antecedent, outputs)
+    !rule.consequents.is_empty() && !asks_beyond(&rule.antecedent, outputs)
 }
 
 /// True if a condition asks about an output that is not there.
-fn asks(antecedent: &Antecedent, outputs: usize) -> bool {
-    match antecedent {
-        Antecedent::Always => false,
-        Antecedent::Is(statement) => {
-            matches!(statement.variable, About::Output(output) if output >= outputs)
-        }
-        Antecedent::All(parts) | Antecedent::Any(parts) => {
-            parts.iter().any(|part| asks(part, outputs))
-        }
-        Antecedent::Not(part) => asks(part, outputs),
-    }
+fn asks_beyond(antecedent: &Antecedent, outputs: usize) -> bool {
+    antecedent.asks(&|variable| matches!(variable, About::Output(output) if output >= outputs))
 }

@@ -3,14 +3,12 @@
 use fspid_fuzzy::membership::ShapeKind;
 use fspid_fuzzy::system::{
     Activation, Conclusion, Defuzzifier, FallbackValue, Input, Membership, Output, Parts,
-    RuleBlock, SNorm, Sampling, SetReading, TNorm, Universe, Variable,
+    RuleBlock, SNorm, Sampling, SetReading, TNorm, Universe,
 };
 use fspid_fuzzy::{OutOfRange, SNormKind};
 
 use super::Kind;
-use crate::adapt::{
-    TYPE_1, asks, is_asked, numbered_fallback, reach, sampled, without_disabled_rules,
-};
+use crate::adapt::{TYPE_1, is_asked, numbered_fallback, reach, sampled, without_disabled_rules};
 use crate::fit;
 use crate::fml::shape;
 use crate::fml::words::{S_NORMS, T_NORMS, word_of};
@@ -269,14 +267,13 @@ fn block(block: &mut RuleBlock, kinds: &[Kind], loss: &mut Loss) {
             loss.cannot(&name, message, "a norm with a name");
         }
     }
-    let is_output = |variable| matches!(variable, Variable::Output(_));
     let concluded = |rule: &fspid_fuzzy::system::Rule| {
         let own = rule.consequents.iter().filter_map(|found| kinds.get(found.output));
         own.copied().collect::<Vec<_>>()
     };
     let all: Vec<Kind> = block.rules.iter().flat_map(concluded).collect();
     let mixed = all.iter().any(|kind| Some(kind) != all.first());
-    if mixed && block.rules.iter().any(|rule| asks(&rule.antecedent, &is_output)) {
+    if mixed && block.rules.iter().any(|rule| rule.antecedent.asks_outputs()) {
         let message =
             "rules about sets and about numbers that ask about outputs keep no order in FML";
         loss.cannot(&name, message, "rule blocks of one kind");

@@ -206,17 +206,8 @@ fn rises_with_strength(rule: &ActiveRule<'_>) -> bool {
 /// True if rules further down may notice a rule, or it notices those between: some rule asks how strongly
 /// one of its conclusions has been drawn so far, or it asks that of an output itself.
 fn takes_part_in_a_chain(system: &System, rule: &Rule) -> bool {
-    let asks = asks_outputs(&rule.antecedent);
-    asks || rule.consequents.iter().any(|it| is_asked(system, it.output, it.term))
-}
-
-fn asks_outputs(antecedent: &Antecedent) -> bool {
-    match antecedent {
-        Antecedent::Always => false,
-        Antecedent::Is(statement) => matches!(statement.variable, Variable::Output(_)),
-        Antecedent::All(parts) | Antecedent::Any(parts) => parts.iter().any(asks_outputs),
-        Antecedent::Not(part) => asks_outputs(part),
-    }
+    rule.antecedent.asks_outputs()
+        || rule.consequents.iter().any(|it| is_asked(system, it.output, it.term))
 }
 
 /// True if some rule asks how strongly a term of an output has been concluded.
