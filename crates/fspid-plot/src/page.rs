@@ -35,15 +35,20 @@ pub(super) fn wrap(text: &str, size: f64, width: f64) -> Vec<String> {
     lines
 }
 
+/// Room for a line of the title, by the widths of [`text_width`]: titles are bold, and up to an eighth wider (px).
+pub(super) fn title_room(width: f64) -> f64 {
+    (width - 2.0 * EDGE) / 1.125
+}
+
 /// Height that the title needs at the top of a figure (px).
 pub(super) fn title_height(title: &str, width: f64) -> f64 {
-    let lines = wrap(title, TITLE_PX, width - 2.0 * EDGE).len();
+    let lines = wrap(title, TITLE_PX, title_room(width)).len();
     if lines == 0 { EDGE } else { EDGE + lines as f64 * (TITLE_PX + 4.0) + 6.0 }
 }
 
 /// Writes the title at the upper left corner.
 pub(super) fn title(canvas: &mut Canvas, title: &str) {
-    let lines = wrap(title, TITLE_PX, canvas.width() - 2.0 * EDGE);
+    let lines = wrap(title, TITLE_PX, title_room(canvas.width()));
     for (n, line) in lines.iter().enumerate() {
         let y = EDGE + TITLE_PX * 0.85 + n as f64 * (TITLE_PX + 4.0);
         canvas.text(EDGE, y, line, Font::new(TITLE_PX, Anchor::Start).bold());
@@ -227,6 +232,15 @@ mod tests {
         let legend = Legend::set((0..7).map(entry).collect(), 400.0);
         assert!(legend.rows.len() >= 3);
         assert!(Legend::set(Vec::new(), 400.0).height() < 1e-9);
+    }
+
+    #[test]
+    fn a_title_that_is_bold_ends_within_the_figure() {
+        // As wide as the widths say it ends before the edge of a figure of 500 px, and drawn in bold behind it.
+        let long = "navion: loop of PID, sampled every 0.01 s, without limits, at its gains";
+        assert!(text_width(long, TITLE_PX) < 500.0 - EDGE);
+        let lines = (title_height(long, 500.0) - EDGE - 6.0) / (TITLE_PX + 4.0);
+        assert!((lines - 2.0).abs() < 1e-9, "{lines}");
     }
 
     #[test]

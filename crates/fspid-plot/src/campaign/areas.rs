@@ -1,7 +1,7 @@
 //! What figures of campaigns share: grids without a library, words cut to their room, signs of series.
 
 use crate::axis::Axis;
-use crate::page::{self, EDGE, LABEL_PX, TITLE_PX};
+use crate::page::{self, LABEL_PX, TITLE_PX};
 use crate::plot::TICK_PX;
 use crate::sign::Sign;
 use crate::style::{Role, SeriesStyle};
@@ -37,9 +37,7 @@ pub(super) fn fitted(text: &str, size: f64, width: f64) -> String {
 
 /// A title in which every word fits into a line of a figure of that width.
 pub(super) fn title(text: &str, width: f64) -> String {
-    // Titles are bold, and a tenth wider than the widths that are known.
-    let most = 0.9 * (width - 2.0 * EDGE);
-    let words = text.split_whitespace().map(|word| fitted(word, TITLE_PX, most));
+    let words = text.split_whitespace().map(|word| fitted(word, TITLE_PX, page::title_room(width)));
     words.collect::<Vec<_>>().join(" ")
 }
 

@@ -14,6 +14,8 @@ mod tests;
 
 use core::ops::ControlFlow;
 
+use fspid_core::Gains;
+
 use crate::autopilot::Quantity;
 use crate::closed_loop::fly;
 use crate::controller::Controller;
@@ -132,6 +134,7 @@ fn pieces_of<'a>(scenario: &Scenario, ends: &'a Ends, trace: &Trace) -> Pieces<'
             at_servo_rad: at_servo.as_ref().and_then(|it| it.get(k)).copied().unwrap_or(0.0),
             elevator_rad: trace.elevator_rad[k],
             autopilot_is_limited: trace.autopilot_limited.get(k) == Some(&true),
+            gains: trace.gains.get(k).copied().unwrap_or(Gains::ZERO),
             outer: outer(k),
         });
     }
@@ -248,6 +251,7 @@ fn doubt_flown_on(
             at_servo_rad: at_servo.copied().unwrap_or(0.0),
             elevator_rad: instant.elevator_rad,
             autopilot_is_limited: instant.autopilot.is_some_and(|it| it.is_limited),
+            gains: instant.step.gains,
             outer: outer_at(&instant),
         });
         if instant.k + 1 == rows {

@@ -11,6 +11,7 @@ use super::moved::Moved;
 use super::periods_s;
 use super::pieces::{Pieces, Span};
 use crate::controller::Controller;
+use crate::rest::leakage_per_s;
 use crate::scenario::Scenario;
 use crate::sensor::Sensor;
 
@@ -28,6 +29,10 @@ const DOUBLED: f64 = 2.0;
 const STANDS: f64 = 0.02;
 /// A swing that is so many times as wide as the widths of actuator and sensors is none of theirs.
 const WIDTHS: f64 = 10.0;
+/// Gains that move by no more than this share of themselves are those of one rest.
+const SETTLED_GAINS: f64 = 0.01;
+/// An error that moves, a fifth of a flight after the other, by no more than this share of what it moved before shrinks.
+const SHRINKS: f64 = 0.9;
 /// Pieces of a flight that is flown on that are as long as the flight, at least.
 const OWN_LENGTH: usize = 5;
 /// What a step of a rate gyro is of pitch: that of a second.
@@ -50,6 +55,8 @@ pub(super) struct MovingGains {
     dt_s: f64,
     /// Speed and height drift beside; only what turns back is a swing.
     is_of_aircraft: bool,
+    /// The controller's gains keep what their inputs were.
+    accumulate: bool,
 }
 
 impl MovingGains {
@@ -65,7 +72,8 @@ impl MovingGains {
             periods_s(scenario).map(|(_, period_s)| period_s).fold(0.0, f64::max);
         let dt_s = scenario.timing.dt_s();
         let is_of_aircraft = scenario.plant.linear().is_none();
-        Some(Self { width_rad, longest_period_s, dt_s, is_of_aircraft })
+        let accumulate = accumulates(controller);
+        Some(Self { width_rad, longest_period_s, dt_s, is_of_aircraft, accumulate })
     }
 
     /// True where the error at the end of a flight does not shrink.
@@ -106,10 +114,21 @@ impl MovingGains {
         Self::have_stood(pieces, pieces.tail())
     }
 
-    /// True where an aircraft that is flown on has been so near a rest, within its limits, for as long as its flight was.
+    /// True where a flight that is flown on has been so near a rest, within its limits, for as long as the flight was; of a linear
+    /// plant with gains that hardly move any more, and an error that shrinks.
     pub(super) fn have_come_back(self, pieces: &Pieces<'_>) -> bool {
         let last = pieces.last(OWN_LENGTH);
-        self.is_of_aircraft && !last.meets() && Self::have_stood(pieces, last)
+        let is_at_its_rest = || self.is_of_aircraft || self.come_to_one_rest(pieces, last);
+        !last.meets() && Self::have_stood(pieces, last) && is_at_its_rest()
+    }
+
+    /// True where the gains are those of one rest, and the error goes on to shrink towards it.
+    ///
+    /// Gains that follow their inputs are meant: those of an accumulating law come to another rest with every motion.
+    fn come_to_one_rest(self, pieces: &Pieces<'_>, last: Span) -> bool {
+        let [before_rad, last_rad] =
+            [pieces.before_last(2, 2), pieces.tail()].map(Span::error_size_rad);
+        !self.accumulate && last.has_gains_within(SETTLED_GAINS) && last_rad <= SHRINKS * before_rad
     }
 
     fn have_stood(pieces: &Pieces<'_>, part: Span) -> bool {
@@ -137,6 +156,10 @@ fn has_gone_off([before, last]: [Span; 2], moved: Moved) -> bool {
     let [before_rad, last_rad] = [before, last].map(Span::error_off_rad);
     let times = if moved == Moved::Nothing { GONE } else { DOUBLED };
     last_rad > NEAR_RAD && last_rad >= times * before_rad
+}
+
+fn accumulates(controller: &Controller) -> bool {
+    matches!(controller, Controller::SelfTuning(fspid) if leakage_per_s(fspid).is_some())
 }
 
 /// All widths of actuator and sensors, rad.

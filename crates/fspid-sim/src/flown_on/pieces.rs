@@ -1,6 +1,7 @@
 //! A flight in pieces: how far error and command move in each, and which of them meet a limit.
 
 use fspid_aircraft::{ForceModel, Range};
+use fspid_core::Gains;
 
 use super::moved::Moved;
 use crate::held_limits::{Ends, Moves};
@@ -72,6 +73,8 @@ pub(super) struct Shown {
     pub(super) at_servo_rad: f64,
     pub(super) elevator_rad: f64,
     pub(super) autopilot_is_limited: bool,
+    /// Gains of the controller.
+    pub(super) gains: Gains<f64>,
     pub(super) outer: Outer,
 }
 
@@ -94,6 +97,7 @@ pub(super) struct Span {
     way_rad: f64,
     command: Reach,
     elevator: Reach,
+    gains: [Reach; 3],
     /// Of [`Outer::off`], and of the modes.
     off: [Reach; 2],
     modes: Reach,
@@ -113,6 +117,7 @@ impl Span {
         way_rad: 0.0,
         command: Reach::NONE,
         elevator: Reach::NONE,
+        gains: [Reach::NONE; 3],
         off: [Reach::NONE; 2],
         modes: Reach::NONE,
         bank: Reach::NONE,
@@ -128,6 +133,7 @@ impl Span {
             way_rad: self.way_rad + other.way_rad,
             command: self.command.and(other.command),
             elevator: self.elevator.and(other.elevator),
+            gains: [0, 1, 2].map(|place| self.gains[place].and(other.gains[place])),
             off: [0, 1].map(|place| self.off[place].and(other.off[place])),
             modes: self.modes.and(other.modes),
             bank: self.bank.and(other.bank),
@@ -145,6 +151,14 @@ impl Span {
 
     pub(super) fn error_size_rad(self) -> f64 {
         self.error.size_rad()
+    }
+
+    /// True where each gain moves by no more than a share of what it is at most, so that they are those of one rest.
+    pub(super) fn has_gains_within(self, share: f64) -> bool {
+        self.gains.iter().all(|gain| {
+            let most = gain.least_rad.abs().max(gain.most_rad.abs());
+            gain.size_rad() <= share * most
+        })
     }
 
     /// How far off the error is at most.
@@ -243,6 +257,7 @@ impl<'a> Pieces<'a> {
             way_rad: (moving_rad - before.moving_rad).abs(),
             command: Reach::at(command_rad),
             elevator: Reach::at(elevator_rad),
+            gains: [shown.gains.kp, shown.gains.ki, shown.gains.kd].map(Reach::at),
             off: shown.outer.off.map(Reach::at),
             modes: Reach::at(shown.outer.mode),
             bank: Reach::at(bank_rad),
@@ -272,7 +287,13 @@ impl<'a> Pieces<'a> {
 
     /// So many of the last pieces, or all that there are.
     pub(super) fn last(&self, pieces: usize) -> Span {
-        Span::of(&self.all[self.all.len().saturating_sub(pieces)..])
+        self.before_last(pieces, 0)
+    }
+
+    /// So many pieces before so many of the last, or all of these that there are.
+    pub(super) fn before_last(&self, pieces: usize, last: usize) -> Span {
+        let end = self.all.len().saturating_sub(last);
+        Span::of(&self.all[end.saturating_sub(pieces)..end])
     }
 
     /// True where the last two pieces have come to rest: within the limits with a command that stands, for an error alone stands

@@ -38,6 +38,7 @@ fn shown(moving_rad: f64, command_rad: f64) -> Shown {
         at_servo_rad,
         elevator_rad,
         autopilot_is_limited,
+        gains: Gains::ZERO,
         outer: Outer::default(),
     }
 }

@@ -257,8 +257,8 @@ pub(crate) fn rate_bias_rad_s(scenario: &Scenario) -> f64 {
     scenario.surroundings.rate_sensor.as_ref().map_or(0.0, Sensor::bias)
 }
 
-/// Leakage of a law that accumulates, 1/s.
-fn leakage_per_s(fspid: &Fspid<f64>) -> Option<f64> {
+/// Leakage of a law that accumulates, 1/s; none of one that does not.
+pub(crate) fn leakage_per_s(fspid: &Fspid<f64>) -> Option<f64> {
     match fspid.tuner().settings().law {
         Law::Memoryless => None,
         Law::Accumulating { leakage_per_s } => Some(leakage_per_s),
