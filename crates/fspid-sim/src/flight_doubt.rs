@@ -3,7 +3,7 @@
 
 use crate::closed_loop::simulate;
 use crate::controller::Controller;
-use crate::flown_on;
+use crate::flown_on::{self, Fate};
 use crate::held_limits::{Ends, Moves, last_plant};
 use crate::rest::Doubt;
 use crate::sample_guard;
@@ -25,14 +25,38 @@ pub fn doubt_of_flight(
     controller: &Controller,
     trace: &Trace,
 ) -> Option<Doubt> {
+    fate((scenario, controller, trace)).doubt()
+}
+
+/// The same of each of some flights; those that are flown on fly side by side as far as they can.
+#[must_use]
+pub fn doubts_of_flights(flights: &[(&Scenario, &Controller, &Trace)]) -> Vec<Option<Doubt>> {
+    let mut doubts = vec![None; flights.len()];
+    let (mut places, mut open) = (Vec::new(), Vec::new());
+    for (place, flight) in flights.iter().enumerate() {
+        match fate(*flight) {
+            Fate::Known(doubt) => doubts[place] = doubt,
+            Fate::Open(onwards) => {
+                places.push(place);
+                open.push(onwards);
+            }
+        }
+    }
+    for (place, doubt) in places.into_iter().zip(flown_on::doubts(&open)) {
+        doubts[place] = doubt;
+    }
+    doubts
+}
+
+fn fate<'a>((scenario, controller, trace): (&'a Scenario, &'a Controller, &Trace)) -> Fate<'a> {
     let moves = || last_plant(scenario).map(|plant| Moves::of(&plant));
     if sample_guard::holds_the_command(scenario, controller, trace) {
-        return Some(Doubt::HeldByGuard);
+        return Fate::Known(Some(Doubt::HeldByGuard));
     }
     if runs_away(scenario, controller, trace) && moves().is_some_and(|it| it != Moves::Back) {
-        return Some(Doubt::RunsAway);
+        return Fate::Known(Some(Doubt::RunsAway));
     }
-    flown_on::doubt(scenario, controller, trace, moves)
+    Fate::of(scenario, controller, trace, moves)
 }
 
 /// The same of one of a scenario's controllers, for who has not flown it; none where it cannot be flown.

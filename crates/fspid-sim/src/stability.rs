@@ -20,7 +20,7 @@ use crate::plant::LinearPlant;
 use crate::rest::{Doubt, Rest, RestPoint, Stand};
 use crate::scenario::Scenario;
 
-pub use crate::flight_doubt::{doubt_of_flight, doubt_when_flown};
+pub use crate::flight_doubt::{doubt_of_flight, doubt_when_flown, doubts_of_flights};
 
 /// A radius this close below 1 cannot be told from 1 after rounding; it counts as unstable.
 const MARGIN: f64 = 1e-9;

@@ -13,11 +13,12 @@ use fspid_scenario::file::{RangeRule, Study};
 use fspid_scenario::measure::Family;
 use fspid_sim::aircraft::{AIRCRAFT_COLUMNS, Forces};
 use fspid_sim::autopilot::AUTOPILOT_COLUMNS;
-use fspid_sim::{EarlyEnd, EndCause, Exit, Plant, Prepared, SimError, Trace};
+use fspid_sim::stability::doubts_of_flights;
+use fspid_sim::{EarlyEnd, EndCause, Exit, Flyer, Plant, Prepared, SimError, Trace};
 use fspid_study::analysis::AtRest;
 use fspid_study::judgement::{Judgement, judge};
 use fspid_study::metrics::{FlightMetrics, Verdict};
-use fspid_study::simulation::{ControllerResult, Ending};
+use fspid_study::simulation::{ControllerResult, Ending, flies_on};
 
 pub use memory::Memory;
 
@@ -120,11 +121,57 @@ pub fn fly_judging(
             keep(traces, flown);
         }
     }
-    let measured = studies.iter().zip(&prepared).zip(traces);
-    let judged = |((study, prepared), traces): ((&Study, _), Result<_, _>)| {
-        measure(memory, study, judging, prepared, traces?)
+    let asked = studies.iter().zip(traces).map(|(study, traces)| {
+        let loops = study.scenario.flyers().zip(traces?);
+        Ok(loops.map(|(flyer, trace)| Flown::of(study, flyer, trace, judging)).collect())
+    });
+    let mut flown: Vec<Result<Vec<Flown>, SimError>> = asked.collect();
+    ask_as_they_go_on(studies, &mut flown);
+    let measured = studies.iter().zip(&prepared).zip(flown);
+    let judged = |((study, prepared), flown): ((&Study, _), Result<_, _>)| {
+        measure(memory, study, judging, prepared, flown?)
     };
     measured.map(judged).collect()
+}
+
+/// A flight, and what is known of its loop at rest.
+struct Flown {
+    trace: Trace,
+    at_rest: AtRest,
+}
+
+impl Flown {
+    fn of(study: &Study, flyer: Flyer<'_>, trace: Trace, judging: Judging) -> Self {
+        let scenario = &study.scenario;
+        let at_rest = match (flyer.controller(), judging.loads) {
+            (None, _) => AtRest::unknown(),
+            (Some(controller), true) => AtRest::of(scenario, controller),
+            (Some(controller), false) => AtRest::stability(scenario, controller),
+        };
+        Self { trace, at_rest }
+    }
+}
+
+/// Asks the loops at rest by their flights as they go on, those of one controller side by side.
+fn ask_as_they_go_on(studies: &[Study], flown: &mut [Result<Vec<Flown>, SimError>]) {
+    let controllers = flown.iter().flatten().map(Vec::len).max();
+    for place in 0..controllers.unwrap_or(0) {
+        let open = studies.iter().zip(flown.iter()).enumerate().filter_map(|(at, (study, all))| {
+            let Flown { trace, at_rest } = all.as_ref().ok()?.get(place)?;
+            let scenario = &study.scenario;
+            let named = flies_on(scenario, scenario.flyers().nth(place)?.name(), at_rest)?;
+            Some((at, (scenario, &named.controller, trace)))
+        });
+        let (places, open): (Vec<usize>, Vec<_>) = open.unzip();
+        let doubts = doubts_of_flights(&open);
+        for (at, doubt) in places.into_iter().zip(doubts) {
+            if let Some(Flown { at_rest, .. }) =
+                flown[at].as_mut().ok().and_then(|all| all.get_mut(place))
+            {
+                *at_rest = at_rest.clone().doubted(doubt);
+            }
+        }
+    }
 }
 
 /// Adds a trace to those of its study; the first error stays.
@@ -142,19 +189,14 @@ fn measure(
     study: &Study,
     judging: Judging,
     prepared: &Result<Prepared, SimError>,
-    traces: Vec<Trace>,
+    flown: Vec<Flown>,
 ) -> Result<Vec<FlightResult>, SimError> {
     let prepared = prepared.as_ref().map_err(Clone::clone)?;
-    let scenario = &study.scenario;
-    let results = scenario.flyers().zip(traces).map(|(flyer, trace)| {
-        let at_rest = match (flyer.controller(), judging.loads) {
-            (None, _) => AtRest::unknown(),
-            (Some(controller), true) => AtRest::of(scenario, controller),
-            (Some(controller), false) => AtRest::stability(scenario, controller),
-        };
+    let flyers = study.scenario.flyers();
+    let results = flyers.zip(flown).map(|(flyer, Flown { trace, at_rest })| {
         let unstable = at_rest.unstable.filter(|_| judging.stability == Stability::Analysed);
         let (flown, rest) = ((trace, prepared.edges()), (at_rest, unstable));
-        ControllerResult::of(study, flyer.name(), flown, rest)
+        ControllerResult::measured(study, flyer.name(), flown, rest)
     });
     let results: Vec<ControllerResult> = results.collect();
     let judgements = judge(study, &results);

@@ -1,5 +1,7 @@
 //! A group of flights from start to end.
 
+use core::ops::ControlFlow;
+
 use fspid_numeric::InstructionSet;
 
 use super::Entrant;
@@ -140,23 +142,26 @@ impl<'a, const W: usize> Group<'a, W> {
         self.next_change = flown.map(|(course, _)| course.next_from()).min().unwrap_or(usize::MAX);
     }
 
-    /// Flies all samples.
+    /// Flies all samples, or until the observer ends it.
     #[inline(always)]
-    pub(super) fn fly(&mut self, observer: &mut dyn FnMut(&BatchRow<'_, W>)) {
+    pub(super) fn fly(&mut self, observer: &mut dyn FnMut(&BatchRow<'_, W>) -> ControlFlow<()>) {
         for k in 0..self.timing.rows() {
             if self.next_change <= k {
                 self.change_plants(k);
             }
             self.drop_lost(k);
-            if self.flying == [NO; W] {
+            if self.flying == [NO; W] || self.sample(k, observer).is_break() {
                 return;
             }
-            self.sample(k, observer);
         }
     }
 
     #[inline(always)]
-    fn sample(&mut self, k: usize, observer: &mut dyn FnMut(&BatchRow<'_, W>)) {
+    fn sample(
+        &mut self,
+        k: usize,
+        observer: &mut dyn FnMut(&BatchRow<'_, W>) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
         let entering = Entering {
             setpoint_rad: self.gather(k, |signals| signals.setpoint_rad),
             at_servo_rad: self.gather(k, |signals| signals.at_servo),
@@ -172,7 +177,7 @@ impl<'a, const W: usize> Group<'a, W> {
         let commanded_rad = &self.controllers.steps.command_rad;
         let command_rad = self.airframes.take(k, commanded_rad, &entering);
         let elevator_rad = self.airframes.plants.elevator_rad(&entering.at_elevator_rad);
-        observer(&BatchRow {
+        let goes_on = observer(&BatchRow {
             k,
             flying: &self.flying,
             setpoint_rad: &entering.setpoint_rad,
@@ -189,6 +194,7 @@ impl<'a, const W: usize> Group<'a, W> {
         if held != [NO; W] {
             self.advance_held(&held, &command_rad, &entering.at_elevator_rad);
         }
+        goes_on
     }
 
     /// A signal of all flights at a sample; zero where there is none.

@@ -45,6 +45,8 @@ pub use refusal::Refusal;
 pub use row::BatchRow;
 pub use squadron::{fly_aircraft, fly_aircraft_by};
 
+use core::ops::ControlFlow;
+
 use fearless_simd::dispatch;
 
 use crate::controller::Controller;
@@ -79,6 +81,17 @@ pub fn fly_group<const W: usize>(
     fly_group_by::<W>(InstructionSet::best(), flights, observer)
 }
 
+/// [`fly_group`] for as long as `observer` goes on; flights that fly then count as completed.
+///
+/// # Errors
+/// As [`fly_group`].
+pub fn fly_group_while<const W: usize>(
+    flights: &[Entrant<'_>],
+    mut observer: impl FnMut(&BatchRow<'_, W>) -> ControlFlow<()>,
+) -> Result<Vec<Result<Outcome, SimError>>, Refusal> {
+    flown::<W>(InstructionSet::best(), flights, &mut observer)
+}
+
 /// [`fly_group`] by instructions of choice, for tests and measurements: the bits are the same.
 ///
 /// # Errors
@@ -88,14 +101,17 @@ pub fn fly_group_by<const W: usize>(
     flights: &[Entrant<'_>],
     mut observer: impl FnMut(&BatchRow<'_, W>),
 ) -> Result<Vec<Result<Outcome, SimError>>, Refusal> {
-    flown::<W>(instructions, flights, &mut observer)
+    flown::<W>(instructions, flights, &mut |row: &BatchRow<'_, W>| {
+        observer(row);
+        ControlFlow::Continue(())
+    })
 }
 
 // Built once for all who watch.
 fn flown<const W: usize>(
     instructions: InstructionSet,
     flights: &[Entrant<'_>],
-    observer: &mut dyn FnMut(&BatchRow<'_, W>),
+    observer: &mut dyn FnMut(&BatchRow<'_, W>) -> ControlFlow<()>,
 ) -> Result<Vec<Result<Outcome, SimError>>, Refusal> {
     let mut group = Group::<W>::new(flights, instructions)?;
     dispatch!(instructions.level(), _simd => group.fly(observer));

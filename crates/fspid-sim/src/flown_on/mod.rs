@@ -8,16 +8,14 @@
 
 mod moved;
 mod moving_gains;
+mod onwards;
 mod pieces;
 #[cfg(test)]
 mod tests;
 
-use core::ops::ControlFlow;
-
 use fspid_core::Gains;
 
 use crate::autopilot::Quantity;
-use crate::closed_loop::fly;
 use crate::controller::Controller;
 use crate::held_limits::{Ends, Moves};
 use crate::instant::Instant;
@@ -27,8 +25,9 @@ use crate::sample_guard;
 use crate::scenario::Scenario;
 use crate::signal::{Disturbance, Entry};
 use crate::trace::{EndCause, Outcome, Trace};
-use moved::{Afterwards, Moved, changes_late, has_swings, held_on, is_noisy, swings_by_command};
+use moved::{Afterwards, Moved, changes_late, has_swings, is_noisy, swings_by_command};
 use moving_gains::{MovingGains, leave_what_a_mode_holds};
+pub(crate) use onwards::{Onwards, doubts};
 use pieces::{Outer, Pieces, Shown};
 
 /// So many times as long a flight is flown on.
@@ -42,68 +41,105 @@ const LEAST_FIFTH: usize = 10;
 /// A flight that has shown so many periods of what swings has shown which limits are met.
 const PERIODS: f64 = 2.0;
 
-/// Why a flight behind limits is in doubt: it is lost, or it has not come to rest, and flown on is lost, or still meets limits in
-/// a swing that does not shrink, or is held by its sample guard. One with gains that move, limits or none, has to come back
-/// towards its rest as well.
-///
-/// A nonlinear aircraft that is flown on is asked for a swing that stays at limits alone, for it has slow motions beside: what it
-/// comes to without one is told by where its flight leads. Of another simulator's aircraft the flight itself is asked for such a
-/// swing, and not flown on.
-pub(crate) fn doubt(
-    scenario: &Scenario,
-    controller: &Controller,
-    trace: &Trace,
-    moves: impl FnOnce() -> Option<Moves>,
-) -> Option<Doubt> {
-    let rows = scenario.timing.rows();
-    let ends = Ends::of(scenario, controller);
-    let is_free = ends.are_none() && scenario.autopilot.is_none();
-    let gains = MovingGains::of(scenario, controller);
-    if is_free && gains.is_none() && !sample_guard::is_set(controller) {
-        return None;
+/// What comes of a flight behind limits, or with gains that move: known from the flight itself, or asked of it as it goes on.
+pub(crate) enum Fate<'a> {
+    /// Why it is in doubt, if it is.
+    Known(Option<Doubt>),
+    /// To be flown on.
+    Open(Onwards<'a>),
+}
+
+impl<'a> Fate<'a> {
+    /// Why a flight behind limits is in doubt: it is lost, or it has not come to rest, and flown on is lost, or still meets limits in
+    /// a swing that does not shrink, or is held by its sample guard. One with gains that move, limits or none, has to come back
+    /// towards its rest as well.
+    ///
+    /// A nonlinear aircraft that is flown on is asked for a swing that stays at limits alone, for it has slow motions beside: what it
+    /// comes to without one is told by where its flight leads. Of another simulator's aircraft the flight itself is asked for such a
+    /// swing, and not flown on.
+    pub(crate) fn of(
+        scenario: &'a Scenario,
+        controller: &'a Controller,
+        trace: &Trace,
+        moves: impl FnOnce() -> Option<Moves>,
+    ) -> Self {
+        let ends = Ends::of(scenario, controller);
+        let is_free = ends.are_none() && scenario.autopilot.is_none();
+        let gains = MovingGains::of(scenario, controller);
+        if is_free && gains.is_none() && !sample_guard::is_set(controller) {
+            return Self::Known(None);
+        }
+        match Asked::of(scenario, &ends, gains, trace, moves) {
+            Ok(asked) => Self::Open(Onwards { scenario, controller, ends, asked }),
+            Err(known) => Self::Known(known),
+        }
     }
-    let is_linear = scenario.plant.linear().is_some();
-    let pieces = pieces_of(scenario, &ends, trace);
-    let in_doubt = |is_in_doubt: bool| is_in_doubt.then(|| of_limits_or_gains(gains, &pieces));
-    let moved = Moved::of(scenario, Afterwards::Noise);
-    if trace.rows() < rows {
-        let swings_itself = || moves().is_some_and(|moves| pieces.swings_on(moved, moves));
-        // With fixed gains and without limits a loop that holds at rest holds; what else ends an aircraft's flight its verdict tells.
-        return in_doubt(
-            is_linear
-                || is_lost(trace.outcome, swings_itself(), &pieces)
-                || leave_at_limits(&pieces, moved)
-                || gains.is_some_and(|it| has_gone_away(trace.outcome, it, &pieces, moved)),
-        );
+}
+
+impl Fate<'_> {
+    /// Why the flight is in doubt, flown on alone if need be.
+    pub(crate) fn doubt(self) -> Option<Doubt> {
+        match self {
+            Self::Known(doubt) => doubt,
+            Self::Open(onwards) => onwards.doubt(),
+        }
     }
-    let flies_on = !matches!(scenario.plant, Plant::External(_));
-    let swings = has_swings(scenario) || swings_by_command(scenario);
-    let is_stilled = gains.is_some() && swings && flies_on && rows <= SAMPLES[1];
-    let has_rested = has_come_to_rest(scenario, &pieces, gains, trace);
-    if has_rested && !is_stilled {
-        return None;
+}
+
+impl Asked {
+    /// What is asked of the flight as it goes on; of one that is not flown on, why it is in doubt, if it is.
+    fn of(
+        scenario: &Scenario,
+        ends: &Ends,
+        gains: Option<MovingGains>,
+        trace: &Trace,
+        moves: impl FnOnce() -> Option<Moves>,
+    ) -> Result<Self, Option<Doubt>> {
+        let rows = scenario.timing.rows();
+        let is_linear = scenario.plant.linear().is_some();
+        let pieces = pieces_of(scenario, ends, trace);
+        let in_doubt =
+            |is_in_doubt: bool| Err(is_in_doubt.then(|| of_limits_or_gains(gains, &pieces)));
+        let moved = Moved::of(scenario, Afterwards::Noise);
+        if trace.rows() < rows {
+            let swings_itself = || moves().is_some_and(|moves| pieces.swings_on(moved, moves));
+            // With fixed gains and without limits a loop that holds at rest holds; what else ends an aircraft's flight its verdict tells.
+            return in_doubt(
+                is_linear
+                    || is_lost(trace.outcome, swings_itself(), &pieces)
+                    || leave_at_limits(&pieces, moved)
+                    || gains.is_some_and(|it| has_gone_away(trace.outcome, it, &pieces, moved)),
+            );
+        }
+        let flies_on = !matches!(scenario.plant, Plant::External(_));
+        let swings = has_swings(scenario) || swings_by_command(scenario);
+        let is_stilled = gains.is_some() && swings && flies_on && rows <= SAMPLES[1];
+        let has_rested = has_come_to_rest(scenario, &pieces, gains, trace);
+        if has_rested && !is_stilled {
+            return Err(None);
+        }
+        let moves = moves().ok_or(None)?;
+        let changes_late = changes_late(scenario, trace);
+        let swings_itself = || !changes_late && pieces.swings_on(moved, moves);
+        // One that is as long as that is its own answer.
+        if !flies_on || rows > SAMPLES[1] {
+            return in_doubt(match is_linear && flies_on {
+                true => pieces.goes_on(moved, moves) || have_left(gains, &pieces, moved),
+                false => swings_itself(),
+            });
+        }
+        // At a limit that it has met once, noise may carry a plant that runs away over the edge; any other that still meets them.
+        let meets =
+            if moves == Moves::Away { pieces.whole().meets() } else { pieces.tail().meets() };
+        // An aircraft that no longer meets limits, with the gains of its rest, is on its way to the rest that holds.
+        let wanders = gains.is_some() && !MovingGains::stand(&pieces);
+        if !(is_linear || meets || changes_late || wanders) {
+            return Err(None);
+        }
+        let swings_itself = !is_linear && swings_itself();
+        let ways = ways(scenario, has_rested, meets, is_stilled).collect();
+        Ok(Self { ways, moves, gains, swings_itself })
     }
-    let moves = moves()?;
-    let changes_late = changes_late(scenario, trace);
-    let swings_itself = || !changes_late && pieces.swings_on(moved, moves);
-    // One that is as long as that is its own answer.
-    if !flies_on || rows > SAMPLES[1] {
-        return in_doubt(match is_linear && flies_on {
-            true => pieces.goes_on(moved, moves) || have_left(gains, &pieces, moved),
-            false => swings_itself(),
-        });
-    }
-    // At a limit that it has met once, noise may carry a plant that runs away over the edge; any other that still meets them.
-    let meets = if moves == Moves::Away { pieces.whole().meets() } else { pieces.tail().meets() };
-    // An aircraft that no longer meets limits, with the gains of its rest, is on its way to the rest that holds.
-    let wanders = gains.is_some() && !MovingGains::stand(&pieces);
-    if !(is_linear || meets || changes_late || wanders) {
-        return None;
-    }
-    let swings_itself = !is_linear && swings_itself();
-    let asked_by = |afterwards| Asked { afterwards, moves, gains, swings_itself };
-    ways(scenario, has_rested, meets, is_stilled)
-        .find_map(|afterwards| doubt_flown_on(scenario, controller, &ends, asked_by(afterwards)))
 }
 
 /// What acts on after a flight, each time that it is flown on: one that has rested is asked for its swings by themselves alone.
@@ -220,69 +256,13 @@ fn lengths(rows: usize) -> [usize; 2] {
 }
 
 /// What is asked of a flight that is flown on.
-#[derive(Clone, Copy)]
 struct Asked {
-    afterwards: Afterwards,
+    /// What acts on each time, until one of them leaves it in doubt.
+    ways: Vec<Afterwards>,
     moves: Moves,
     gains: Option<MovingGains>,
     /// It is that of an aircraft, and ends in a swing at limits; whoever flies on without it has left it behind.
     swings_itself: bool,
-}
-
-/// Why the flight is in doubt as it goes on; what cannot be flown on has its own swing alone.
-fn doubt_flown_on(
-    scenario: &Scenario,
-    controller: &Controller,
-    ends: &Ends,
-    Asked { afterwards, moves, gains, swings_itself }: Asked,
-) -> Option<Doubt> {
-    let of_its_own = swings_itself.then_some(Doubt::SwingAtLimits);
-    let rows = scenario.timing.rows();
-    let [horizon, piece] = lengths(rows);
-    let Some(prepared) = held_on(scenario, horizon, afterwards) else { return of_its_own };
-    let mut pieces = Pieces::new(scenario, ends, piece);
-    let moved = Moved::of(scenario, afterwards);
-    let (mut rested, mut is_held, mut own) = (false, false, None);
-    let outcome = fly(&prepared, controller, |instant| {
-        let at_servo = prepared.at_servo.as_ref().and_then(|it| it.get(instant.k));
-        pieces.push(Shown {
-            moving_rad: moving_rad(scenario, instant.setpoint_rad, instant.theta_rad),
-            command_rad: instant.step.command_rad,
-            at_servo_rad: at_servo.copied().unwrap_or(0.0),
-            elevator_rad: instant.elevator_rad,
-            autopilot_is_limited: instant.autopilot.is_some_and(|it| it.is_limited),
-            gains: instant.step.gains,
-            outer: outer_at(&instant),
-        });
-        if instant.k + 1 == rows {
-            own = Some(pieces.whole());
-        }
-        let [theta_rad, rate_rad_s] = instant.measured;
-        is_held =
-            sample_guard::is_beyond(controller, [instant.setpoint_rad, theta_rad, rate_rad_s]);
-        let is_seen = instant.k > rows + 2 * pieces.length && pieces.is_whole();
-        let has_rested = || pieces.rests() || gains.is_some_and(|it| it.have_come_back(&pieces));
-        rested = moved == Moved::Nothing && is_seen && has_rested();
-        if rested { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    });
-    let Ok(outcome) = outcome else { return of_its_own };
-    let has_grown =
-        || moved == Moved::ByNoise && own.is_some_and(|own| pieces.has_doubled_since(own));
-    let goes_on = || match scenario.plant.linear() {
-        Some(_) => outcome != Outcome::Completed || pieces.goes_on(moved, moves) || has_grown(),
-        None => {
-            pieces.swings_on(moved, moves)
-                || is_lost(outcome, swings_itself, &pieces)
-                || leave_at_limits(&pieces, moved)
-                || gains.is_some() && diverged(outcome)
-        }
-    };
-    let is_in_doubt = || goes_on() || have_left(gains, &pieces, moved);
-    match (is_held, rested) {
-        (true, _) => Some(Doubt::HeldByGuard),
-        (false, true) => None,
-        (false, false) => is_in_doubt().then(|| of_limits_or_gains(gains, &pieces)),
-    }
 }
 
 fn have_left(gains: Option<MovingGains>, pieces: &Pieces<'_>, moved: Moved) -> bool {

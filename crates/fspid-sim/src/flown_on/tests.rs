@@ -238,15 +238,16 @@ fn an_error_is_what_the_pitch_lacks_of_the_set_point() {
 fn a_linear_plant_that_is_lost_within_its_flight_is_in_doubt_at_once() {
     let (own, controller) = scenario();
     let mut trace = trace_of(&own);
-    assert_eq!(doubt(&own, &controller, &trace, || None), None);
+    assert_eq!(Fate::of(&own, &controller, &trace, || None).doubt(), None);
     trace.theta_rad.truncate(150);
     trace.time_s.truncate(150);
-    let found = doubt(&own, &controller, &trace, || panic!("it is known"));
+    let found = Fate::of(&own, &controller, &trace, || panic!("it is known")).doubt();
     assert_eq!(found, Some(Doubt::SwingAtLimits));
     // Without limits a loop that holds at rest holds.
     let gains = Gains { kp: 2.0, ki: 0.0, kd: 1.0 };
     let free = Pid::new(gains, PidConfig::sampled_every(0.01)).expect("allowed");
-    assert_eq!(doubt(&own, &Controller::Fixed(free), &trace, || panic!("nothing ends")), None);
+    let free = Controller::Fixed(free);
+    assert_eq!(Fate::of(&own, &free, &trace, || panic!("nothing ends")).doubt(), None);
 }
 
 #[test]

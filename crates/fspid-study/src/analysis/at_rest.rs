@@ -110,10 +110,8 @@ impl AtRest {
     pub fn as_flown(self, scenario: &Scenario, named: &NamedController) -> Self {
         let is_own = !matches!(scenario.plant, Plant::External(_));
         let is_open = is_own && self.unstable.is_none() && self.undecided.is_none();
-        match is_open.then(|| doubt_when_flown(scenario, named)).flatten() {
-            Some(doubt) => self.doubted(doubt),
-            None => self,
-        }
+        let doubt = is_open.then(|| doubt_when_flown(scenario, named)).flatten();
+        self.doubted(doubt)
     }
 
     /// Whether the loop is stable at rest, in a word: stable, unstable or undecided; none where it could not be asked.
@@ -128,10 +126,13 @@ impl AtRest {
         }
     }
 
-    /// The same of a flight that leaves it in doubt, of which small motions at rest say nothing.
+    /// The same of a flight that leaves it in doubt, of which small motions at rest say nothing; as it is without a doubt.
     #[must_use]
-    pub(crate) fn doubted(self, doubt: Doubt) -> Self {
-        Self { undecided: Some(Undecided::at_trim(doubt)), ..self }
+    pub fn doubted(self, doubt: Option<Doubt>) -> Self {
+        match doubt {
+            Some(doubt) => Self { undecided: Some(Undecided::at_trim(doubt)), ..self },
+            None => self,
+        }
     }
 
     /// Of a controller without equations, of which nothing can be asked.

@@ -37,7 +37,8 @@ pub struct ControllerResult {
 }
 
 impl ControllerResult {
-    /// A flight of a study and its measures; `unstable` is what its loop at rest counts for there.
+    /// A flight of a study and its measures, whose loop at rest is asked by the flight as it goes on; `unstable` is what that loop
+    /// counts for there.
     #[must_use]
     pub fn of(
         study: &Study,
@@ -46,17 +47,22 @@ impl ControllerResult {
         (at_rest, unstable): (AtRest, Option<Unstable>),
     ) -> Self {
         let scenario = &study.scenario;
+        let flies_on = flies_on(scenario, name, &at_rest);
+        let doubt = flies_on.and_then(|it| doubt_of_flight(scenario, &it.controller, &trace));
+        Self::measured(study, name, (trace, edges), (at_rest.doubted(doubt), unstable))
+    }
+
+    /// The same of a loop at rest that has been asked so.
+    #[must_use]
+    pub fn measured(
+        study: &Study,
+        name: &str,
+        (trace, edges): (Trace, &[Edge]),
+        (at_rest, unstable): (AtRest, Option<Unstable>),
+    ) -> Self {
+        let scenario = &study.scenario;
         let (timing, pushes_s) = (scenario.timing, scenario.pushes_s(Noises::None));
         let named = scenario.controllers.iter().find(|it| it.name == name);
-        // Who flies without equations is no controller that could fly on.
-        let has_equations = at_rest.gains != RestGains::Unknown;
-        let is_open = has_equations && at_rest.unstable.is_none() && at_rest.undecided.is_none();
-        let flies_on = named.filter(|_| is_open);
-        let doubt = flies_on.and_then(|it| doubt_of_flight(scenario, &it.controller, &trace));
-        let at_rest = match doubt {
-            Some(doubt) => at_rest.doubted(doubt),
-            None => at_rest,
-        };
         let mut metrics = FlightMetrics::of(&trace, edges, timing, unstable, &pushes_s);
         if named.is_none() {
             metrics.saturated_share = metrics.saturated_share.and(Err(Absent::OwnWord));
@@ -98,6 +104,19 @@ impl ControllerResult {
         let controller = self.name.clone();
         (!failures.is_empty()).then_some(FailedFlight { controller, own_step_deg, failures })
     }
+}
+
+/// The controller of that name where its flight, as it goes on, says more of its loop than the loop at rest: who flies without
+/// equations is no controller that could fly on.
+#[must_use]
+pub fn flies_on<'a>(
+    scenario: &'a Scenario,
+    name: &str,
+    at_rest: &AtRest,
+) -> Option<&'a NamedController> {
+    let has_equations = at_rest.gains != RestGains::Unknown;
+    let is_open = has_equations && at_rest.unstable.is_none() && at_rest.undecided.is_none();
+    scenario.controllers.iter().find(|it| is_open && it.name == name)
 }
 
 /// Whether the controller's own limits, those of the servo's command or the stops of the elevator end what is commanded. What

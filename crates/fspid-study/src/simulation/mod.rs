@@ -5,7 +5,9 @@ mod json;
 mod own_flight;
 mod text;
 
-pub use crate::flight::{ControllerResult, Ending, FAILS_BY_ITSELF, FailedFlight, WRONG_WAY};
+pub use crate::flight::{
+    ControllerResult, Ending, FAILS_BY_ITSELF, FailedFlight, WRONG_WAY, flies_on,
+};
 pub use crate::judgement::Judgement;
 pub(crate) use json::own_flight;
 

@@ -1,9 +1,11 @@
 //! Flights of gains that move, without limits: those that do not come back to the rest around which the loop holds.
 
-use fspid_sim::{Doubt, EndCause};
+use fspid_scenario::file::Study;
+use fspid_sim::stability::{doubt_of_flight, doubts_of_flights};
+use fspid_sim::{Controller, Doubt, EndCause, Scenario, Trace, simulate};
 use fspid_study::metrics::Verdict;
 
-use super::{Draw, doubt, is_lost, last_fifths_move_deg, result};
+use super::{Draw, doubt, is_lost, last_fifths_move_deg, result, study};
 
 /// A step of a plant with an integrator, whose self-tuner has no limit of any kind.
 const FREE: &str = r#"
@@ -214,6 +216,61 @@ fn a_swing_that_stays_is_seen_behind_widths_swings_and_noise_however_small_they_
     assert_eq!(doubt(&result(RINGS, &[fixed])), None);
     let [last, before] = last_fifths_move_deg(&result(RINGS, &["loop.duration_s=300.0"]));
     assert!(last > 1.0 && last > 0.99 * before, "{last} {before}");
+}
+
+/// A step is flown on until it moves by a fiftieth of all its movement with gains that stand: a swing that is smaller than that moves
+/// them.
+#[test]
+fn a_swing_of_a_hundredth_of_the_step_that_gains_keep_up_is_seen() {
+    for times in [50.0, 100.0] {
+        let error_scale = format!("controller.C.supervisor.error_scale={:?}", 0.556 * times);
+        let change_scale = format!("controller.C.supervisor.change_scale={:?}", 1.14 * times);
+        let set = [error_scale.as_str(), &change_scale];
+        assert_eq!(doubt(&result(RINGS, &set)), Some(Doubt::AwayFromRest), "{times}");
+        let long = result(RINGS, &[&set[..], &["loop.duration_s=300.0"]].concat());
+        let [last, before] = last_fifths_move_deg(&long);
+        assert!(last < 7.345 / 50.0 && last > 0.99 * before, "{last} {before}");
+    }
+}
+
+/// Campaigns ask the flights of a group side by side.
+#[test]
+fn flights_that_are_flown_on_side_by_side_are_in_doubt_as_each_of_them_alone() {
+    let mut draw = Draw::seeded(147);
+    let beside = [
+        "",
+        "[[disturbance]]\nkind = \"noise\"\nenters_at = \"measurement\"\nstandard_deviation_deg = 0.02\nseed = 1\n",
+        "[[disturbance]]\nkind = \"sine\"\nenters_at = \"servo\"\namplitude_deg = 0.2\nfrequency_hz = 0.4\n",
+        "[actuator]\ntime_constant_s = 0.05\n",
+        "[actuator]\ntime_constant_s = 0.05\nrate_limit_deg_s = 20.0\n",
+        "[actuator]\ntime_constant_s = 0.05\nbacklash_deg = 0.2\n",
+    ];
+    let mut found = [0; 2];
+    // What stands beside all of a group, or beside each of them another.
+    for group in 0..7 {
+        let studies: Vec<Study> = (0..11)
+            .map(|flight| {
+                let text = format!("{FREE}{}", beside[if group < 6 { group } else { flight % 6 }]);
+                let (set, _) = drawn(&mut draw);
+                let set: Vec<&str> = set.iter().map(String::as_str).collect();
+                study(&text, &[&set[..], &["loop.duration_s=12.0"]].concat())
+            })
+            .collect();
+        let traces: Vec<Trace> = studies
+            .iter()
+            .map(|it| simulate(&it.scenario).expect("it flies").traces.remove(0))
+            .collect();
+        let flights: Vec<(&Scenario, &Controller, &Trace)> = studies
+            .iter()
+            .zip(&traces)
+            .map(|(it, trace)| (&it.scenario, &it.scenario.controllers[0].controller, trace))
+            .collect();
+        let alone = |it: &(&Scenario, &Controller, &Trace)| doubt_of_flight(it.0, it.1, it.2);
+        let alone: Vec<Option<Doubt>> = flights.iter().map(alone).collect();
+        assert_eq!(doubts_of_flights(&flights), alone, "{group}");
+        alone.iter().for_each(|doubt| found[usize::from(doubt.is_some())] += 1);
+    }
+    assert!(found[0] > 20 && found[1] > 5, "{found:?}");
 }
 
 /// A climb by an altitude loop whose kp the rules make negative where the error is large: at the limit of its vertical speed the

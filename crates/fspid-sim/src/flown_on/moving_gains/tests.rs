@@ -276,6 +276,37 @@ fn an_aircraft_has_come_back_where_it_stood_for_as_long_as_its_flight_was() {
     assert!(!has_come_back(of_plants, 5, 0.0019, 0.0), "a swing of a linear plant does not shrink");
 }
 
+/// A linear plant has come back where its gains stand and its error shrinks, and moves by a fiftieth of all its movement at most.
+#[test]
+fn a_linear_plant_has_come_back_where_its_gains_stand_and_its_error_shrinks() {
+    let scenario = scenario();
+    let controller = self_tuner();
+    let ends = Ends::of(&scenario, &controller);
+    let of_plants = MovingGains::of(&scenario, &controller).expect("they move");
+    let shrunk = |left_rad: f64, factor: f64, gain_moves: f64| {
+        let mut pieces = Pieces::new(&scenario, &ends, PERIOD);
+        for piece in 0..10_i8 {
+            let size_rad = match piece {
+                0..5 => 0.1,
+                _ => left_rad * factor.powi(i32::from(piece) - 5),
+            };
+            for k in 0..PERIOD {
+                let side = if k < PERIOD / 2 { 1.0 } else { -1.0 };
+                let kp = 2.0 - gain_moves * (1.0 - side);
+                let gains = Gains { kp, ki: 0.0, kd: 1.0 };
+                pieces.push(Shown { moving_rad: side * size_rad, gains, ..still() });
+            }
+        }
+        pieces
+    };
+    assert!(of_plants.have_come_back(&shrunk(0.0019, 0.94, 0.009)));
+    assert!(!of_plants.have_come_back(&shrunk(0.0021, 0.94, 0.009)), "the error moves");
+    assert!(!of_plants.have_come_back(&shrunk(0.0019, 0.96, 0.009)), "it hardly shrinks");
+    assert!(!of_plants.have_come_back(&shrunk(0.0019, 0.94, 0.011)), "a gain moves");
+    let accumulating = MovingGains { accumulate: true, ..of_plants };
+    assert!(!accumulating.have_come_back(&shrunk(0.0019, 0.94, 0.009)), "it stays where it is");
+}
+
 fn still() -> Shown {
     Shown {
         moving_rad: 0.0,
