@@ -115,9 +115,23 @@ fn question(parts: &Parts, number: u32) -> Vec<f64> {
     ranges.map(|((lower, upper), index)| lower + share(index) * (upper - lower)).collect()
 }
 
-/// Irrational steps that differ from input to input.
+/// Steps of the inputs of which no sum of whole multiples is whole, so that the points do not lie on a few planes: by roots of
+/// different primes, of 5 and 2 for the first two inputs.
 fn spread(index: u32) -> f64 {
-    0.618_033_988_749_894_9 * f64::from(index + 1) + 0.414_213_562_373_095 * f64::from(index)
+    match index {
+        0 | 1 => {
+            0.618_033_988_749_894_9 * f64::from(index + 1)
+                + 0.414_213_562_373_095 * f64::from(index)
+        }
+        _ => root_of_prime(index as usize - 2),
+    }
+}
+
+/// What the square root of the `place`th prime but 2 and 5 has beyond a whole number.
+fn root_of_prime(place: usize) -> f64 {
+    let is_prime = |number: &u32| (2..*number).all(|part| !number.is_multiple_of(part));
+    let prime = (3_u32..).filter(|number| *number != 5 && is_prime(number)).nth(place);
+    f64::from(prime.unwrap_or(3)).sqrt().fract()
 }
 
 #[cfg(test)]
@@ -135,6 +149,27 @@ mod tests {
             centre + 0.25
         );
         crate::fis::read(&text).expect("a system").parts
+    }
+
+    /// Any three neighbouring inputs used to lie on parallel planes, so that a box of a hundredth of the ranges had no question.
+    #[test]
+    fn questions_of_several_inputs_are_spread_over_the_ranges_and_not_over_planes() {
+        for [one, two, three] in [[0, 1, 2], [1, 2, 3], [4, 6, 9]] {
+            let shares = |number: u32| {
+                [one, two, three].map(|index| (f64::from(number) * spread(index)).fract())
+            };
+            // Boxes of an eighth of the ranges to each side would hold a 512th of 5120 points each.
+            let mut held = [0_u32; 512];
+            for number in 1..=5120 {
+                let place = shares(number).map(|share| (8.0 * share) as usize);
+                held[64 * place[0] + 8 * place[1] + place[2]] += 1;
+            }
+            let [least, most] = [held.iter().min(), held.iter().max()];
+            assert!(
+                least >= Some(&2) && most <= Some(&25),
+                "{one} {two} {three}: {least:?} {most:?}"
+            );
+        }
     }
 
     #[test]

@@ -3,13 +3,14 @@
 #![allow(clippy::float_cmp, reason = "tests ask for exact bits where they compare floats")]
 
 use fspid_fuzzy::OutOfRange;
+use fspid_fuzzy::formula::Formula;
 use fspid_fuzzy::hedge::Hedge;
 use fspid_fuzzy::membership::ShapeKind;
 use fspid_fuzzy::norm::{SNormKind, TNormKind};
 use fspid_fuzzy::system::{
     Activation, Antecedent, Conclusion, Consequent, Defuzzifier, Fallback, Input, Membership,
-    Output, OutputTerm, Parts, Rule, RuleBlock, Sampling, SetReading, Statement, System, Term,
-    Universe, Variable,
+    Output, OutputTerm, Parts, Rule, RuleBlock, SNorm, Sampling, SetReading, Statement, System,
+    TNorm, Term, Universe, Variable,
 };
 
 fn triangle(corners: [f64; 3], height: f64) -> Membership {
@@ -219,6 +220,35 @@ fn an_exact_interval_of_sets_that_do_not_stay_straight_is_refused_with_what_to_d
     };
     refused(|parts| parts.outputs[0].aggregation = SNormKind::AlgebraicSum.into());
     refused(|parts| parts.blocks[0].implication = TNormKind::EinsteinProduct.into());
+}
+
+/// `a*(1-b)` of grades from 0.2 to 0.7 and from 0.3 to 0.8 lies between 0.04 and 0.49, and was told as 0.14 to 0.14.
+#[test]
+fn norms_that_are_formulas_are_refused_where_grades_are_intervals() {
+    let t_norm = || TNorm::Formula(Formula::parse("a*(1-b)", &["a", "b"]).expect("a formula"));
+    let s_norm = || SNorm::Formula(Formula::parse("a+b-a*b", &["a", "b"]).expect("a formula"));
+    let changes: [&dyn Fn(&mut Parts); 4] = [
+        &|parts| parts.blocks[0].and = t_norm(),
+        &|parts| parts.blocks[0].or = s_norm(),
+        &|parts| parts.blocks[0].implication = t_norm(),
+        &|parts| parts.outputs[0].aggregation = s_norm(),
+    ];
+    for change in changes {
+        let sampled = Defuzzifier::Centroid(Sampling::Endpoints(101));
+        let mut parts = system(0.2, 0.3, sampled, false).parts().clone();
+        change(&mut parts);
+        let errors = System::new(parts.clone()).expect_err("it need not rise");
+        assert!(errors[0].to_string().contains("a norm that is a formula"), "{}", errors[0]);
+        for term in parts.inputs.iter_mut().flat_map(|input| &mut input.terms) {
+            term.lower = None;
+        }
+        for term in &mut parts.outputs[0].terms {
+            if let Conclusion::Set { lower, .. } = &mut term.conclusion {
+                *lower = None;
+            }
+        }
+        assert!(System::new(parts).is_ok(), "ordinary systems have them");
+    }
 }
 
 /// Such a rule used to conclude all that is not its conclusion, or all there is, as strongly as can be.

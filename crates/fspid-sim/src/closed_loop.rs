@@ -71,7 +71,7 @@ pub fn fly_perturbed(
     perturbation: &Perturbation,
     mut observer: impl FnMut(Instant) -> ControlFlow<()>,
 ) -> Result<Outcome, SimError> {
-    watch(prepared, controller, perturbation, |instant, _| observer(instant))
+    watch(prepared, controller, perturbation, |instant, _| observer(*instant))
 }
 
 impl Respondent<'_> {
@@ -96,7 +96,7 @@ impl Respondent<'_> {
                     Ok((step, started.asked()))
                 };
                 watch_answers(prepared, &mut answer, perturbation, &mut |instant, _| {
-                    observer(instant)
+                    observer(*instant)
                 })
             }
         }
@@ -118,7 +118,7 @@ pub fn fly_commanded(
         let (gains, saturated, faults) = (Gains::ZERO, false, Faults::NONE);
         Ok((Step { command_rad, gains, saturated, faults }, Asked::default()))
     };
-    watch_answers(prepared, &mut answer, &Perturbation::NONE, &mut |instant, _| observer(instant))
+    watch_answers(prepared, &mut answer, &Perturbation::NONE, &mut |instant, _| observer(*instant))
 }
 
 /// What is about to happen between a sample and the next.
@@ -135,7 +135,7 @@ pub(crate) fn watch(
     prepared: &Prepared,
     controller: &Controller,
     perturbation: &Perturbation,
-    mut observer: impl FnMut(Instant, &Coming<'_>) -> ControlFlow<()>,
+    mut observer: impl FnMut(&Instant, &Coming<'_>) -> ControlFlow<()>,
 ) -> Result<Outcome, SimError> {
     let mut memory = State::new();
     let mut answer = |seen: &Seen, _: Option<&AircraftSample>| {
@@ -156,7 +156,7 @@ pub(crate) fn watch_answers(
     prepared: &Prepared,
     answer: &mut Answer<'_>,
     perturbation: &Perturbation,
-    observer: &mut dyn FnMut(Instant, &Coming<'_>) -> ControlFlow<()>,
+    observer: &mut dyn FnMut(&Instant, &Coming<'_>) -> ControlFlow<()>,
 ) -> Result<Outcome, SimError> {
     let mut course = Course::start(prepared, perturbation)?;
     loop {
@@ -178,7 +178,7 @@ pub(crate) fn watch_answers(
         let held = course.held();
         let (propagation, motion) = (course.propagation(), course.plant());
         let coming = Coming { propagation, motion, command_rad, held: &held };
-        if observer(instant, &coming).is_break() {
+        if observer(&instant, &coming).is_break() {
             return Ok(Outcome::Completed);
         }
         course.advance(command_rad)?;

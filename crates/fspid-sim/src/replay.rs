@@ -54,7 +54,7 @@ pub fn fly_replayed(
         };
         Ok((step, Asked::default()))
     };
-    watch_answers(prepared, &mut answer, &Perturbation::NONE, &mut |instant, _| observer(instant))
+    watch_answers(prepared, &mut answer, &Perturbation::NONE, &mut |instant, _| observer(*instant))
 }
 
 /// As [`fly`](crate::fly), with what the supervisor sees at each sample beside it; zeros where it sees nothing, at a
@@ -75,7 +75,7 @@ pub fn fly_watching_inputs(
         Ok((controller.step(&mut memory, sample), Asked::default()))
     };
     watch_answers(prepared, &mut answer, &Perturbation::NONE, &mut |instant, _| {
-        observer(instant, inputs.get())
+        observer(*instant, inputs.get())
     })
 }
 

@@ -116,15 +116,17 @@ impl Scenario {
     }
 }
 
-/// True for what stays from some time on to the end of a flight.
+/// True for what begins within a flight and stays from some time on to its end.
 fn stays(shape: &Shape, end_s: f64) -> bool {
-    match *shape {
-        Shape::Step { .. } | Shape::Ramp { .. } => true,
-        Shape::Pulse { at_s, width_s } => at_s + width_s > end_s,
-        Shape::Doublet { at_s, width_s } => at_s + 2.0 * width_s > end_s,
-        Shape::Square { at_s, half_period_s, .. } => at_s + half_period_s > end_s,
-        Shape::Sine { .. } | Shape::Noise { .. } => false,
-    }
+    let begins = shape.starts_s() <= end_s;
+    begins
+        && match *shape {
+            Shape::Step { .. } | Shape::Ramp { .. } => true,
+            Shape::Pulse { at_s, width_s } => at_s + width_s > end_s,
+            Shape::Doublet { at_s, width_s } => at_s + 2.0 * width_s > end_s,
+            Shape::Square { at_s, half_period_s, .. } => at_s + half_period_s > end_s,
+            Shape::Sine { .. } | Shape::Noise { .. } => false,
+        }
 }
 
 impl LinearPlant {

@@ -13,6 +13,7 @@ use super::build::{ResolvedOutput, System};
 use super::defuzzifier::{Defuzzifier, Sampling, SetReading};
 use super::error::{SystemError, SystemProblem};
 use super::firing::hedged;
+use super::norms::{SNorm, TNorm};
 use super::output::{AggregatedSet, Outline, Room, roomy_clone, smaller_set, value};
 use super::parts::{
     Activation, Conclusion, Membership, Output, Parts, RuleBlock, Statement, Variable,
@@ -77,6 +78,10 @@ impl Parts {
     }
 }
 
+/// Bounds are joined with bounds, which is right of norms that rise with both of what they join; a formula need not.
+const FORMULA: (&str, &str) =
+    ("a norm that is a formula, in an interval type-2 system,", "one of the norms that have names");
+
 /// Why an output or its rules cannot be interval type-2, if they cannot.
 pub(crate) fn conflict(output: &Output) -> Option<(&'static str, &'static str)> {
     let straight =
@@ -94,6 +99,7 @@ pub(crate) fn conflict(output: &Output) -> Option<(&'static str, &'static str)> 
             "a set that is read by its rule's strength, in an interval type-2 system,",
             "numbers, intervals, planes or formulas in its place, or the defuzzifier centroid",
         )),
+        _ if matches!(output.aggregation, SNorm::Formula(_)) => Some(FORMULA),
         Defuzzifier::Centroid(Sampling::Exact) if !all_straight => Some((
             "the exact centroid of interval type-2 sets",
             "piecewise-linear sets, or a sampled rule such as endpoints:101",
@@ -131,7 +137,12 @@ pub(crate) fn without_outline(system: &System) -> Vec<SystemError> {
 /// As [`conflict`], for a block of rules.
 pub(crate) fn block_conflict(block: &RuleBlock) -> Option<(&'static str, &'static str)> {
     let asks_output = block.rules.iter().any(|rule| rule.antecedent.asks_outputs());
-    if block.activation != Activation::General {
+    let is_formula = |norm: &TNorm| matches!(norm, TNorm::Formula(_));
+    if [&block.and, &block.implication].into_iter().any(is_formula)
+        || matches!(block.or, SNorm::Formula(_))
+    {
+        Some(FORMULA)
+    } else if block.activation != Activation::General {
         Some(("an interval type-2 system", "the activation `general`"))
     } else if asks_output {
         Some(("an interval type-2 system", "rules that ask about inputs only"))

@@ -233,6 +233,40 @@ fn a_swing_of_a_hundredth_of_the_step_that_gains_keep_up_is_seen() {
     }
 }
 
+/// A loop that a load makes unstable at rest, whose integral is as large as the load and has a gain that follows the error.
+const LOADED: &str = r#"
+schema = 1
+name = "under a load"
+plant = { preset = "navion-paper" }
+loop = { sample_period_s = 0.01, duration_s = 10.0 }
+setpoint = { kind = "step", amplitude_deg = 1.0, at_s = 1.0 }
+[[controller]]
+name = "C"
+kind = "fspid"
+nominal = { kp = 0.5658, ki = 0.649, kd = 0.3112 }
+supervisor = { table = "mirrored", range = 5.0, error_scale = 4.536, change_scale = 0.2846, output_scale = { kp = 0.02123, ki = 0.04714, kd = 0.02135 } }
+derivative_filter_s = 0.06683
+derivative_on = "measurement"
+integral = "literal"
+"#;
+
+/// It was called unstable for a load that begins after its flight as well.
+#[test]
+fn a_load_that_begins_after_the_flight_is_none_that_the_loop_rests_under() {
+    let shapes =
+        ["kind = \"step\"", "kind = \"pulse\"\nwidth_s = 9.0", "kind = \"ramp\"\nwidth_s = 1.0"];
+    for shape in shapes {
+        let loaded = |at_s: f64| {
+            let load = format!(
+                "[[disturbance]]\n{shape}\nenters_at = \"elevator\"\namplitude_deg = 15.0\nat_s = {at_s:?}\n"
+            );
+            result(&format!("{LOADED}{load}"), &[]).at_rest.stability_word()
+        };
+        assert_eq!(loaded(5.0), Some("unstable"), "{shape}");
+        assert_eq!(loaded(10.01), Some("stable"), "{shape}");
+    }
+}
+
 /// Campaigns ask the flights of a group side by side.
 #[test]
 fn flights_that_are_flown_on_side_by_side_are_in_doubt_as_each_of_them_alone() {

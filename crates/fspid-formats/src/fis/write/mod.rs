@@ -127,7 +127,11 @@ fn measured(parts: &Parts, text: &str, losses: &mut Losses) {
     let reading = super::read(text).ok();
     let points = questions(parts);
     let found = reading.and_then(|reading| differences(parts, &reading.parts));
-    for (output, found) in parts.outputs.iter().zip(found.unwrap_or_default()) {
+    let Some(found) = found else {
+        losses.note("how far the answers change could not be measured".to_owned());
+        return;
+    };
+    for (output, found) in parts.outputs.iter().zip(found) {
         let Difference { largest, unanswered } = found;
         // Answers that are the same are no loss.
         if largest == 0.0 && unanswered == 0 {

@@ -88,7 +88,7 @@ pub(super) fn walk(
     let mut walk = Walk::new(scenario, controller, &prepared, slopes)?;
     let mut failure = None;
     let outcome = watch(&prepared, controller, &Perturbation::NONE, |instant, coming| match walk
-        .at(&prepared, &instant, coming)
+        .at(&prepared, instant, coming)
     {
         Ok(small) => visit(&small, &walk.rest),
         Err(error) => {

@@ -285,10 +285,12 @@ fn a_linear_plant_has_come_back_where_its_gains_stand_and_its_error_shrinks() {
     let of_plants = MovingGains::of(&scenario, &controller).expect("they move");
     let shrunk = |left_rad: f64, factor: f64, gain_moves: f64| {
         let mut pieces = Pieces::new(&scenario, &ends, PERIOD);
-        for piece in 0..10_i8 {
-            let size_rad = match piece {
-                0..5 => 0.1,
-                _ => left_rad * factor.powi(i32::from(piece) - 5),
+        let mut size_rad = 0.1;
+        for piece in 0..10 {
+            size_rad = match piece {
+                0..5 => size_rad,
+                5 => left_rad,
+                _ => factor * size_rad,
             };
             for k in 0..PERIOD {
                 let side = if k < PERIOD / 2 { 1.0 } else { -1.0 };
