@@ -31,7 +31,7 @@ const STANDS: f64 = 0.02;
 const WIDTHS: f64 = 10.0;
 /// Gains that move by no more than this share of themselves are those of one rest.
 const SETTLED_GAINS: f64 = 0.01;
-/// An error that moves, a fifth of a flight after the other, by no more than this share of what it moved before shrinks.
+/// An error that moves in two pieces of the way by no more than this share of what it moved in the two before shrinks.
 const SHRINKS: f64 = 0.9;
 /// Pieces of a flight that is flown on that are as long as the flight, at least.
 const OWN_LENGTH: usize = 5;
