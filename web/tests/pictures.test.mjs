@@ -32,7 +32,7 @@ after(() => browser?.close());
 
 async function opened({ width, height, colorScheme, media }) {
   const page = await browser.newPage({ viewport: { width, height }, colorScheme, reducedMotion: "reduce" });
-  page.setDefaultTimeout(60_000);
+  page.setDefaultTimeout(180_000);
   if (media) await page.emulateMedia({ media });
   await page.goto(PAGE);
   await page.waitForFunction(() => Number(document.querySelector("#panel")?.dataset.flights) >= 1);

@@ -43,7 +43,7 @@ async function opened(name, options = {}) {
   page.on("pageerror", (error) => page.wrong.push(error.message));
   page.on("console", (message) => message.type() === "error" && page.wrong.push(message.text()));
   page.on("request", (request) => /^https?:/.test(request.url()) && page.wrong.push(request.url()));
-  page.setDefaultTimeout(20_000);
+  page.setDefaultTimeout(180_000);
   await page.goto(pathToFileURL(join(folder, name)).href);
   return page;
 }

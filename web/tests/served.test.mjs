@@ -58,7 +58,7 @@ async function opened(view, options = {}) {
   page.on("request", (request) => /^https?:/.test(request.url()) && !request.url().startsWith("http://127.0.0.1") && page.outside.push(request.url()));
   page.on("pageerror", (error) => page.wrong.push(error.message));
   page.on("console", (message) => message.type() === "error" && page.wrong.push(message.text()));
-  page.setDefaultTimeout(60_000);
+  page.setDefaultTimeout(180_000);
   await page.goto(address);
   await page.waitForFunction(() => Number(document.querySelector("#panel")?.dataset.flights) >= 1);
   await page.waitForFunction(() => document.querySelector("[data-test=scenario]").selectedOptions[0]?.text === "mine.toml");
@@ -72,7 +72,7 @@ async function closed(page) {
   await page.close();
 }
 
-const ended = (page, state) => page.locator(`[data-test=followed][data-state=${state}]`).waitFor({ timeout: 60_000 });
+const ended = (page, state) => page.locator(`[data-test=followed][data-state=${state}]`).waitFor({ timeout: 180_000 });
 const own = (page) => page.evaluate(async () => {
   document.querySelector("#tab-keep").click();
   await new Promise((resolve) => setTimeout(resolve, 100));

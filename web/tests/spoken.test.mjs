@@ -22,7 +22,7 @@ let page;
 before(async () => {
   browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox"] });
   page = await browser.newPage({ viewport: { width: 1400, height: 900 } });
-  page.setDefaultTimeout(60_000);
+  page.setDefaultTimeout(180_000);
   await page.goto(PAGE);
   await page.waitForFunction(() => Number(document.querySelector("#panel")?.dataset.flights) >= 1);
 });

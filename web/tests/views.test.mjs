@@ -24,7 +24,7 @@ async function opened(options = {}, address = PAGE) {
   page.on("pageerror", (error) => page.wrong.push(error.message));
   page.on("console", (message) => message.type() === "error" && page.wrong.push(message.text()));
   page.on("request", (request) => /^https?:/.test(request.url()) && page.outside.push(request.url()));
-  page.setDefaultTimeout(60_000);
+  page.setDefaultTimeout(180_000);
   await page.goto(address);
   await flown(page, 1);
   return page;
@@ -166,7 +166,7 @@ test("Judge: margins move with a slider, a ready set is judged, and a fixed cont
   await page.locator(".requirements td.good").first().waitFor();
   assert.ok((await page.locator(".requirements td.bad").count()) > 0);
   await page.getByRole("button", { name: "certify CPID" }).click();
-  await page.locator("[data-test=certified] .verdict").waitFor({ timeout: 120_000 });
+  await page.locator("[data-test=certified] .verdict").waitFor({ timeout: 180_000 });
   assert.match(await page.locator("[data-test=certified]").innerText(), /PROVED|REFUTED|OPEN/);
   await close(page);
 });

@@ -6,7 +6,7 @@ use fspid_core::PidConfig;
 use crate::plant::LinearPlant;
 use crate::scenario::Scenario;
 use crate::sensor::Sensor;
-use crate::signal::{Disturbance, Entry, Shape, extremes};
+use crate::signal::{Disturbance, Entry, Shape, extremes_from};
 
 /// The set-points and loads that a scenario holds, each as far as it goes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,27 +33,31 @@ impl Scenario {
     /// servo that of the elevator alone, which one at the servo that is its opposite takes off the controller and not off it.
     #[must_use]
     pub fn steady(&self) -> Steady {
-        let together = self.steady_where(|_| true);
-        let at_elevator = self.furthest(&[Entry::Elevator], |_| true);
+        let together = self.steady_while(Counted::Always);
+        let at_elevator = self.furthest(&[Entry::Elevator], Counted::Always);
         Steady { load_rad: together.load_rad.max(at_elevator), ..together }
     }
 
     /// The same of what the loop can come to rest under: loads that stay from some time on to the end of the flight, and
-    /// set-points but for sines. Around a shorter pulse or a sine of a load no loop rests.
+    /// set-points but for sines. Around a shorter pulse or a sine of a load no loop rests, nor around loads that others take off
+    /// again within the flight.
     #[must_use]
     pub fn resting(&self) -> Steady {
-        let end_s = self.timing.end_s();
         let setpoint_rad =
             if self.setpoint.is_sine() { [0.0; 2] } else { self.setpoint.ends_rad() };
-        Steady { setpoint_rad, ..self.steady_where(|shape| stays(shape, end_s)) }
+        Steady { setpoint_rad, ..self.steady_while(self.at_the_end()) }
+    }
+
+    fn at_the_end(&self) -> Counted {
+        Counted::AtTheEnd { end_s: self.timing.end_s() }
     }
 
     /// Least and largest load of what the loop can come to rest under, with its sign: the command, rad and nose up positive, that
     /// disturbances, biases and offsets of the pitch sensor ask for, each as far as it goes; zero lies between them.
     #[must_use]
     pub fn resting_loads_rad(&self, plant: &LinearPlant) -> [f64; 2] {
-        let end_s = self.timing.end_s();
-        let ends = |entries: &[Entry]| self.ends(entries, |shape| stays(shape, end_s));
+        let counted = self.at_the_end();
+        let ends = |entries: &[Entry]| self.ends(entries, counted);
         let with = |[least, most]: [f64; 2], constant: f64| {
             [least + constant.min(0.0), most + constant.max(0.0)]
         };
@@ -87,13 +91,13 @@ impl Scenario {
         Some([least + lower, most + upper])
     }
 
-    fn steady_where(&self, counts: impl Fn(&Shape) -> bool + Copy) -> Steady {
+    fn steady_while(&self, counted: Counted) -> Steady {
         let biased = |sensor: &Option<Sensor>| sensor.as_ref().map_or(0.0, Sensor::bias).abs();
         Steady {
             setpoint_rad: self.setpoint.ends_rad(),
-            load_rad: self.furthest(&[Entry::Servo, Entry::Elevator], counts),
+            load_rad: self.furthest(&[Entry::Servo, Entry::Elevator], counted),
             bias_rad: self.actuator.bias_rad().abs(),
-            offset_rad: self.furthest(&[Entry::Measurement], counts)
+            offset_rad: self.furthest(&[Entry::Measurement], counted)
                 + biased(&self.surroundings.pitch_sensor),
             rate_offset_rad_s: biased(&self.surroundings.rate_sensor),
             pitch_scale: 1.0
@@ -102,17 +106,43 @@ impl Scenario {
     }
 
     /// Largest magnitude of the disturbances that enter at some places, noise left out.
-    fn furthest(&self, entries: &[Entry], counts: impl Fn(&Shape) -> bool) -> f64 {
-        let [least, most] = self.ends(entries, counts);
+    fn furthest(&self, entries: &[Entry], counted: Counted) -> f64 {
+        let [least, most] = self.ends(entries, counted);
         least.abs().max(most)
     }
 
     /// Least and largest sum of the disturbances that enter at some places, noise left out; zero lies between them.
-    fn ends(&self, entries: &[Entry], counts: impl Fn(&Shape) -> bool) -> [f64; 2] {
+    fn ends(&self, entries: &[Entry], counted: Counted) -> [f64; 2] {
         let entering = self.disturbances.iter().filter(|one| entries.contains(&one.entry()));
-        let parts = entering.map(Disturbance::part).filter(|(_, shape)| counts(shape));
+        let parts = entering.map(Disturbance::part).filter(|(_, shape)| counted.counts(shape));
         let parts: Vec<(f64, &Shape)> = parts.collect();
-        extremes(&parts)
+        extremes_from(counted.from_s(), &parts)
+    }
+}
+
+/// When disturbances are counted.
+#[derive(Clone, Copy, Debug)]
+enum Counted {
+    Always,
+    /// From the end of the flight on: those alone that stay there from some time of the flight on.
+    AtTheEnd {
+        end_s: f64,
+    },
+}
+
+impl Counted {
+    fn counts(self, shape: &Shape) -> bool {
+        match self {
+            Self::Always => true,
+            Self::AtTheEnd { end_s } => stays(shape, end_s),
+        }
+    }
+
+    const fn from_s(self) -> f64 {
+        match self {
+            Self::Always => f64::NEG_INFINITY,
+            Self::AtTheEnd { end_s } => end_s,
+        }
     }
 }
 

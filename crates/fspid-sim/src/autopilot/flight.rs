@@ -10,6 +10,7 @@ use super::total_energy::Rates;
 use super::{Autopilot, Mode, Moves, OuterLoop, Units};
 use crate::aircraft::AircraftPlant;
 use crate::error::SimError;
+use crate::math::turned_towards;
 use crate::sensor::{Sensor, SensorState, Truth};
 use crate::timing::Timing;
 use fspid_aircraft::{ForceModel, Range};
@@ -40,6 +41,8 @@ pub(crate) struct AutopilotState {
     fades: Vec<f64>,
     /// For each loop: what it sees at this sample.
     found: Vec<f64>,
+    /// The heading, followed through whole turns, rad.
+    heading_rad: f64,
     /// Of the throttle and of pitch by total energy.
     energy: [Channel; 2],
     /// What each quantity is held at; none before somebody holds it.
@@ -49,6 +52,7 @@ pub(crate) struct AutopilotState {
     /// Angle above the beam, rad, and range, m, where there was one last.
     last_shown: [f64; 2],
     above_beam_m: f64,
+    is_behind_beam: bool,
     commands: Commands,
     throttle: Throttle,
     /// Which way the throttle was cut by its travel.
@@ -92,6 +96,7 @@ impl AutopilotState {
             targets: vec![0.0; autopilot.loops.len()],
             fades: vec![0.0; autopilot.loops.len()],
             found: vec![0.0; autopilot.loops.len()],
+            heading_rad: 0.0,
             energy: [Channel::default(); 2],
             held: [None; Quantity::ALL.len()],
             bearing: Bearing::of(beam),
@@ -101,6 +106,7 @@ impl AutopilotState {
             ],
             last_shown: [0.0; 2],
             above_beam_m: 0.0,
+            is_behind_beam: false,
             commands: Commands::default(),
             throttle,
             throttle_cut: Cut::Not,
@@ -198,12 +204,18 @@ impl AutopilotState {
         let ([angle, range], [angle_rad, range_m]) = (&mut self.beam, self.last_shown);
         let angle_rad = measured(angle.as_mut(), k, angle_rad);
         let range_m = measured(range.as_mut(), k, range_m);
+        self.is_behind_beam = shown.is_none() && autopilot.glide_slope.is_some();
         if shown.is_some() {
             self.above_beam_m = range_m * libm::sin(angle_rad);
         }
+        self.heading_rad = turned_towards(self.heading_rad, observed.heading_rad);
         let all = self.found.iter_mut().zip(&mut self.sensors).zip(&autopilot.loops);
         for ((found, sensor), outer) in all {
-            let value = outer.holds.value(observed, self.above_beam_m);
+            let value = match outer.holds {
+                // Across south a heading jumps: half way between both sides would be north, and a rate no turn flies.
+                Quantity::Heading => self.heading_rad,
+                _ => outer.holds.value(observed, self.above_beam_m),
+            };
             *found = measured(sensor.as_mut(), k, value);
         }
     }
@@ -265,17 +277,23 @@ impl AutopilotState {
             return;
         };
         if !self.is_moved(autopilot, number) {
-            let held = self.held[outer.holds.place()].get_or_insert(found);
+            let held = self.held[outer.holds.place()].get_or_insert(match outer.holds {
+                Quantity::Heading => turned_towards(0.0, found),
+                _ => found,
+            });
             self.targets[number] = *held;
         }
-        let target = self.targets[number];
+        let target = match outer.holds {
+            Quantity::Heading => turned_towards(found, self.targets[number]),
+            _ => self.targets[number],
+        };
         let (sign, base) = (outer.sign(), self.base(autopilot, outer, observed));
         let current = self.current(autopilot, outer, observed);
         let base = base.map_or(0.0, |base| base + self.faded(outer, number, current - base));
         let Units { held, moved } = outer.units;
         let asked = Asked {
             target: held * target,
-            measured: held * nearest(outer.holds, target, found),
+            measured: held * found,
             rate: held * outer.holds.rate(observed, self.bearing.tangent),
             current: moved * sign * (current - base),
             blocked: self.blocked(outer, pitch_cut).through(sign),
@@ -398,6 +416,7 @@ impl AutopilotState {
             mode: u32::try_from(self.mode).unwrap_or(u32::MAX),
             targets,
             above_beam_m: self.above_beam_m,
+            is_behind_beam: self.is_behind_beam,
             throttle: self.throttle.trim + self.commands.throttle,
             bank_rad: self.commands.bank_rad,
             is_limited: self.is_limited(autopilot, observed),
@@ -420,13 +439,4 @@ impl AutopilotState {
 
 fn measured(sensor: Option<&mut SensorState>, k: usize, value: f64) -> f64 {
     sensor.map_or(value, |sensor| sensor.measure(k, Truth { value, ..Truth::default() }))
-}
-
-/// A heading as the one of its turns that is nearest to the target; everything else as it is.
-fn nearest(quantity: Quantity, target: f64, found: f64) -> f64 {
-    use std::f64::consts::TAU;
-    match quantity {
-        Quantity::Heading => found + TAU * ((target - found) / TAU).round(),
-        _ => found,
-    }
 }

@@ -11,6 +11,8 @@ pub struct AutopilotSample {
     pub targets: [f64; Quantity::ALL.len()],
     /// Height above the beam of the glide slope as it is shown, m; 0 without one.
     pub above_beam_m: f64,
+    /// Behind the antenna of the glide slope: there is no beam, and the last height that was shown stays.
+    pub is_behind_beam: bool,
     /// The throttle that is asked for, counted as the aircraft's data do.
     pub throttle: f64,
     /// The bank that is asked for, rad.

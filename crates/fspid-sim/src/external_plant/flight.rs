@@ -8,7 +8,7 @@ use crate::actuator::{Actuator, ActuatorState};
 use crate::aircraft::{AircraftSample, MOST_STEP_S};
 use crate::autopilot::{Cut, Throttle};
 use crate::error::SimError;
-use crate::math::sin_cos;
+use crate::math::{sin_cos, turned_towards};
 use crate::surroundings::Weather;
 use crate::timing::Timing;
 
@@ -124,7 +124,7 @@ impl ExternalMotion {
             load_factors: now.felt,
             air_m_s: now.air_m_s,
             position_m: now.position_m,
-            heading_rad: within_half_a_turn(now.heading_rad),
+            heading_rad: turned_towards(0.0, now.heading_rad),
             attitude_rad: now.theta_rad,
             sideslip_rad: now.sideslip_rad,
             roll_yaw_rad_s: now.roll_yaw_rad_s,
@@ -143,12 +143,6 @@ impl ExternalMotion {
             shown: None,
         })
     }
-}
-
-/// An angle within ±π.
-fn within_half_a_turn(angle_rad: f64) -> f64 {
-    use std::f64::consts::TAU;
-    angle_rad - TAU * (angle_rad / TAU).round()
 }
 
 /// Angle between the true vertical and that of a pendulum, along the heading, rad.

@@ -15,7 +15,7 @@ mod tests;
 
 use fspid_core::Gains;
 
-use crate::autopilot::Quantity;
+use crate::autopilot::{Autopilot, Mode, Quantity};
 use crate::controller::Controller;
 use crate::held_limits::{Ends, Moves};
 use crate::instant::Instant;
@@ -125,7 +125,9 @@ impl Asked {
         if !flies_on || rows > SAMPLES[1] {
             return in_doubt(match is_linear && flies_on {
                 true => pieces.goes_on(moved, moves) || have_left(gains, &pieces, moved),
-                false => swings_itself(),
+                false => {
+                    swings_itself() || gains.is_some() && leave_what_a_mode_holds(&pieces, moved)
+                }
             });
         }
         // At a limit that it has met once, noise may carry a plant that runs away over the edge; any other that still meets them.
@@ -162,7 +164,7 @@ fn ways(
 fn pieces_of<'a>(scenario: &Scenario, ends: &'a Ends, trace: &Trace) -> Pieces<'a> {
     let at_servo = scenario.loads_rad(Entry::Servo);
     let mut pieces = Pieces::new(scenario, ends, (trace.rows() / 5).max(1));
-    let outer = outer_of(trace);
+    let outer = outer_of(scenario, trace);
     for k in 0..trace.rows() {
         pieces.push(Shown {
             moving_rad: moving_rad(scenario, trace.setpoint_rad[k], trace.theta_rad[k]),
@@ -178,18 +180,40 @@ fn pieces_of<'a>(scenario: &Scenario, ends: &'a Ends, trace: &Trace) -> Pieces<'
 }
 
 /// What the loops around the pitch loop hold at each sample of a flight; nothing without them.
-fn outer_of(trace: &Trace) -> impl Fn(usize) -> Outer {
-    let held = [["altitude_m", "altitude_target_m"], ["airspeed_m_s", "airspeed_target_m_s"]];
+fn outer_of(scenario: &Scenario, trace: &Trace) -> impl Fn(usize) -> Outer {
+    let held = [
+        ["altitude_m", "altitude_target_m"],
+        ["airspeed_m_s", "airspeed_target_m_s"],
+        ["heading_rad", "heading_target_rad"],
+    ];
     let held = held.map(|names| names.map(|name| trace.column(name)));
+    let above = trace.column("above_glide_slope_m");
+    let modes_of_beams = modes_of_beams(scenario);
     let lateral = ["bank_rad", "aileron_rad"].map(|name| trace.column(name));
     let modes = trace.column("mode");
     move |k| {
         let at = |column: Option<&[f64]>| column.and_then(|it| it.get(k)).copied();
         let off = held.map(|[is, wanted]| Some(at(is)? - at(wanted)?));
+        let [altitude_m, airspeed_m_s, heading_rad] = off.map(Option::unwrap_or_default);
         let lateral_rad = lateral.map(|it| at(it).unwrap_or_default());
         let mode = at(modes).unwrap_or_default();
-        Outer { off: off.map(Option::unwrap_or_default), mode, lateral_rad }
+        // Modes count from 1 there.
+        let holds_a_beam = modes_of_beams.get((mode as usize).saturating_sub(1)) == Some(&true);
+        let above_m = at(above).filter(|_| holds_a_beam).unwrap_or_default();
+        Outer { off: [altitude_m, airspeed_m_s, heading_rad, above_m], mode, lateral_rad }
     }
+}
+
+/// For each mode, whether it holds the beam of a glide slope.
+fn modes_of_beams(scenario: &Scenario) -> Vec<bool> {
+    let holds_a_beam = |autopilot: &Autopilot, mode: &Mode| {
+        let mut engaged = mode.engaged.iter().filter_map(|&number| autopilot.loops().get(number));
+        engaged.any(|outer| outer.holds == Quantity::GlideSlope)
+    };
+    let of = |autopilot: &Autopilot| {
+        autopilot.modes().iter().map(|mode| holds_a_beam(autopilot, mode)).collect()
+    };
+    scenario.autopilot.as_ref().map(of).unwrap_or_default()
 }
 
 /// The same of a sample that is being flown.
@@ -201,6 +225,8 @@ fn outer_at(instant: &Instant) -> Outer {
     let off = [
         aircraft.altitude_m - wanted(Quantity::Altitude),
         aircraft.airspeed_m_s - wanted(Quantity::Airspeed),
+        aircraft.heading_rad - wanted(Quantity::Heading),
+        autopilot.above_beam_m - wanted(Quantity::GlideSlope),
     ];
     let lateral_rad = [aircraft.bank_rad, aircraft.aileron_rad];
     Outer { off, mode: f64::from(autopilot.mode), lateral_rad }
@@ -223,7 +249,8 @@ fn has_come_to_rest(
     trace: &Trace,
 ) -> bool {
     let has_ended = || match Moved::of(scenario, Afterwards::Noise) {
-        Moved::Nothing => pieces.rests(),
+        // A pitch that rests tells nothing of a heading that goes round, or of a beam that is left.
+        Moved::Nothing => pieces.rests() && (gains.is_none() || MovingGains::stand(pieces)),
         Moved::BySwings => {
             !pieces.tail().meets() && pieces.repeats() && has_shown_its_swings(scenario)
         }

@@ -9,7 +9,7 @@ use core::f64::consts::PI;
 
 use super::moved::Moved;
 use super::periods_s;
-use super::pieces::{Pieces, Span};
+use super::pieces::{HELD, Pieces, Span};
 use crate::controller::Controller;
 use crate::rest::leakage_per_s;
 use crate::scenario::Scenario;
@@ -27,6 +27,8 @@ const PERIODS: f64 = 2.0;
 const DOUBLED: f64 = 2.0;
 /// An aircraft's error or pitch that moves at the end by no more than this share of all its movement moves no gains.
 const STANDS: f64 = 0.02;
+/// Nor does what is held, away from where it is to be, by more than this share of the furthest that it was, if it gets further away.
+const STILL: f64 = 1e-3;
 /// A swing that is so many times as wide as the widths of actuator and sensors is none of theirs.
 const WIDTHS: f64 = 10.0;
 /// Gains that move by no more than this share of themselves are those of one rest.
@@ -42,8 +44,8 @@ const RATE_S: f64 = 1.0;
 const GONE: f64 = 1.25;
 /// An error that is no larger is none of an aircraft that has left its set-point, rad.
 const NEAR_RAD: f64 = PI / 180.0;
-/// Altitude, m, and airspeed, m/s, that are nearer to what they are to be are there.
-const NEAR: [f64; 2] = [3.0, 0.5];
+/// Altitude, m, airspeed, m/s, heading, rad, and the beam of a glide slope, m, that are nearer to what they are to be are there.
+const NEAR: [f64; HELD] = [3.0, 0.5, NEAR_RAD, 3.0];
 
 /// How a flight is judged whose gains move.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -132,13 +134,22 @@ impl MovingGains {
     }
 
     fn have_stood(pieces: &Pieces<'_>, part: Span) -> bool {
-        let [moves, all] = [part, pieces.whole()].map(Span::off);
-        let stands = |place: usize| moves[place][0] <= NEAR[place].max(STANDS * all[place][1]);
+        let [part_off, all] = [part, pieces.whole()].map(Span::off);
+        let [before, last] = [pieces.before_last(1, 1), pieces.last(1)].map(Span::off);
+        let stands = |place: usize| {
+            let [moves, _] = part_off[place];
+            let [[_, all], [_, before], [moves_last, last]] =
+                [all, before, last].map(|it| it[place]);
+            // What gets away slowly from where it is to be does not stand there.
+            let goes_away = last > NEAR[place] && last > before && moves_last > STILL * all;
+            moves <= NEAR[place].max(STANDS * all) && !goes_away
+        };
         pieces.moves_by_at_most(part, STANDS) && (0..NEAR.len()).all(stands)
     }
 }
 
-/// True where altitude or airspeed go away from what one mode holds through the last two fifths, or do not come back to it.
+/// True where altitude, airspeed, heading or a beam go away from what one mode holds through the last two fifths, or do not come
+/// back to it.
 pub(super) fn leave_what_a_mode_holds(pieces: &Pieces<'_>, moved: Moved) -> bool {
     let Some([fourth, fifth]) = pieces.last_fifths() else { return false };
     let [before, last, all] = [fourth, fifth, pieces.whole()].map(Span::off);

@@ -3,7 +3,8 @@
 use core::ops::ControlFlow;
 
 use super::moved::{Afterwards, Moved, held_on};
-use super::pieces::{Pieces, Shown, Span};
+use super::moving_gains::MovingGains;
+use super::pieces::{BEAM, Pieces, Shown, Span};
 use super::{
     Asked, diverged, have_left, is_lost, leave_at_limits, lengths, moving_rad, of_limits_or_gains,
     outer_at,
@@ -48,7 +49,7 @@ impl Onwards<'_> {
         let mut course = Course::new(self, prepared, afterwards);
         let outcome = fly(prepared, self.controller, |instant| {
             course.see(&instant);
-            if course.has_rested { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            if course.goes_on() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         });
         course.doubt(outcome)
     }
@@ -104,10 +105,10 @@ fn doubts_in_lanes(
     let mut courses: Vec<Course<'_>> = courses.collect();
     let outcomes = fly_group_while::<LANES>(&entrants, |row: &BatchRow<'_, LANES>| {
         let mut goes_on = false;
-        for (lane, course) in courses.iter_mut().enumerate().filter(|(_, it)| !it.has_rested) {
+        for (lane, course) in courses.iter_mut().enumerate().filter(|(_, it)| it.goes_on()) {
             if let Some(instant) = row.instant(lane) {
                 course.see(&instant);
-                goes_on |= !course.has_rested;
+                goes_on |= course.goes_on();
             }
         }
         if goes_on { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
@@ -126,6 +127,8 @@ struct Course<'a> {
     own: Option<Span>,
     is_held: bool,
     has_rested: bool,
+    /// The beam that it holds has ended: what comes after it tells nothing.
+    has_passed: bool,
 }
 
 impl<'a> Course<'a> {
@@ -134,13 +137,23 @@ impl<'a> Course<'a> {
         let [_, piece] = lengths(scenario.timing.rows());
         let moved = Moved::of(scenario, afterwards);
         let pieces = Pieces::new(scenario, &flight.ends, piece);
-        Self { flight, prepared, moved, pieces, own: None, is_held: false, has_rested: false }
+        let [is_held, has_rested, has_passed] = [false; 3];
+        Self { flight, prepared, moved, pieces, own: None, is_held, has_rested, has_passed }
+    }
+
+    const fn goes_on(&self) -> bool {
+        !self.has_rested && !self.has_passed
     }
 
     /// Takes a sample.
     fn see(&mut self, instant: &Instant) {
         let Onwards { scenario, controller, asked, .. } = self.flight;
         let rows = scenario.timing.rows();
+        let outer = outer_at(instant);
+        if instant.autopilot.is_some_and(|it| it.is_behind_beam) && outer.off[BEAM].abs() > 0.0 {
+            self.has_passed = true;
+            return;
+        }
         let at_servo = self.prepared.at_servo.as_ref().and_then(|it| it.get(instant.k));
         self.pieces.push(Shown {
             moving_rad: moving_rad(scenario, instant.setpoint_rad, instant.theta_rad),
@@ -149,7 +162,7 @@ impl<'a> Course<'a> {
             elevator_rad: instant.elevator_rad,
             autopilot_is_limited: instant.autopilot.is_some_and(|it| it.is_limited),
             gains: instant.step.gains,
-            outer: outer_at(instant),
+            outer,
         });
         if instant.k + 1 == rows {
             self.own = Some(self.pieces.whole());
@@ -159,7 +172,12 @@ impl<'a> Course<'a> {
             sample_guard::is_beyond(controller, [instant.setpoint_rad, theta_rad, rate_rad_s]);
         let pieces = &self.pieces;
         let is_seen = instant.k > rows + 2 * pieces.length && pieces.is_whole();
-        let rests = || pieces.rests() || asked.gains.is_some_and(|it| it.have_come_back(pieces));
+        let rests = || match asked.gains {
+            Some(gains) => {
+                (pieces.rests() && MovingGains::stand(pieces)) || gains.have_come_back(pieces)
+            }
+            None => pieces.rests(),
+        };
         self.has_rested = self.moved == Moved::Nothing && is_seen && rests();
     }
 

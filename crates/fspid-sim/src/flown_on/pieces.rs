@@ -5,6 +5,7 @@ use fspid_core::Gains;
 
 use super::moved::Moved;
 use crate::held_limits::{Ends, Moves};
+use crate::math::turned_towards;
 use crate::scenario::Scenario;
 
 /// What moves within a part of the flight by no more than this share of all its movement has come to rest.
@@ -78,11 +79,17 @@ pub(super) struct Shown {
     pub(super) outer: Outer,
 }
 
+/// How many quantities are asked for that a mode holds, and the places of heading and beam among them.
+pub(super) const HELD: usize = 4;
+const HEADING: usize = 2;
+pub(super) const BEAM: usize = 3;
+
 /// What the loops around the pitch loop hold.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Outer {
-    /// How far altitude, m, and airspeed, m/s, are from what they are to be; 0 of what nobody holds.
-    pub(super) off: [f64; 2],
+    /// How far altitude, m, airspeed, m/s, heading, rad, and the beam of a glide slope, m, are from what they are to be; 0 of what
+    /// nobody holds.
+    pub(super) off: [f64; HELD],
     /// Number of the mode.
     pub(super) mode: f64,
     /// Bank and aileron, rad.
@@ -99,7 +106,7 @@ pub(super) struct Span {
     elevator: Reach,
     gains: [Reach; 3],
     /// Of [`Outer::off`], and of the modes.
-    off: [Reach; 2],
+    off: [Reach; HELD],
     modes: Reach,
     bank: Reach,
     /// How far the bank went, there and back.
@@ -118,7 +125,7 @@ impl Span {
         command: Reach::NONE,
         elevator: Reach::NONE,
         gains: [Reach::NONE; 3],
-        off: [Reach::NONE; 2],
+        off: [Reach::NONE; HELD],
         modes: Reach::NONE,
         bank: Reach::NONE,
         bank_way_rad: 0.0,
@@ -134,7 +141,7 @@ impl Span {
             command: self.command.and(other.command),
             elevator: self.elevator.and(other.elevator),
             gains: [0, 1, 2].map(|place| self.gains[place].and(other.gains[place])),
-            off: [0, 1].map(|place| self.off[place].and(other.off[place])),
+            off: std::array::from_fn(|place| self.off[place].and(other.off[place])),
             modes: self.modes.and(other.modes),
             bank: self.bank.and(other.bank),
             bank_way_rad: self.bank_way_rad + other.bank_way_rad,
@@ -166,8 +173,8 @@ impl Span {
         self.error.least_rad.abs().max(self.error.most_rad.abs())
     }
 
-    /// How far altitude, m, and airspeed, m/s, move from what they are to be, and how far they are at most.
-    pub(super) fn off(self) -> [[f64; 2]; 2] {
+    /// How far what a mode holds, in the units of [`Outer::off`], moves from what it is to be, and how far it is at most.
+    pub(super) fn off(self) -> [[f64; 2]; HELD] {
         self.off.map(|it| [it.size_rad(), it.least_rad.abs().max(it.most_rad.abs())])
     }
 
@@ -238,8 +245,10 @@ impl<'a> Pieces<'a> {
         !self.may_drift
     }
 
-    /// Takes a sample.
-    pub(super) fn push(&mut self, shown: Shown) {
+    /// Takes a sample. A heading is followed through whole turns: one that goes round gets further away with each.
+    pub(super) fn push(&mut self, mut shown: Shown) {
+        let off_rad = &mut shown.outer.off[HEADING];
+        *off_rad = turned_towards(self.before.map_or(0.0, |it| it.outer.off[HEADING]), *off_rad);
         let Shown { moving_rad, command_rad, at_servo_rad, elevator_rad, .. } = shown;
         let before = self.before.unwrap_or(shown);
         let meets = shown.autopilot_is_limited

@@ -10,4 +10,4 @@ pub use disturbance::{Disturbance, Entry};
 pub use mixed_noise::{NoMixture, Noise};
 pub use profile::{Edge, Interpolation, Profile};
 pub use shape::Shape;
-pub(crate) use shape::extremes;
+pub(crate) use shape::extremes_from;

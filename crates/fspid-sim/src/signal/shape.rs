@@ -226,12 +226,21 @@ impl Shape {
 /// Least and largest value that a sum of shapes, each with its amplitude, comes to in all time; 0 is one of its
 /// values. Noise is left out.
 pub(crate) fn extremes(parts: &[(f64, &Shape)]) -> [f64; 2] {
+    extremes_from(f64::NEG_INFINITY, parts)
+}
+
+/// The same from some time on.
+pub(crate) fn extremes_from(begin_s: f64, parts: &[(f64, &Shape)]) -> [f64; 2] {
     let mut breaks: Vec<f64> = parts.iter().flat_map(|(_, shape)| shape.breaks()).collect();
     breaks.sort_by(f64::total_cmp);
     breaks.dedup();
     let mut ends = [0.0_f64; 2];
     for (place, &from_s) in breaks.iter().enumerate() {
         let to_s = breaks.get(place + 1).copied().unwrap_or(f64::INFINITY);
+        if to_s <= begin_s {
+            continue;
+        }
+        let from_s = from_s.max(begin_s);
         let sum = parts.iter().fold([0.0; 2], |[least, most], (amplitude, shape)| {
             let [one, other] = shape.between(from_s, to_s).map(|value| amplitude * value);
             [least + one.min(other), most + one.max(other)]

@@ -267,6 +267,24 @@ fn a_load_that_begins_after_the_flight_is_none_that_the_loop_rests_under() {
     }
 }
 
+/// Two steps of a load that cancel are a pulse.
+#[test]
+fn loads_that_others_take_off_again_within_the_flight_are_none_that_the_loop_rests_under() {
+    let step = |at_s: f64, amplitude_deg: f64| {
+        format!(
+            "[[disturbance]]\nkind = \"step\"\nenters_at = \"elevator\"\nat_s = {at_s:?}\namplitude_deg = {amplitude_deg:?}\n"
+        )
+    };
+    let loaded = |loads: &[String]| {
+        result(&format!("{LOADED}{}", loads.concat()), &[]).at_rest.stability_word()
+    };
+    let [on, off] = [step(5.0, 15.0), step(6.0, -15.0)];
+    assert_eq!(loaded(&[on.clone()]), Some("unstable"));
+    assert_eq!(loaded(&[off.clone(), on.clone()]), Some("stable"));
+    // What is taken off after the end is held by the flight.
+    assert_eq!(loaded(&[on, step(10.01, -15.0)]), Some("unstable"));
+}
+
 /// Campaigns ask the flights of a group side by side.
 #[test]
 fn flights_that_are_flown_on_side_by_side_are_in_doubt_as_each_of_them_alone() {

@@ -250,3 +250,101 @@ fn a_bank_that_swings_at_the_stops_of_the_aileron_is_in_doubt() {
     let flight = result(SWINGING, &["outer_loop[0].kp=2.0"]);
     assert!(flight.at_rest.unstable.is_none() && doubt(&flight).is_none());
 }
+
+/// A heading by its derivative as it is seen, late by two samples and a half.
+const SEEN_LATE: &str = r#"outer_loop[3]={ name = "heading", kind = "pid", holds = "heading", moves = "bank", kp = 1.2, kd = 0.3, derivative_on = "measurement", derivative_filter_s = 0.5, least = -30.0, most = 30.0, sensor = { delay_s = 0.05 } }"#;
+
+/// The same by half of its target.
+const WEIGHED: &str = r#"outer_loop[3]={ name = "heading", kind = "pid", holds = "heading", moves = "bank", kp = 1.2, ki = 0.1, setpoint_weights = { proportional = 0.5, derivative = 0.0 }, least = -30.0, most = 30.0 }"#;
+
+/// A target in another turn than the heading that was held moved what the derivative sees by a whole turn, and between a sample on
+/// each side of south a late sensor showed north.
+#[test]
+fn a_turn_is_flown_alike_whichever_way_it_heads() {
+    let banks = |heading_loop: &str, from_deg: f64, by_deg: f64| {
+        let heading = format!("aircraft.heading_deg={from_deg:?}");
+        let to_deg = (from_deg + by_deg).rem_euclid(360.0);
+        let target = format!("mode[1].target.heading_deg={to_deg:?}");
+        let trace = result(TURN, &[heading_loop, &heading, &target, "loop.duration_s=30.0"]).trace;
+        trace.column("bank_rad").expect("an aircraft's").to_vec()
+    };
+    let turns = [SEEN_LATE, WEIGHED].map(|it| [0.0, 20.0, -20.0, 150.0].map(|by_deg| (it, by_deg)));
+    for (heading_loop, by_deg) in turns.into_iter().flatten() {
+        let known = banks(heading_loop, 50.0, by_deg);
+        for from_deg in [5.0, 95.0, 175.0, 185.0, 200.0, 355.0] {
+            let off = banks(heading_loop, from_deg, by_deg)
+                .into_iter()
+                .zip(&known)
+                .map(|(one, other)| (one - other).abs());
+            let most_rad = off.fold(0.0, f64::max);
+            assert!(most_rad < 1e-6, "{most_rad} rad from {from_deg} by {by_deg} deg");
+        }
+    }
+}
+
+/// A self-tuner whose kp the rules turn round where the error is large: it flies past its heading, and round again.
+const ROUND: &str = r#"outer_loop[3]={ name = "heading", kind = "fspid", holds = "heading", moves = "bank", nominal = { kp = 3.503, ki = 0.0, kd = 0.038 }, least = -15.0, most = 15.0, most_per_s = 2.0, derivative_on = "measurement", supervisor = { table = "printed", range = 5.0, error_sign = "measurement-minus-setpoint", error_scale = 4.2576, change = "rate", change_scale = 0.1645, output_scale = { kp = 1.1008, ki = 0.0, kd = 0.0056 } } }"#;
+
+/// The pitch rests while the heading goes round: of 60 s, and of 3000 s in which it circles, it was `stable`.
+#[test]
+fn a_heading_that_goes_round_and_does_not_come_to_what_is_held_is_in_doubt() {
+    let turned = |set: &[&str]| {
+        let own = ["lateral.bank_time_s=5.0", "mode[1].target.heading_deg=320.0", ROUND];
+        doubt(&result(TURN, &[&own[..], set].concat()))
+    };
+    assert_eq!(turned(&[]), Some(Doubt::AwayFromRest));
+    assert!(turned(&["loop.duration_s=3000.0"]).is_some());
+    let gentler = "outer_loop[3].supervisor.output_scale={ kp = 0.95, ki = 0.0, kd = 0.0056 }";
+    assert_eq!(turned(&[gentler]), None);
+}
+
+/// An approach that begins 40 m above its beam, with an integral whose gain the rules turn round where the error is large.
+const LEAVES_ITS_BEAM: &str = r#"
+schema = 1
+name = "leaves its beam"
+aircraft = { name = "navion", airspeed_ft_s = 176.0, altitude_ft = 8000.0, thrust = "with-speed" }
+engine = { kind = "first-order", time_constant_s = 1.0 }
+lateral = { yaw_damping = 0.4 }
+actuator = { time_constant_s = 0.1 }
+loop = { sample_period_s = 0.05, duration_s = 60.0 }
+setpoint = { kind = "step", amplitude_deg = 0.0 }
+glide_slope = { angle_deg = 3.0, distance_m = 45764.2 }
+mode = [{ name = "approach", engage = ["beam", "flight path", "autothrottle"] }]
+controller = [{ name = "PID", kind = "pid", kp = 0.82, ki = 0.43, kd = 0.165, derivative_filter_s = 0.05 }]
+[[outer_loop]]
+name = "beam"
+kind = "fspid"
+holds = "glide-slope"
+moves = "flight path"
+nominal = { kp = 0.09, ki = 0.002, kd = 0.0 }
+least = -2.0
+most = 2.0
+most_per_s = 0.5
+supervisor = { table = "printed", range = 5.0, error_sign = "measurement-minus-setpoint", error_scale = 0.5, change = "rate", change_scale = 0.1, output_scale = { kp = 0.033, ki = -0.0007, kd = 0.0 } }
+[[outer_loop]]
+name = "flight path"
+kind = "pid"
+holds = "flight-path"
+moves = "pitch"
+kp = 0.6
+ki = 0.4
+least = -10.0
+most = 10.0
+[[outer_loop]]
+name = "autothrottle"
+kind = "pid"
+holds = "airspeed"
+moves = "throttle"
+kp = 0.1
+ki = 0.02
+"#;
+
+/// It leaves it by 1.9 m/s for good, and was `stable`, of 60 s and of 600 s.
+#[test]
+fn a_beam_that_is_left_is_in_doubt() {
+    let left = |set: &[&str]| doubt(&result(LEAVES_ITS_BEAM, set));
+    assert!(left(&[]).is_some());
+    assert!(left(&["loop.duration_s=600.0"]).is_some());
+    let fixed = "outer_loop[0].supervisor.output_scale={ kp = 0.0, ki = 0.0, kd = 0.0 }";
+    assert_eq!(left(&[fixed]), None);
+}

@@ -189,7 +189,8 @@ fn what_is_held_is_left_where_it_goes_away_or_swings_and_not_where_it_stands_or_
         let mut pieces = Pieces::new(&scenario, &ends, PERIOD);
         for k in 0..10 * PERIOD {
             let along = k as f64 / (10 * PERIOD) as f64;
-            let outer = Outer { off: [off_m(along), 0.0], mode: mode(along), ..Outer::default() };
+            let outer =
+                Outer { off: [off_m(along), 0.0, 0.0, 0.0], mode: mode(along), ..Outer::default() };
             pieces.push(Shown { outer, ..still() });
         }
         gains.leave_what_is_held(&pieces, Moved::Nothing)
@@ -256,7 +257,7 @@ fn an_aircraft_has_come_back_where_it_stood_for_as_long_as_its_flight_was() {
             let is_moving = k < moving * PERIOD;
             let moving_rad = side * if is_moving { 0.1 } else { left_rad };
             let outer = Outer {
-                off: [if is_moving { far_m } else { side * off_m }, 0.0],
+                off: [if is_moving { far_m } else { side * off_m }, 0.0, 0.0, 0.0],
                 ..Outer::default()
             };
             pieces.push(Shown { moving_rad, outer, ..still() });
