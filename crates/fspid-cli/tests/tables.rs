@@ -155,6 +155,37 @@ fn an_aircraft_of_jsbsim_becomes_an_aircraft_of_tables_that_flies_a_scenario() {
     assert_eq!(answer["controllers"][0]["name"], "PID", "{answer}");
 }
 
+/// With a rolling moment where nothing moves it was "good" and `stable`, banked by 54 deg at once and flew into the ground.
+#[test]
+fn an_aircraft_that_is_not_balanced_sideways_is_not_trimmed() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let balanced = "<product> <property>aero/beta-rad</property> <value>-0.09</value> </product>";
+    assert!(INVENTED.contains(balanced));
+    let bent = INVENTED.replacen(balanced, &format!("<value>0.02</value> {balanced}"), 1);
+    std::fs::write(folder.path().join("small.xml"), bent).expect("written");
+    let output = aircraft(
+        folder.path(),
+        &["import", "small.xml", "--thrust-lbf", "600", "--out", "small.toml"],
+    );
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    for verb in ["trim", "linearise", "modes", "qualities"] {
+        let asked = [verb, "small.toml", "--speed", "55", "--altitude", "1000"];
+        let output = aircraft(folder.path(), &asked);
+        assert_eq!(output.status.code(), Some(2), "{verb}: {}", text(&output.stdout));
+        let told = text(&output.stderr);
+        assert!(
+            told.contains("is not balanced sideways") && told.contains("deg/s² in roll"),
+            "{told}"
+        );
+    }
+    std::fs::write(folder.path().join("flight.toml"), FLIGHT).expect("written");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_fspid"));
+    let output = command.args(["simulate", "flight.toml"]).current_dir(folder.path()).output();
+    let output = output.expect("it starts");
+    assert_eq!(output.status.code(), Some(2), "{}", text(&output.stdout));
+    assert!(text(&output.stderr).contains("is not balanced sideways"), "{}", text(&output.stderr));
+}
+
 #[test]
 fn without_a_thrust_an_aircraft_of_jsbsim_glides_and_says_so() {
     let (folder, output) = small(&["--out", "small.toml", "--format", "json"]);

@@ -63,6 +63,45 @@ fn loads_are_coefficients_times_dynamic_pressure_with_moments_moved_to_the_centr
     assert!((forces(30.0).thrust_n(&flow(), &controls) / POUND_N - 1000.0).abs() < 1e-9);
 }
 
+/// A sign was read and not used: an elevator that counts trailing edge up was told as "trailing edge down positive" and flown so.
+#[test]
+fn what_counts_the_other_way_in_its_file_is_turned() {
+    let signed = |name: &str, sign: &str| {
+        let plain = format!("name=\"{name}\"");
+        assert!(AERO.contains(&plain));
+        AERO.replacen(&plain, &format!("{plain} sign=\"{sign}\""), 1)
+    };
+    let loads = |text: &str, elevator_deg: f64, beta_deg: f64| {
+        let setting = Setting {
+            centre_of_mass_m: body(30.0).centre_of_mass_m,
+            gearing: Gearing::Proportional,
+            travel: Travel::UNLIMITED,
+        };
+        let forces = TableForces::new(model(text), Some(model(ENGINE)), setting).unwrap();
+        let elevator_rad = elevator_deg.to_radians();
+        let (sine, cosine) = beta_deg.to_radians().sin_cos();
+        let air = Air::with_density(1.0, 330.0);
+        let flow =
+            Flow::new(Vector3::new(90.0 * cosine, 90.0 * sine, 0.0), Vector3::ZERO, 0.0, air);
+        forces.loads(&flow, &Controls { elevator_rad, ..Controls::default() })
+    };
+    for sign in ["+TEU", "trailing edge up"] {
+        let up = signed("elevatorDeflection", sign);
+        assert_eq!(loads(&up, 3.0, 2.0), loads(AERO, -3.0, 2.0), "{sign}");
+    }
+    assert_eq!(loads(&signed("elevatorDeflection", "+TED"), 3.0, 2.0), loads(AERO, 3.0, 2.0));
+    for sign in ["+ANR", "wind in left ear"] {
+        let left = signed("angleOfSideslip", sign);
+        assert_eq!(loads(&left, 3.0, 2.0), loads(AERO, 3.0, -2.0), "{sign}");
+    }
+    let down = loads(&signed("aeroBodyMomentCoefficient_Yaw", "aircraft nose left"), 3.0, 2.0);
+    let up = loads(AERO, 3.0, 2.0);
+    // About the centre of mass the side force has a moment as well.
+    let of_force = body(30.0).centre_of_mass_m.x * up.force_n.y;
+    let [yaw, turned] = [up, down].map(|it| it.moment_n_m.z + of_force);
+    assert!((yaw + turned).abs() < 1e-9 * yaw.abs() && yaw.abs() > 0.0, "{yaw} {turned}");
+}
+
 #[test]
 fn a_trim_of_straight_lines_is_that_of_the_closed_form() {
     let environment = Environment::uniform(9.8, 1.0, 330.0);

@@ -209,6 +209,10 @@ fn moment_n_m(text: &str, held: &[(&str, f64)], [alpha_rad, beta_rad]: [f64; 2])
 #[test]
 fn an_angle_that_is_held_is_held_in_tables_too() {
     let text = with("<property>aero/beta-deg</property>", "<value>0</value>");
+    // Both angles by the table alone.
+    let by_sideslip = "<property>aero/qbar-psf</property> <property>aero/beta-rad</property>";
+    assert!(text.contains(by_sideslip));
+    let text = text.replacen(by_sideslip, "<property>aero/qbar-psf</property>", 1);
     let function = |word: &str| text.find(word).unwrap();
     let start = function("<function name=\"aero/coefficient/Cn-in-space\">");
     let end = start + text[start..].find("</function>").unwrap() + "</function>".len();

@@ -2,7 +2,7 @@
 
 use crate::actuated::Actuated;
 use crate::actuator::Actuator;
-use crate::aircraft::{AircraftFlight, AircraftPlant};
+use crate::aircraft::{AircraftFlight, AircraftPlant, Changing};
 use crate::autopilot::{Autopilot, Throttle};
 use crate::controller::Controller;
 use crate::error::SimError;
@@ -133,6 +133,25 @@ impl Scenario {
     pub fn with_controller(mut self, name: &str, controller: Controller) -> Self {
         self.controllers.push(NamedController { name: name.to_owned(), controller });
         self
+    }
+
+    /// What is flown, for however long: scenarios of which this is the same fly the same as far as both go, but for a wait at the trim
+    /// before the set-point moves, where nothing else moves anything.
+    #[must_use]
+    pub fn whenever(&self) -> Self {
+        let mut flown = Self { timing: self.timing.shortest(), ..self.clone() };
+        let stands_by_itself = match &self.plant {
+            Plant::Linear(_) => self.plant_changes.is_empty(),
+            Plant::Aircraft(plant) => *plant.changing() == Changing::default(),
+            Plant::External(_) => false,
+        };
+        let nothing_acts = self.disturbances.is_empty()
+            && self.autopilot.is_none()
+            && self.surroundings == Surroundings::default();
+        if stands_by_itself && nothing_acts {
+            flown.setpoint = self.setpoint.at_once();
+        }
+        flown
     }
 
     /// Everybody who answers, in the order of the flights.

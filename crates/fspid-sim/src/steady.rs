@@ -116,7 +116,7 @@ impl Scenario {
         let entering = self.disturbances.iter().filter(|one| entries.contains(&one.entry()));
         let parts = entering.map(Disturbance::part).filter(|(_, shape)| counted.counts(shape));
         let parts: Vec<(f64, &Shape)> = parts.collect();
-        extremes_from(counted.from_s(), &parts)
+        extremes_from(counted.begin_s(), &parts)
     }
 }
 
@@ -138,7 +138,7 @@ impl Counted {
         }
     }
 
-    const fn from_s(self) -> f64 {
+    const fn begin_s(self) -> f64 {
         match self {
             Self::Always => f64::NEG_INFINITY,
             Self::AtTheEnd { end_s } => end_s,

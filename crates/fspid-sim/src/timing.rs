@@ -72,6 +72,11 @@ impl Timing {
         Ok(Self { dt_s, rows })
     }
 
+    /// The shortest flight of this period.
+    pub(crate) fn shortest(self) -> Self {
+        Self { rows: 2, ..self }
+    }
+
     /// Sample period, s.
     #[must_use]
     pub fn dt_s(&self) -> f64 {

@@ -1,6 +1,7 @@
 //! Straight flight at constant speed: which angle of attack, elevator and throttle hold it, or what stands in the way.
 //!
-//! Wings level, no sideslip, aileron and rudder at rest: for an aircraft that is symmetric. Not for turns.
+//! Wings level, no sideslip, aileron and rudder at rest: for an aircraft that is balanced sideways so; any other is refused. Not for
+//! turns.
 
 mod held;
 mod search;
@@ -29,6 +30,12 @@ const STEEPEST: Range = Range { min: -1.5, max: 1.5 };
 
 /// Largest angular acceleration left in a trim.
 pub const ANGULAR_ACCELERATION_LEFT_RAD_S2: f64 = 1e-9;
+
+/// Largest acceleration to the side of an aircraft that is balanced so: what a bank of 0.006 deg does.
+pub const SIDE_ACCELERATION_LEFT_M_S2: f64 = 1e-3;
+
+/// Largest angular acceleration in roll and yaw of such an aircraft: what 0.001 to 0.01 deg of aileron or rudder do.
+pub const SIDE_ANGULAR_ACCELERATION_LEFT_RAD_S2: f64 = 1e-4;
 
 /// Flight that a trim is to hold, in still air.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -61,6 +68,12 @@ pub struct TrimResidual {
     pub downward_m_s2: f64,
     /// Rate of q.
     pub pitch_rad_s2: f64,
+    /// Rate of v, which no unknown of a trim changes.
+    pub side_m_s2: f64,
+    /// Rate of p, the same.
+    pub roll_rad_s2: f64,
+    /// Rate of r, the same.
+    pub yaw_rad_s2: f64,
 }
 
 /// An equilibrium.
@@ -93,8 +106,8 @@ pub struct TrimFailure {
     pub limits: Vec<Departure>,
     /// How far the search came.
     pub point: TrimPoint,
-    /// What is left of the accelerations there.
-    pub residual: TrimResidual,
+    /// What is left of the accelerations there; apart, for a failure is moved about often.
+    pub residual: Box<TrimResidual>,
     /// Newton steps taken.
     pub iterations: usize,
 }
@@ -106,6 +119,9 @@ pub enum TrimObstacle {
     BeyondLimits,
     /// No equilibrium was found, within limits or beyond.
     NoEquilibrium,
+    /// Speed, height and pitch are held, and the aircraft is not balanced sideways with wings level, without sideslip and with aileron
+    /// and rudder at rest.
+    Sideways,
 }
 
 impl fmt::Display for TrimFailure {
@@ -117,8 +133,15 @@ impl fmt::Display for TrimFailure {
         )?;
         match self.reason {
             TrimObstacle::BeyondLimits => write!(formatter, "it would take")?,
+            TrimObstacle::Sideways => {
+                let TrimResidual { side_m_s2, roll_rad_s2, yaw_rad_s2, .. } = *self.residual;
+                write!(
+                    formatter,
+                    "not balanced sideways with aileron and rudder at rest: {side_m_s2:.3e} m/s² to the right, {roll_rad_s2:.3e} rad/s² in roll, {yaw_rad_s2:.3e} rad/s² in yaw at"
+                )?;
+            }
             TrimObstacle::NoEquilibrium => {
-                let TrimResidual { forward_m_s2, downward_m_s2, pitch_rad_s2 } = self.residual;
+                let TrimResidual { forward_m_s2, downward_m_s2, pitch_rad_s2, .. } = *self.residual;
                 write!(
                     formatter,
                     "no equilibrium; nearest has {forward_m_s2:.3e} m/s² forward, {downward_m_s2:.3e} m/s² down, {pitch_rad_s2:.3e} rad/s² in pitch at"
@@ -172,7 +195,7 @@ impl TrimPoint {
 impl TrimResidual {
     /// Size in multiples of what is accepted; a NaN counts as infinite.
     fn size(&self) -> f64 {
-        let Self { forward_m_s2, downward_m_s2, pitch_rad_s2 } = self;
+        let Self { forward_m_s2, downward_m_s2, pitch_rad_s2, .. } = self;
         let along = forward_m_s2.abs().max(downward_m_s2.abs()) / ACCELERATION_LEFT_M_S2;
         let size = along.max(pitch_rad_s2.abs() / ANGULAR_ACCELERATION_LEFT_RAD_S2);
         let sum = forward_m_s2 + downward_m_s2 + pitch_rad_s2;
@@ -181,6 +204,15 @@ impl TrimResidual {
 
     fn accepted(&self) -> bool {
         self.size() <= 1.0
+    }
+
+    /// True where nothing is left sideways; written so that NaN is not.
+    fn is_balanced_sideways(&self) -> bool {
+        let Self { side_m_s2, roll_rad_s2, yaw_rad_s2, .. } = self;
+        side_m_s2.abs() <= SIDE_ACCELERATION_LEFT_M_S2
+            && [roll_rad_s2, yaw_rad_s2]
+                .iter()
+                .all(|rate| rate.abs() <= SIDE_ANGULAR_ACCELERATION_LEFT_RAD_S2)
     }
 
     fn to_array(self) -> [f64; 3] {
@@ -202,12 +234,12 @@ impl<M: ForceModel> Aircraft<M> {
         let within = self.search(target, self.trim_limits());
         let departures = |found: &Search| self.trim_departures(found.target, &found.point);
         if within.residual.accepted() && departures(&within).is_empty() {
-            return Ok(self.trim_at(within));
+            return self.balanced(within);
         }
         let beyond = self.search(target, [Range::ALL; 3]);
         let limits = departures(&beyond);
         match (beyond.residual.accepted(), limits.is_empty()) {
-            (true, true) => Ok(self.trim_at(beyond)),
+            (true, true) => self.balanced(beyond),
             (true, false) => Err(failure(TrimObstacle::BeyondLimits, limits, beyond)),
             (false, _) => {
                 let limits = self.trim_stops(within.target, &within.point);
@@ -216,15 +248,28 @@ impl<M: ForceModel> Aircraft<M> {
         }
     }
 
+    /// The trim at an equilibrium of speed, height and pitch that is one of the whole aircraft.
+    fn balanced(&self, found: Search) -> Result<Trim, TrimFailure> {
+        match found.residual.is_balanced_sideways() {
+            true => Ok(self.trim_at(found)),
+            false => Err(failure(TrimObstacle::Sideways, Vec::new(), found)),
+        }
+    }
+
     /// What is left of the accelerations at a point.
     #[must_use]
     pub fn trim_residual(&self, target: TrimTarget, point: TrimPoint) -> TrimResidual {
         let state = target.state(point.alpha_rad);
         let instant = self.instant(&state, &point.controls(), &AirMotion::STILL);
+        let (along, angular) =
+            (instant.accelerations.velocity_rate_body_m_s2, instant.accelerations.angular_rad_s2);
         TrimResidual {
-            forward_m_s2: instant.accelerations.velocity_rate_body_m_s2.x,
-            downward_m_s2: instant.accelerations.velocity_rate_body_m_s2.z,
-            pitch_rad_s2: instant.accelerations.angular_rad_s2.y,
+            forward_m_s2: along.x,
+            downward_m_s2: along.z,
+            pitch_rad_s2: angular.y,
+            side_m_s2: along.y,
+            roll_rad_s2: angular.x,
+            yaw_rad_s2: angular.z,
         }
     }
 
@@ -277,5 +322,6 @@ impl<M: ForceModel> Aircraft<M> {
 
 fn failure(reason: TrimObstacle, limits: Vec<Departure>, found: Search) -> TrimFailure {
     let Search { target, point, residual, iterations } = found;
+    let residual = Box::new(residual);
     TrimFailure { target, reason, limits, point, residual, iterations }
 }

@@ -9,6 +9,7 @@ mod law;
 mod port;
 mod quantity;
 mod rate;
+mod sign;
 mod watch;
 
 use fspid_aircraft::aerodynamics::derivatives::Geometry;
@@ -334,10 +335,8 @@ fn narrow(validity: &mut Validity, model: &Model) -> Result<(), FlightError> {
             Some(Limit::Altitude) => &mut validity.altitude_m,
             _ => continue,
         };
-        *range = Range {
-            min: range.min.max(bounds.min * factor),
-            max: range.max.min(bounds.max * factor),
-        };
+        let [one, other] = [bounds.min, bounds.max].map(|end| end * factor);
+        *range = Range { min: range.min.max(one.min(other)), max: range.max.min(one.max(other)) };
     }
     Ok(())
 }

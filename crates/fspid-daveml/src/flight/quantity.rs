@@ -4,6 +4,7 @@ use fspid_aircraft::{Controls, Flow, Quantity as Limit};
 use fspid_numeric::units::{DEGREE_RAD, FOOT_M, KNOT_M_S, POUND_FORCE_N, SLUG_KG};
 
 use crate::flight::error::FlightError;
+use crate::flight::sign::sign;
 use crate::model::Port;
 
 /// A unit in the spelling of the standard, and what it is in SI.
@@ -90,10 +91,10 @@ impl Quantity {
         Self::all_names().join(", ")
     }
 
-    /// SI units in one unit of a variable.
+    /// SI units in one unit of a variable, negative of one that counts the other way.
     pub(super) fn factor(self, port: &Port) -> Result<f64, FlightError> {
         let row = QUANTITIES.iter().find(|(_, quantity, _)| *quantity == self);
-        factor(port, row.map_or(PART, |&(.., units)| units))
+        Ok(sign(port) * factor(port, row.map_or(PART, |&(.., units)| units))?)
     }
 
     /// What a model's box calls it.
@@ -109,10 +110,10 @@ impl Quantity {
     }
 }
 
-/// SI units in one unit of an output.
+/// SI units in one unit of an output, negative of one that counts the other way.
 pub(super) fn output_factor(port: &Port) -> Result<f64, FlightError> {
     let row = OUTPUTS.iter().find(|(beginning, _)| port.name.starts_with(beginning));
-    factor(port, row.map_or(PART, |&(_, units)| units))
+    Ok(sign(port) * factor(port, row.map_or(PART, |&(_, units)| units))?)
 }
 
 pub(super) fn factor(port: &Port, units: Units) -> Result<f64, FlightError> {

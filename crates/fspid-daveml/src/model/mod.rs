@@ -42,6 +42,8 @@ pub struct Port {
     pub name: String,
     /// Units in the spelling of the standard.
     pub units: String,
+    /// Which way it counts, in the words of the file; empty where it does not say so.
+    pub sign: String,
     /// Value of an input that is not given, if the file has one.
     pub initial: Option<f64>,
 }
@@ -115,6 +117,7 @@ impl Model {
             id: variable.id.clone(),
             name: variable.name.clone(),
             units: variable.units.clone(),
+            sign: variable.sign.clone(),
             initial: variable.initial,
         });
         Self {

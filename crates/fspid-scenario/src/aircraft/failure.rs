@@ -113,17 +113,22 @@ fn trim_failure(f: &mut fmt::Formatter<'_>, failure: &TrimFailure, units: Units)
     let reached = match failure.reason {
         TrimObstacle::BeyondLimits => "it would take",
         TrimObstacle::NoEquilibrium => "the nearest point found has",
+        TrimObstacle::Sideways => "speed, height and pitch are held with",
     };
     write!(f, "{reached} angle of attack {alpha}, elevator {elevator}, throttle {throttle}")?;
     match failure.reason {
         TrimObstacle::BeyondLimits => write!(f, " ({} steps)", failure.iterations),
         TrimObstacle::NoEquilibrium => left_over(f, &failure.residual, failure.iterations, units),
+        TrimObstacle::Sideways => left_sideways(f, &failure.residual, units),
     }
 }
 
 const fn obstacle(failure: &TrimFailure) -> &'static str {
     match (failure.reason, failure.limits.is_empty()) {
         (TrimObstacle::BeyondLimits, _) => "the balance lies beyond these limits",
+        (TrimObstacle::Sideways, _) => {
+            "with wings level, without sideslip and with aileron and rudder at rest the aircraft is not balanced sideways"
+        }
         (_, false) => "no balance of forces was found; these limits are in the way",
         (_, true) => "no balance of forces was found, within limits or beyond",
     }
@@ -142,6 +147,17 @@ fn left_over(
     write!(
         f,
         ";\nafter {iterations} steps {forward} forward, {downward} down and {pitch} in pitch are left over"
+    )
+}
+
+fn left_sideways(f: &mut fmt::Formatter<'_>, residual: &TrimResidual, units: Units) -> fmt::Result {
+    let told = |kind, si| quantity(units, kind, si);
+    let side = told(Kind::Acceleration, residual.side_m_s2);
+    let [roll, yaw] = [residual.roll_rad_s2, residual.yaw_rad_s2]
+        .map(|rate| told(Kind::AngularAcceleration, rate));
+    write!(
+        f,
+        ";\n{side} to the right, {roll} in roll and {yaw} in yaw are left over; such an aircraft is not trimmed here: side force, rolling and yawing moment of its data have to be zero without sideslip, rates and deflections"
     )
 }
 

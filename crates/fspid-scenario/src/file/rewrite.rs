@@ -2,7 +2,7 @@
 //!
 //! Every number is written with the shortest digits that read back as the same bits.
 
-use fspid_core::{Gains, PidConfig};
+use fspid_core::{Gains, PidConfig, SetpointWeights};
 use fspid_sim::ElevatorSign;
 
 use crate::file::extra::Extra;
@@ -193,6 +193,13 @@ fn freeze(keys: &mut Vec<Member>, gains: Gains<f64>, config: &PidConfig<f64>) {
     for (name, gain) in [("kp", gains.kp), ("ki", gains.ki), ("kd", gains.kd)] {
         put(keys, name, Value::Float(gain));
     }
+    // Both may go with the gains.
+    put(keys, "rate_gain", Value::Float(config.rate_gain_s));
+    let SetpointWeights { proportional, derivative } = config.setpoint_weights;
+    let mut weights = Vec::new();
+    put(&mut weights, "proportional", Value::Float(proportional));
+    put(&mut weights, "derivative", Value::Float(derivative));
+    put(keys, "setpoint_weights", Value::Table(weights));
 }
 
 fn controller_table() -> &'static Table {

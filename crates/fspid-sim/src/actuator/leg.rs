@@ -43,8 +43,9 @@ enum Event {
     Contact,
 }
 
-/// Most legs a sample; a chattering actuator is held after them.
-const MOST_LEGS: usize = 64;
+/// Most legs a sample; a chattering actuator is held after them. A lag of second order that a scenario may have swings sixteen times
+/// within one, each with up to six legs, through stops, rate limit and play.
+const MOST_LEGS: usize = 256;
 /// Shorter legs are rounding, s.
 const SHORTEST_S: f64 = 1e-12;
 /// Excess over a rate limit that is rounding.

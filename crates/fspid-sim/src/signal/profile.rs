@@ -75,6 +75,17 @@ impl Profile {
         Ok(Self(Kind::Table { time_s, setpoint_rad, interpolation }))
     }
 
+    /// The same shape from the start on; a table as it is.
+    pub(crate) fn at_once(&self) -> Self {
+        match &self.0 {
+            Kind::Shape { amplitude_rad, shape } => {
+                let (amplitude_rad, shape) = (*amplitude_rad, shape.clone().at_once());
+                Self(Kind::Shape { amplitude_rad, shape })
+            }
+            Kind::Table { .. } => self.clone(),
+        }
+    }
+
     /// True for a set-point that never stands still.
     #[must_use]
     pub fn is_sine(&self) -> bool {

@@ -103,6 +103,20 @@ impl Shape {
         }
     }
 
+    /// The same from the start on; noise, whose numbers go with the samples, as it is.
+    pub(super) fn at_once(mut self) -> Self {
+        match &mut self {
+            Self::Step { at_s }
+            | Self::Pulse { at_s, .. }
+            | Self::Doublet { at_s, .. }
+            | Self::Square { at_s, .. }
+            | Self::Ramp { at_s, .. }
+            | Self::Sine { at_s, .. } => *at_s = 0.0,
+            Self::Noise { .. } => {}
+        }
+        self
+    }
+
     /// True for what moves for ever: what else there is keeps its value from some time on.
     pub(crate) fn goes_on(&self) -> bool {
         matches!(self, Self::Square { .. } | Self::Sine { .. } | Self::Noise { .. })

@@ -279,8 +279,8 @@ fn loads_that_others_take_off_again_within_the_flight_are_none_that_the_loop_res
         result(&format!("{LOADED}{}", loads.concat()), &[]).at_rest.stability_word()
     };
     let [on, off] = [step(5.0, 15.0), step(6.0, -15.0)];
-    assert_eq!(loaded(&[on.clone()]), Some("unstable"));
-    assert_eq!(loaded(&[off.clone(), on.clone()]), Some("stable"));
+    assert_eq!(loaded(std::slice::from_ref(&on)), Some("unstable"));
+    assert_eq!(loaded(&[off, on.clone()]), Some("stable"));
     // What is taken off after the end is held by the flight.
     assert_eq!(loaded(&[on, step(10.01, -15.0)]), Some("unstable"));
 }

@@ -62,6 +62,19 @@ fn every_measure_of_every_controller_is_replayed_bit_for_bit() {
     assert!(replayed > 50, "{replayed}");
 }
 
+/// A rate loop and a set-point weight that go with the gains were those of the nominal gains in the replay: 30.8 deg of phase
+/// margin, too little, were 50.1 deg and enough.
+#[test]
+fn what_goes_with_frozen_gains_is_replayed_as_it_is_there() {
+    let (folder, path) = written(&format!("{JUMBO}\n{}", every_measure()));
+    let coupled =
+        "controller.FSPID.gain_coupling={ rate_gain_per_kd = 0.4, setpoint_weight_per_kp = 0.1 }";
+    let verification = verified(&path, &[coupled], &[]);
+    let moved = |it: &&Judgement| it.controller == "FSPID" && it.place().frozen.is_some();
+    assert!(verification.judgements.iter().filter(moved).count() > 2);
+    replay_all(&verification, &folder.path().join("replay"));
+}
+
 /// The flight of the scenario is well, and the one of the ready set's own step leaves the range of the aircraft's data:
 /// this used to be PASS, beside a replay that the program calls failed.
 #[test]

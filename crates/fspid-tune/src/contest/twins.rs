@@ -1,8 +1,9 @@
-//! Cases that fly the same: what a contest counts as evidence twice, or has been tuned on.
+//! Cases that fly the same, if for longer or later: what a contest counts as evidence twice, or has been tuned on.
 
 use fspid_scenario::dispersion::Dispersion;
 use fspid_scenario::file::{Study, Template};
-use fspid_sim::Scenario;
+use fspid_sim::signal::Profile;
+use fspid_sim::{Scenario, Timing};
 
 use crate::error::TuneError;
 use crate::source::Source;
@@ -18,14 +19,16 @@ pub(super) fn problems<'a>(
     let (mut problems, mut before) = (Vec::<String>::new(), Vec::<(&str, Flown)>::new());
     for (name, template) in judged {
         let flown = Flown::of(template.study());
-        if let Some((twin, _)) = trained.iter().find(|(_, other)| *other == flown) {
+        if let Some((twin, other)) = trained.iter().find(|(_, other)| other.is_as(&flown)) {
+            let when = flown.when_beside(other);
             problems.push(format!(
-                "case \"{name}\" flies what \"{twin}\" of the tuning flies; judge on what nobody was tuned on"
+                "case \"{name}\" flies what \"{twin}\" of the tuning flies{when}; judge on what nobody was tuned on"
             ));
         }
-        if let Some((twin, _)) = before.iter().find(|(_, other)| *other == flown) {
+        if let Some((twin, other)) = before.iter().find(|(_, other)| other.is_as(&flown)) {
+            let when = flown.when_beside(other);
             problems.push(format!(
-                "case \"{name}\" flies what case \"{twin}\" flies, and would count twice; leave one of them out"
+                "case \"{name}\" flies what case \"{twin}\" flies{when}, and would count twice; leave one of them out"
             ));
         }
         before.push((name, flown));
@@ -54,16 +57,39 @@ fn trained(source: &Source, study: &Study) -> Result<Vec<(String, Flown)>, TuneE
 }
 
 /// All that decides about the flights of a case.
-#[derive(PartialEq)]
 struct Flown {
+    /// Without a name, and whenever it is flown.
     scenario: Scenario,
     dispersions: Vec<Dispersion>,
+    timing: Timing,
+    setpoint: Profile,
 }
 
 impl Flown {
     fn of(study: &Study) -> Self {
+        let Scenario { timing, ref setpoint, .. } = study.scenario;
         // What it is called changes no flight.
-        let scenario = Scenario { name: String::new(), ..study.scenario.clone() };
-        Self { scenario, dispersions: study.dispersions.clone() }
+        let scenario = Scenario { name: String::new(), ..study.scenario.whenever() };
+        Self {
+            scenario,
+            dispersions: study.dispersions.clone(),
+            timing,
+            setpoint: setpoint.clone(),
+        }
+    }
+
+    /// True where one flies what the other flies, as far as both go.
+    fn is_as(&self, other: &Self) -> bool {
+        self.scenario == other.scenario && self.dispersions == other.dispersions
+    }
+
+    /// How two such flights differ, behind a comma; nothing where they do not.
+    fn when_beside(&self, other: &Self) -> &'static str {
+        match (self.timing == other.timing, self.setpoint == other.setpoint) {
+            (true, true) => "",
+            (false, true) => ", for another time",
+            (true, false) => ", at another time",
+            (false, false) => ", at and for another time",
+        }
     }
 }

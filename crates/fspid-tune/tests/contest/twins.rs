@@ -13,6 +13,29 @@ fn copies_of_a_case_are_refused_however_they_are_written() {
     assert!(told.contains(expected), "{told}");
 }
 
+/// Twelve durations of one flight, the first ten seconds of which were tuned on, made a winner with p = 0.0005, and twelve others the
+/// other one; so did twelve times at which its step begins.
+#[test]
+fn a_flight_cut_or_begun_at_other_times_is_the_same_case() {
+    let judged = |name: &str, set: &str| {
+        format!(
+            "\n[[contest.case]]\nname = \"{name}\"\nset = [\"setpoint.amplitude_deg=2.5\", \"{set}\"]\n"
+        )
+    };
+    let cases = judged("long", "loop.duration_s=31.0")
+        + &judged("longer", "loop.duration_s=32.0")
+        + &judged("late", "setpoint.at_s=1.7")
+        + "\n[[contest.case]]\nname = \"on\"\nset = [\"loop.duration_s=33.0\"]\n";
+    let told = place(&(marked() + &cases)).refused(&Options::default());
+    for expected in [
+        "case \"longer\" flies what case \"long\" flies, for another time, and would count twice",
+        "case \"late\" flies what case \"long\" flies, at and for another time, and would count twice",
+        "case \"on\" flies what \"as written\" of the tuning flies, for another time; judge on",
+    ] {
+        assert!(told.contains(expected), "{told}");
+    }
+}
+
 /// A limit that never acts, moved, is another scenario and the same flight; so is what is written with a delay that a
 /// controller was tuned on. Twelve of them made a winner with p = 0.0005.
 #[test]

@@ -34,7 +34,7 @@ pub(crate) const DAMPING: Key<f64> =
 pub(crate) const POSITION_LIMIT_DEG: Key<f64> = optional(
     "position_limit_deg",
     positive("deg"),
-    "The deflection is kept within plus and minus this.",
+    "The servo's command is kept within plus and minus this, and the deflection but for a bias and the overshoot of a lag of second order; travel_deg are stops.",
 );
 pub(crate) const TRAVEL_DEG: Key<(f64, f64)> =
     optional("travel_deg", ANGLES, "Stops of the deflection: nose down, nose up.");
