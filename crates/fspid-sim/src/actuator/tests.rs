@@ -52,6 +52,21 @@ fn commands_pass_their_limits_before_the_deadband() {
     assert_eq!(targets, [-1.75, -1.75, 0.0, 0.0, 0.25, 0.75, 0.75]);
 }
 
+/// At one sample a second it takes more than 64 legs, after which it was held: 8.6 deg of 3.9.
+#[test]
+fn a_lag_that_swings_between_stops_is_followed_through_a_sample_of_any_length() {
+    let actuator = second(99.0, 0.001)
+        .with_travel(-1.0 * DEG, 9.5 * DEG)
+        .and_then(|actuator| actuator.with_rate_limit(480.0 * DEG))
+        .and_then(|actuator| actuator.with_play(1.0 * DEG))
+        .expect("allowed");
+    let [whole, parts] = [1, 100].map(|samples| {
+        let deflections = flown(&actuator, 1.0 / samples as f64, samples, |_| 5.0 * DEG);
+        deflections.last().copied().expect("one") / DEG
+    });
+    assert!((whole - parts).abs() < 1e-6, "{whole} {parts}");
+}
+
 #[test]
 fn an_ideal_actuator_is_where_it_is_commanded_within_its_travel() {
     let actuator = Actuator::new(Lag::NONE).with_travel(-1.0, 2.0).expect("allowed");

@@ -68,8 +68,13 @@ struct Flown {
 impl Flown {
     fn of(study: &Study) -> Self {
         let Scenario { timing, ref setpoint, .. } = study.scenario;
-        // What it is called changes no flight.
-        let scenario = Scenario { name: String::new(), ..study.scenario.whenever() };
+        // Cases that draw fly aircraft of their own; of others how long they are and when they begin changes nothing.
+        let flown = match study.dispersions.is_empty() {
+            true => study.scenario.whenever(),
+            false => study.scenario.clone(),
+        };
+        // Nor does what it is called.
+        let scenario = Scenario { name: String::new(), ..flown };
         Self {
             scenario,
             dispersions: study.dispersions.clone(),

@@ -90,7 +90,11 @@ fn one_flight_that_only_goes_on_longer_is_one_case() {
             let (at, duration) = (1.0 + 0.5 * f64::from(number), 150 + number);
             case(
                 &format!("{duration} s"),
-                &format!("\"setpoint.at_s={at:?}\", \"loop.duration_s={duration}\""),
+                // A limit that no flight meets: without it the cases are refused as copies.
+                &format!(
+                    "\"setpoint.at_s={at:?}\", \"loop.duration_s={duration}\", \"actuator.position_limit_deg={}\"",
+                    60 + number
+                ),
             )
         })
         .collect();
