@@ -56,9 +56,9 @@ fn commands_pass_their_limits_before_the_deadband() {
 #[test]
 fn a_lag_that_swings_between_stops_is_followed_through_a_sample_of_any_length() {
     let actuator = second(99.0, 0.001)
-        .with_travel(-1.0 * DEG, 9.5 * DEG)
+        .with_travel(-DEG, 9.5 * DEG)
         .and_then(|actuator| actuator.with_rate_limit(480.0 * DEG))
-        .and_then(|actuator| actuator.with_play(1.0 * DEG))
+        .and_then(|actuator| actuator.with_play(DEG))
         .expect("allowed");
     let [whole, parts] = [1, 100].map(|samples| {
         let deflections = flown(&actuator, 1.0 / samples as f64, samples, |_| 5.0 * DEG);
