@@ -31,10 +31,11 @@ const STEEPEST: Range = Range { min: -1.5, max: 1.5 };
 /// Largest angular acceleration left in a trim.
 pub const ANGULAR_ACCELERATION_LEFT_RAD_S2: f64 = 1e-9;
 
-/// Largest acceleration to the side of an aircraft that is balanced so: what a bank of 0.006 deg does.
+/// Largest acceleration to the side of an aircraft that is balanced so (assumption A39): what a bank of 0.006 deg does.
 pub const SIDE_ACCELERATION_LEFT_M_S2: f64 = 1e-3;
 
-/// Largest angular acceleration in roll and yaw of such an aircraft: what 0.001 to 0.01 deg of aileron or rudder do.
+/// Largest angular acceleration in roll and yaw of such an aircraft: what 0.006 deg do of a control whose effectiveness is 1 rad/s² per
+/// radian.
 pub const SIDE_ANGULAR_ACCELERATION_LEFT_RAD_S2: f64 = 1e-4;
 
 /// Flight that a trim is to hold, in still air.

@@ -313,8 +313,8 @@ fn has_gone_away(outcome: Outcome, gains: MovingGains, pieces: &Pieces<'_>, move
     diverged(outcome) || gains.leave_what_is_held(pieces, moved)
 }
 
-/// True of an aircraft that leaves, standing at a limit, the altitude or the airspeed that a mode holds: its elevator is at its stop,
-/// or what an outer loop may ask for does not suffice. Who meets limits now and then is on its way through a gust.
+/// True of an aircraft that leaves, standing at a limit, the altitude, airspeed, heading or beam that a mode holds: its elevator is
+/// at its stop, or what an outer loop may ask for does not suffice. Who meets limits now and then is on its way through a gust.
 fn leave_at_limits(pieces: &Pieces<'_>, moved: Moved) -> bool {
     let stands = pieces.last_fifths().is_some_and(|[_, fifth]| fifth.stands_at_limits());
     stands && leave_what_a_mode_holds(pieces, moved)
