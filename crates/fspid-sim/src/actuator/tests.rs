@@ -54,7 +54,7 @@ fn commands_pass_their_limits_before_the_deadband() {
 
 /// At one sample a second it takes more than 64 legs, after which it was held: 8.6 deg of 3.9.
 #[test]
-fn a_lag_that_swings_between_stops_is_followed_through_a_sample_of_any_length() {
+fn a_lag_that_swings_between_stops_is_followed_through_a_long_sample() {
     let actuator = second(99.0, 0.001)
         .with_travel(-DEG, 9.5 * DEG)
         .and_then(|actuator| actuator.with_rate_limit(480.0 * DEG))

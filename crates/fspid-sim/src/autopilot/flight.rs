@@ -211,11 +211,9 @@ impl AutopilotState {
         self.heading_rad = turned_towards(self.heading_rad, observed.heading_rad);
         let all = self.found.iter_mut().zip(&mut self.sensors).zip(&autopilot.loops);
         for ((found, sensor), outer) in all {
-            let value = match outer.holds {
-                // Across south a heading jumps: half way between both sides would be north, and a rate no turn flies.
-                Quantity::Heading => self.heading_rad,
-                _ => outer.holds.value(observed, self.above_beam_m),
-            };
+            // Across south a heading jumps: half way between both sides would be north, and a rate no turn flies.
+            let value = outer.holds.value(observed, self.above_beam_m);
+            let value = in_turn_of(outer.holds, self.heading_rad, value);
             *found = measured(sensor.as_mut(), k, value);
         }
     }
@@ -277,16 +275,11 @@ impl AutopilotState {
             return;
         };
         if !self.is_moved(autopilot, number) {
-            let held = self.held[outer.holds.place()].get_or_insert(match outer.holds {
-                Quantity::Heading => turned_towards(0.0, found),
-                _ => found,
-            });
+            let held = self.held[outer.holds.place()]
+                .get_or_insert_with(|| in_turn_of(outer.holds, 0.0, found));
             self.targets[number] = *held;
         }
-        let target = match outer.holds {
-            Quantity::Heading => turned_towards(found, self.targets[number]),
-            _ => self.targets[number],
-        };
+        let target = in_turn_of(outer.holds, found, self.targets[number]);
         let (sign, base) = (outer.sign(), self.base(autopilot, outer, observed));
         let current = self.current(autopilot, outer, observed);
         let base = base.map_or(0.0, |base| base + self.faded(outer, number, current - base));
@@ -439,4 +432,12 @@ impl AutopilotState {
 
 fn measured(sensor: Option<&mut SensorState>, k: usize, value: f64) -> f64 {
     sensor.map_or(value, |sensor| sensor.measure(k, Truth { value, ..Truth::default() }))
+}
+
+/// A heading in the turn that is nearest to another; everything else, which has no turns, as it is.
+fn in_turn_of(quantity: Quantity, other: f64, value: f64) -> f64 {
+    match quantity {
+        Quantity::Heading => turned_towards(other, value),
+        _ => value,
+    }
 }

@@ -9,7 +9,7 @@ use core::f64::consts::PI;
 
 use super::moved::Moved;
 use super::periods_s;
-use super::pieces::{HELD, Pieces, Span};
+use super::pieces::{HEADING, HELD, Pieces, Span};
 use crate::controller::Controller;
 use crate::rest::leakage_per_s;
 use crate::scenario::Scenario;
@@ -134,15 +134,16 @@ impl MovingGains {
     }
 
     fn have_stood(pieces: &Pieces<'_>, part: Span) -> bool {
-        let [part_off, all] = [part, pieces.whole()].map(Span::off);
-        let [before, last] = [pieces.before_last(1, 1), pieces.last(1)].map(Span::off);
+        let furthest = furthest(pieces);
+        let [part_off, before, last] =
+            [part, pieces.before_last(1, 1), pieces.last(1)].map(Span::off);
         let stands = |place: usize| {
-            let [moves, _] = part_off[place];
-            let [[_, all], [_, before], [moves_last, last]] =
-                [all, before, last].map(|it| it[place]);
+            let [[moves, _], [_, before], [moves_last, last]] =
+                [part_off, before, last].map(|it| it[place]);
+            let far = furthest[place];
             // What gets away slowly from where it is to be does not stand there.
-            let goes_away = last > NEAR[place] && last > before && moves_last > STILL * all;
-            moves <= NEAR[place].max(STANDS * all) && !goes_away
+            let goes_away = last > NEAR[place] && last > before && moves_last > STILL * far;
+            moves <= NEAR[place].max(STANDS * far) && !goes_away
         };
         pieces.moves_by_at_most(part, STANDS) && (0..NEAR.len()).all(stands)
     }
@@ -152,13 +153,22 @@ impl MovingGains {
 /// back to it.
 pub(super) fn leave_what_a_mode_holds(pieces: &Pieces<'_>, moved: Moved) -> bool {
     let Some([fourth, fifth]) = pieces.last_fifths() else { return false };
-    let [before, last, all] = [fourth, fifth, pieces.whole()].map(Span::off);
+    let furthest = furthest(pieces);
+    let [before, last] = [fourth, fifth].map(Span::off);
     let times = if moved == Moved::Nothing { STAYS } else { DOUBLED };
     let goes = |place: usize| {
-        let [[_, before], [moves, last], [_, all]] = [before, last, all].map(|it| it[place]);
-        last > NEAR[place] && last >= times * before && moves > STANDS * all
+        let [[_, before], [moves, last]] = [before, last].map(|it| it[place]);
+        last > NEAR[place] && last >= times * before && moves > STANDS * furthest[place]
     };
     fourth.and(fifth).is_of_one_mode() && (0..NEAR.len()).any(goes)
+}
+
+/// How far what a mode holds was from what it is to be, in the units of [`NEAR`]; a heading no further than half a turn, for whole
+/// turns behind it leave it no more room to swing.
+fn furthest(pieces: &Pieces<'_>) -> [f64; HELD] {
+    let mut furthest = pieces.whole().off().map(|[_, most]| most);
+    furthest[HEADING] = furthest[HEADING].min(PI);
+    furthest
 }
 
 /// True where the error has become so much larger from one fifth of a flight to the next that what drifts would not, nor chance

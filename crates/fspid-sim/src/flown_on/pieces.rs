@@ -81,7 +81,7 @@ pub(super) struct Shown {
 
 /// How many quantities are asked for that a mode holds, and the places of heading and beam among them.
 pub(super) const HELD: usize = 4;
-const HEADING: usize = 2;
+pub(super) const HEADING: usize = 2;
 pub(super) const BEAM: usize = 3;
 
 /// What the loops around the pitch loop hold.

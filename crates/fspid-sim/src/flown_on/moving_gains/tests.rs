@@ -1,5 +1,7 @@
 //! What is told of the end of a flight whose gains move, of which every sample is known.
 
+use core::f64::consts::TAU;
+
 use fspid_core::{Fspid, Gains, InputScale, Pid, PidConfig, SelfTuner, TunerSettings, paper};
 use fspid_fuzzy::{Defuzzifier, OutOfRange, Supervisor};
 
@@ -275,6 +277,32 @@ fn an_aircraft_has_come_back_where_it_stood_for_as_long_as_its_flight_was() {
     assert!(climbed(of_aircraft, 5, 0.0019, [200.0, 1.9]));
     assert!(!climbed(of_aircraft, 5, 0.0019, [200.0, 2.1]));
     assert!(!has_come_back(of_plants, 5, 0.0019, 0.0), "a swing of a linear plant does not shrink");
+}
+
+/// After two turns a heading that swings by 5 deg would move by no more than a fiftieth of them.
+#[test]
+fn a_heading_that_went_round_before_has_no_more_room_to_swing() {
+    let scenario = scenario();
+    let controller = self_tuner();
+    let ends = Ends::of(&scenario, &controller);
+    let gains = MovingGains {
+        is_of_aircraft: true,
+        ..MovingGains::of(&scenario, &controller).expect("they move")
+    };
+    let swings = |by_deg: f64| {
+        let mut pieces = Pieces::new(&scenario, &ends, PERIOD);
+        for k in 0..10 * PERIOD {
+            let side = if k % PERIOD < PERIOD / 2 { 0.5 } else { -0.5 };
+            let turned_rad = 2.0 * TAU * (k as f64 / (5 * PERIOD) as f64).min(1.0);
+            let mut outer = Outer::default();
+            outer.off[HEADING] = turned_rad + side * by_deg.to_radians();
+            let moving_rad = if k < 5 * PERIOD { side } else { 0.0 };
+            pieces.push(Shown { moving_rad, outer, ..still() });
+        }
+        [gains.have_come_back(&pieces), leave_what_a_mode_holds(&pieces, Moved::Nothing)]
+    };
+    assert_eq!(swings(0.9), [true, false]);
+    assert_eq!(swings(5.0), [false, true]);
 }
 
 /// A linear plant has come back where its gains stand and its error shrinks, and moves by a fiftieth of all its movement at most.
