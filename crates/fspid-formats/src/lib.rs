@@ -33,6 +33,7 @@ mod loss;
 mod names;
 mod note;
 mod number;
+mod repeated;
 mod report;
 mod rule;
 pub mod rule_text;

@@ -6,7 +6,7 @@ use crate::cursor::Cursor;
 use crate::lexer::Lexer;
 use crate::names::Names;
 use crate::report::Report;
-use crate::rule::{Reader, Style, written};
+use crate::rule::{self, Reader, Style, written};
 use crate::tokens::Tokens;
 use fspid_diagnostics::{Problem, Problems};
 
@@ -40,7 +40,7 @@ impl RuleReader {
         let cursor = Cursor::new(text).map_err(|problem| Problems::of_text(vec![problem]))?;
         let mut report = Report::default();
         let tokens = Tokens::new(Lexer::words(cursor));
-        let mut reader = Reader::new(tokens, &self.names, &mut report, |_| false);
+        let mut reader = Reader::new(tokens, &self.names, &mut report, rule::LINE);
         let rule = reader.rule();
         let rest = reader.tokens.next;
         if rule.is_some() && !rest.text.is_empty() {

@@ -5,6 +5,7 @@ mod fcl;
 mod fcl_fll_abuse;
 mod fcl_fll_problems;
 mod fcl_fll_round_trips;
+mod fcl_jfuzzylogic;
 mod fis_abuse;
 mod fis_answers;
 mod fis_dialects;

@@ -487,14 +487,18 @@ fn a_system_that_is_none_is_refused() {
     assert!(told.contains("has no input"), "{told}");
 }
 
-/// Both have a word for it, but mean different widths: found by writing random systems.
+/// Both have a word for it, but fuzzylite's is followed by centre and width, jFuzzyLogic's by half of the width and the
+/// centre.
 #[test]
 fn fuzzylite_s_cosine_is_not_jfuzzylogic_s() {
-    let width = |word: &str| {
-        let text = IEC.replace("poor := (0, 1) (4, 0)", &format!("poor := {word} 0 2"));
-        shape(&read(&text), 0, 0).1[1]
+    let params = |word: &str| {
+        let text = IEC.replace("poor := (0, 1) (4, 0)", &format!("poor := {word} 3 4"));
+        shape(&read(&text), 0, 0).1
     };
-    assert_eq!([width("Cosine"), width("COSINE"), width("cosine")], [2.0, 4.0, 4.0]);
+    assert_eq!(params("Cosine"), [3.0, 4.0], "centre, width");
+    for word in ["COSINE", "cosine"] {
+        assert_eq!(params(word), [4.0, 6.0], "centre, width");
+    }
 }
 
 /// jFuzzyLogic reads functions in upper case; they were refused as unknown names.

@@ -141,9 +141,9 @@ fn weighted_outputs_that_rules_ask_are_not_written_with_the_aggregation_of_anoth
     let text = "FUNCTION_BLOCK f VAR_INPUT x : REAL; END_VAR VAR_OUTPUT y : REAL; z : REAL; END_VAR \
         FUZZIFY x TERM up := (0, 0) (1, 1); END_FUZZIFY \
         DEFUZZIFY y TERM big := 1; METHOD : COGS; RANGE := (0 .. 1); END_DEFUZZIFY \
-        DEFUZZIFY z TERM big := 2; METHOD : COGS; RANGE := (0 .. 2); END_DEFUZZIFY \
+        DEFUZZIFY z TERM big := 2; TERM small := 1; METHOD : COGS; RANGE := (0 .. 2); END_DEFUZZIFY \
         RULEBLOCK b AND : MIN; ACT : MIN; ACCU : MAX; \
-        RULE 1 : IF x IS up THEN z IS big; RULE 2 : IF x IS up THEN y IS big; \
+        RULE 1 : IF x IS up THEN z IS small; RULE 2 : IF x IS up THEN y IS big; \
         RULE 3 : IF y IS big THEN z IS big; END_RULEBLOCK END_FUNCTION_BLOCK";
     for dialect in [Dialect::Iec, Dialect::JFuzzyLogic] {
         let mut parts = fcl::read(text).expect("a system").parts;

@@ -122,7 +122,9 @@ fn shape(choices: &mut Choices) -> Membership {
     // is a triangle.
     let tiny = kind == ShapeKind::Cosine && (2.0 * (0.5 * params[1])).total_cmp(&params[1]).is_ne();
     let pointed = kind == ShapeKind::Trapezoid && !(params[1] < params[2]);
-    if kind.check(&params).is_err() || tiny || pointed {
+    // jFuzzyLogic cuts at 0 where the second step is the higher one.
+    let cut = kind == ShapeKind::SigmoidDifference && choices.target == JFUZZYLOGIC;
+    if kind.check(&params).is_err() || tiny || pointed || cut {
         params = kind.example().to_vec();
     }
     let scaled =
@@ -366,10 +368,27 @@ fn activation(choices: &mut Choices) -> Activation {
     ])
 }
 
-fn block(choices: &mut Choices, parts: &Parts, index: usize) -> RuleBlock {
+/// Any two; of jFuzzyLogic one of its pairs.
+fn connectives(choices: &mut Choices) -> (TNormKind, SNormKind) {
     let extended = choices.is_extended();
+    if choices.target == JFUZZYLOGIC {
+        return choices.one_of(&[
+            (TNormKind::Minimum, SNormKind::Maximum),
+            (TNormKind::AlgebraicProduct, SNormKind::AlgebraicSum),
+            (TNormKind::BoundedDifference, SNormKind::BoundedSum),
+            (TNormKind::HamacherProduct, SNormKind::EinsteinSum),
+            (TNormKind::NilpotentMinimum, SNormKind::NilpotentMaximum),
+            (TNormKind::DrasticProduct, SNormKind::DrasticSum),
+        ]);
+    }
     let and = if extended { TNormKind::ALL } else { &TNormKind::ALL[..3] };
     let or = if extended { SNormKind::ALL } else { &SNormKind::ALL[..3] };
+    (choices.one_of(and), choices.one_of(or))
+}
+
+fn block(choices: &mut Choices, parts: &Parts, index: usize) -> RuleBlock {
+    let extended = choices.is_extended();
+    let (and, or) = connectives(choices);
     let implication = if extended { TNormKind::ALL } else { &TNormKind::ALL[..2] };
     let activation =
         if choices.target == Target::Fll { activation(choices) } else { Activation::General };
@@ -377,8 +396,8 @@ fn block(choices: &mut Choices, parts: &Parts, index: usize) -> RuleBlock {
         name: if extended && choices.coin() { String::new() } else { format!("block{index}") },
         description: description(choices),
         enabled: !extended || choices.coin(),
-        and: choices.one_of(and).into(),
-        or: choices.one_of(or).into(),
+        and: and.into(),
+        or: or.into(),
         implication: choices.one_of(implication).into(),
         activation,
         rules: (0..1 + choices.below(3)).map(|number| rule(choices, parts, number == 0)).collect(),
@@ -389,7 +408,12 @@ fn system(choices: &mut Choices) -> Parts {
     let inputs = 1 + choices.below(3);
     let names = &["in0", "in1", "in2"][..inputs];
     let standard = [SNormKind::Maximum, SNormKind::BoundedSum, SNormKind::NormalizedSum];
-    let known = if choices.is_extended() { SNormKind::ALL } else { &standard };
+    // Equal conclusions that are weighed are added up, of which jFuzzyLogic must be told for all outputs of a block.
+    let known = match choices.target {
+        JFUZZYLOGIC => &[SNormKind::UnboundedSum],
+        _ if choices.is_extended() => SNormKind::ALL,
+        _ => &standard[..],
+    };
     let common = choices.one_of(known);
     let mut parts =
         Parts { name: "system".into(), description: description(choices), ..Parts::default() };

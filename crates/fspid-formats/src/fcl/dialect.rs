@@ -1,5 +1,6 @@
 //! Which tool a text was written for.
 
+use fspid_fuzzy::SNormKind;
 use fspid_fuzzy::system::Sampling;
 
 use crate::lexer::Comments;
@@ -35,6 +36,19 @@ impl Dialect {
             Self::Iec => Sampling::Exact,
             Self::Fuzzylite => Sampling::Midpoint(1000),
             Self::JFuzzyLogic => Sampling::LeftEnd(1000),
+        }
+    }
+}
+
+impl Dialect {
+    /// What joins the conclusions about an output where no `ACCU` is given.
+    ///
+    /// # Source
+    /// IEC 1131-7 CD 1.0; jFuzzyLogic 3.3 itself: conclusions at 0.3 and 0.6 count as 0.9 without `ACCU`.
+    pub(super) const fn accumulation(self) -> SNormKind {
+        match self {
+            Self::Iec | Self::Fuzzylite => SNormKind::Maximum,
+            Self::JFuzzyLogic => SNormKind::UnboundedSum,
         }
     }
 }

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use fspid_fuzzy::system::{Membership, Sampling, Universe};
 use fspid_fuzzy::{OutOfRange, SNormKind, TNormKind};
 
+use super::connectives::Connective;
 use super::dialect::Evidence;
 use crate::lexer::Token;
 use crate::names::Index;
@@ -52,6 +53,8 @@ pub(super) struct Variable<'a> {
     pub(super) method: Option<Method<'a>>,
     pub(super) sampling: Option<Sampling>,
     pub(super) accu: Option<(SNormKind, Place)>,
+    /// Whether equal conclusions are added up before they are weighed, whatever `ACCU` says.
+    pub(super) adds: bool,
     pub(super) default: Option<f64>,
     pub(super) middle: bool,
     pub(super) previous: bool,
@@ -97,6 +100,8 @@ pub(super) struct Block<'a> {
     pub(super) enabled: bool,
     pub(super) and: Option<TNormKind>,
     pub(super) or: Option<SNormKind>,
+    /// Which of the two was said last.
+    pub(super) last: Option<Connective>,
     pub(super) act: Option<TNormKind>,
     pub(super) accu: Option<(SNormKind, Place)>,
     pub(super) rules: Vec<RuleText<'a>>,
@@ -124,6 +129,7 @@ impl<'a> Variable<'a> {
             method: None,
             sampling: None,
             accu: None,
+            adds: false,
             default: None,
             middle: false,
             previous: false,

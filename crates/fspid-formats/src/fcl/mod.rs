@@ -11,6 +11,10 @@
 //! | jFuzzyLogic | `TRIAN`, `GAUSS`, …, comments `/* */` and `//` | left ends of 1000 cells |
 //! | fuzzylite | `RANGE` in `FUZZIFY`, `ACCU` in `DEFUZZIFY`, class names, `#`, `ENABLED`, `LOCK`, a resolution, rules without `;` | midpoints of 1000 cells, or of as many as are given |
 //!
+//! jFuzzyLogic knows *and* and *or* in pairs, of which the last of `AND` and `OR` sets both, reads them from left to right,
+//! and adds conclusions up where no `ACCU` is given. In the standard and in jFuzzyLogic rules that conclude the same number
+//! are joined by `ACCU` before they are weighed, and are read as one rule; where that is not one rule, they are refused.
+//!
 //! Points that are a triangle or a trapezoid are read as such. Local variables with a number stand
 //! for that number; local variables that are defuzzified are outputs.
 //!
@@ -18,10 +22,11 @@
 //! statements of our own that begin with `FSPID_`.
 //!
 //! # Source
-//! Grammar of IEC 1131-7 CD 1.0; the documentation of jFuzzyLogic and fuzzylite.
+//! Grammar of IEC 1131-7 CD 1.0; the documentation of jFuzzyLogic and fuzzylite; answers of jFuzzyLogic 3.3.
 
 mod block;
 mod build;
+mod connectives;
 mod dialect;
 mod draft;
 mod option;

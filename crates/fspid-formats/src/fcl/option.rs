@@ -20,6 +20,12 @@ const OWN: &[(&str, Statement)] = &[
         parser.variable()?.clamp = true;
         parser.end()
     }),
+    (ADDS, |parser| {
+        parser.assign()?;
+        parser.expect("ADDED")?;
+        parser.variable()?.adds = true;
+        parser.end()
+    }),
     ("FSPID_ENABLED", |parser| {
         parser.assign()?;
         parser.variable()?.enabled = parser.boolean()?;
@@ -27,6 +33,9 @@ const OWN: &[(&str, Statement)] = &[
     }),
     ("FSPID_DEFAULT", |parser| parser.second_default()),
 ];
+
+/// Equal conclusions about an output that weighs its terms are added up, where the standard joins them by `ACCU`.
+pub(super) const ADDS: &str = "FSPID_EQUAL_CONCLUSIONS";
 
 /// Words for what happens to a value outside its range.
 pub(super) const OUT_OF_RANGE: [(&str, OutOfRange); 3] = [

@@ -2,6 +2,7 @@
 
 use fspid_fuzzy::{SNormKind, TNormKind};
 
+use super::connectives::Connective;
 use super::draft::{Block, RuleText};
 use super::parser::{Parser, is_section_word};
 use crate::lexer::Kind;
@@ -12,12 +13,14 @@ type Statement = fn(&mut Parser) -> Option<()>;
 const STATEMENTS: &[(&str, Statement)] = &[
     ("AND", |parser| {
         let norm = parser.t_norm("a connective `and`")?;
-        parser.block()?.and = norm;
+        let block = parser.block()?;
+        (block.and, block.last) = (norm, Some(Connective::And));
         Some(())
     }),
     ("OR", |parser| {
         let norm = parser.s_norm("a connective `or`")?;
-        parser.block()?.or = norm;
+        let block = parser.block()?;
+        (block.or, block.last) = (norm, Some(Connective::Or));
         Some(())
     }),
     ("ACT", |parser| {
@@ -55,6 +58,7 @@ impl<'a> Parser<'a> {
             enabled: true,
             and: None,
             or: None,
+            last: None,
             act: None,
             accu: None,
             rules: Vec::new(),

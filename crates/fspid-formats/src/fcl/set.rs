@@ -1,11 +1,13 @@
 //! What stands behind `TERM name :=`.
 
+use fspid_fuzzy::Formula;
 use fspid_fuzzy::membership::ShapeKind;
 use fspid_fuzzy::system::Membership;
 
 use super::draft::Set;
 use super::parser::Parser;
 use crate::lexer::{Kind, Token};
+use crate::number::written;
 use crate::term::{self, Number};
 use crate::vocabulary::known;
 use crate::vocabulary::shapes::{self, FUZZYLITE, JFUZZYLOGIC, POINTS};
@@ -43,13 +45,15 @@ impl<'a> Parser<'a> {
         Some(Set::Fuzzy(recognised(shape)))
     }
 
-    /// Both tools have a cosine; fuzzylite's is written as its class is, and twice as wide.
+    /// Both tools have a cosine; fuzzylite's is written as its class is: centre and width, where jFuzzyLogic has half of
+    /// the width and the centre.
     fn named(&mut self, word: Token<'a>) -> Option<Set<'a>> {
         let is_class = FUZZYLITE.iter().any(|row| row.word == word.text);
         if let Some(row) = shapes::of_word(JFUZZYLOGIC, word.text).filter(|_| !is_class) {
             self.draft.evidence.jfuzzylogic(word.place(), "a word for a set");
             let numbers = self.numbers()?;
-            return term::shape(row, word, &numbers, self.report()).map(Set::Fuzzy);
+            let shape = term::shape(row, word, &numbers, self.report())?;
+            return Some(Set::Fuzzy(self.cut(word, shape)));
         }
         if word.is("FUNCTION") {
             self.tokens.eat(":");
@@ -61,6 +65,21 @@ impl<'a> Parser<'a> {
             return term::shape(row, word, &numbers, self.report()).map(Set::Fuzzy);
         }
         self.other(word)
+    }
+
+    /// A `DSIGM` that would fall below 0, as the formula that jFuzzyLogic computes.
+    fn cut(&mut self, word: Token<'a>, shape: Membership) -> Membership {
+        let Membership::Shape { kind, params, height } = &shape else { return shape };
+        if shapes::needs_no_cut(*kind, params) {
+            return shape;
+        }
+        let Ok(formula) = Formula::parse(&cut_difference(params), &["x"]) else { return shape };
+        let note = format!(
+            "`{}` is cut at 0 where its second step is the higher one, as in jFuzzyLogic; it is read as a formula",
+            word.text
+        );
+        self.report().note(word.place(), note);
+        Membership::Formula { formula, height: *height }
     }
 
     fn other(&mut self, word: Token<'a>) -> Option<Set<'a>> {
@@ -96,6 +115,20 @@ impl<'a> Parser<'a> {
         }
         Some(numbers)
     }
+}
+
+/// $\max(0, \sigma_l(x) - \sigma_r(x))$, the steps by centre and slope.
+fn cut_difference(params: &[f64]) -> String {
+    let steps: Vec<String> = params
+        .chunks_exact(2)
+        .filter_map(|step| match *step {
+            [centre, slope] => {
+                Some(format!("1 / (1 + exp(-({}) * (x - ({}))))", written(slope), written(centre)))
+            }
+            _ => None,
+        })
+        .collect();
+    format!("max(0, {})", steps.join(" - "))
 }
 
 /// Points that are a triangle or a trapezoid are read as one.

@@ -19,7 +19,7 @@ use crate::note::Reading;
 use crate::report::Report;
 use crate::tokens::Tokens;
 use crate::vocabulary::{known, norms};
-use crate::{check, rule, term};
+use crate::{check, repeated, rule, term};
 use fspid_diagnostics::Problems;
 
 /// Reads a system in the FuzzyLite Language.
@@ -48,10 +48,11 @@ fn tell(parts: &Parts, report: &mut Report) {
         report.note_whole(term::OUTPUTS_IN_FORMULAS);
     }
     parts.blocks.iter().for_each(|block| asked_in_turn(block, parts, report));
-    for output in &parts.outputs {
-        let weighted = output.defuzzifier.sampling().is_none();
-        if weighted && !output.aggregation.is(SNormKind::UnboundedSum) {
-            let note = "a weighted method adds equal conclusions up, whatever the aggregation";
+    for (index, output) in parts.outputs.iter().enumerate() {
+        let adds_up = repeated::adds_up(parts, index);
+        if adds_up && !output.aggregation.is(SNormKind::UnboundedSum) {
+            let note = "rules that conclude the same are added up, whatever the aggregation, as in fuzzylite before version 8; \
+                        version 8 joins them by the aggregation, and adds them up by `none`";
             report.note_whole(format!("`{}`: {note}", output.name));
         }
         bisected(output, report);
@@ -274,7 +275,7 @@ fn rules(
     let (mut and, mut or) = (None, None);
     for line in &section.rules {
         let mut reader =
-            rule::Reader::new(Tokens::new(Lexer::words(line.value)), names, report, |_| false);
+            rule::Reader::new(Tokens::new(Lexer::words(line.value)), names, report, rule::LINE);
         let found = reader.rule();
         (and, or) = (and.or(reader.and), or.or(reader.or));
         let next = reader.tokens.next;

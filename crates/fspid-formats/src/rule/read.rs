@@ -12,13 +12,29 @@ use crate::tokens::Tokens;
 use crate::vocabulary::known;
 use fspid_diagnostics::Place;
 
+/// How *and* and *or* stand beside each other where no brackets tell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Rank {
+    /// *And* binds tighter, as in the standard and in fuzzylite.
+    AndFirst,
+    /// Both bind alike, from left to right, as in jFuzzyLogic.
+    InTurn,
+}
+
+/// How a dialect reads rules.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Manner {
+    /// Tells the words that no rule goes beyond.
+    pub(crate) ends: fn(&str) -> bool,
+    pub(crate) rank: Rank,
+}
+
 /// Reads rules from tokens. What it cannot read is reported; then it answers nothing.
 pub(crate) struct Reader<'r, 'a> {
     pub(crate) tokens: Tokens<'a>,
     pub(crate) names: &'r Names,
     pub(crate) report: &'r mut Report,
-    /// Words that no rule goes beyond.
-    ends: fn(&str) -> bool,
+    manner: Manner,
     /// First use of each of *and*, *or*.
     pub(crate) and: Option<Place>,
     pub(crate) or: Option<Place>,
@@ -33,14 +49,13 @@ struct Clause<'a> {
 }
 
 impl<'r, 'a> Reader<'r, 'a> {
-    /// `ends` tells the words that no rule goes beyond.
     pub(crate) fn new(
         tokens: Tokens<'a>,
         names: &'r Names,
         report: &'r mut Report,
-        ends: fn(&str) -> bool,
+        manner: Manner,
     ) -> Self {
-        Self { tokens, names, report, ends, and: None, or: None }
+        Self { tokens, names, report, manner, and: None, or: None }
     }
 
     /// A rule from `if` up to its weight.
@@ -59,6 +74,37 @@ impl<'r, 'a> Reader<'r, 'a> {
     }
 
     fn condition(&mut self, depth: usize) -> Option<Antecedent> {
+        match self.manner.rank {
+            Rank::AndFirst => self.disjunction(depth),
+            Rank::InTurn => self.in_turn(depth),
+        }
+    }
+
+    /// `a and b or c and d` as `((a and b) or c) and d`.
+    fn in_turn(&mut self, depth: usize) -> Option<Antecedent> {
+        let mut found = self.operand(depth)?;
+        let mut level = depth;
+        while let Some(word) = ["and", "or"].into_iter().find(|word| self.tokens.next.is(word)) {
+            if level > MAX_DEPTH {
+                self.wrong(self.tokens.next, too_deep(), "");
+                return None;
+            }
+            level += 1;
+            let (first_use, join): (_, fn(_) -> _) = match word {
+                "and" => (&mut self.and, Antecedent::All),
+                _ => (&mut self.or, Antecedent::Any),
+            };
+            first_use.get_or_insert(self.tokens.next.place());
+            let mut parts = vec![found];
+            while self.tokens.eat(word) {
+                parts.push(self.operand(depth)?);
+            }
+            found = joined(parts, join);
+        }
+        Some(found)
+    }
+
+    fn disjunction(&mut self, depth: usize) -> Option<Antecedent> {
         let mut parts = vec![self.conjunction(depth)?];
         while self.tokens.next.is("or") {
             self.or.get_or_insert(self.tokens.next.place());
@@ -148,7 +194,7 @@ impl<'r, 'a> Reader<'r, 'a> {
     }
 
     fn is_name(&self, token: &Token) -> bool {
-        matches!(token.kind, Kind::Word | Kind::Number) && !(self.ends)(token.text)
+        matches!(token.kind, Kind::Word | Kind::Number) && !(self.manner.ends)(token.text)
     }
 
     /// The words up to the next keyword or sign.
@@ -237,7 +283,7 @@ impl<'r, 'a> Reader<'r, 'a> {
     }
 
     fn wrong(&mut self, token: Token, message: impl Into<String>, expected: impl Into<String>) {
-        let over = token.kind == Kind::End || (self.ends)(token.text);
+        let over = token.kind == Kind::End || (self.manner.ends)(token.text);
         let message = if over { "the rule ends".into() } else { message.into() };
         self.report.problem(token.place(), token.text, message, expected);
     }
@@ -256,7 +302,8 @@ fn joined(mut parts: Vec<Antecedent>, join: fn(Vec<Antecedent>) -> Antecedent) -
 }
 
 /// Levels below the first; what is read is at most three for each bracket.
-fn depth(antecedent: &Antecedent) -> usize {
+/// How deeply a condition is nested.
+pub(crate) fn depth(antecedent: &Antecedent) -> usize {
     match antecedent {
         Antecedent::Always | Antecedent::Is(_) => 0,
         Antecedent::All(parts) | Antecedent::Any(parts) => {

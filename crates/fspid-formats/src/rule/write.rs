@@ -27,7 +27,7 @@ pub(crate) struct Style {
 /// What the style has no words for.
 pub(crate) fn written(rule: &Rule, parts: &Parts, style: Style) -> Result<String, String> {
     let writer = Writer { parts, style };
-    let condition = writer.condition(&rule.antecedent, Level::Or)?;
+    let condition = writer.condition(&rule.antecedent, Level::Whole)?;
     let hedges: Vec<&[Hedge]> = match style.carries {
         true => carry::own(&rule.consequents, &parts.outputs),
         false => rule.consequents.iter().map(|own| own.hedges.as_slice()).collect(),
@@ -43,11 +43,10 @@ pub(crate) fn written(rule: &Rule, parts: &Parts, style: Style) -> Result<String
     Ok(text)
 }
 
-/// What surrounds a condition, from loose to tight.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+/// What surrounds a condition.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Level {
-    Or,
-    And,
+    Whole,
     Operand,
 }
 
@@ -65,31 +64,24 @@ impl Writer<'_> {
         match antecedent {
             Antecedent::Always => self.always(),
             Antecedent::Is(statement) => self.statement(statement),
-            Antecedent::Any(parts) => self.joined(parts, "or", Level::Or, around),
-            Antecedent::All(parts) => self.joined(parts, "and", Level::And, around),
+            Antecedent::Any(parts) => self.joined(parts, "or", around),
+            Antecedent::All(parts) => self.joined(parts, "and", around),
             Antecedent::Not(part) => self.negated(part),
         }
     }
 
-    /// A join stands in brackets unless what surrounds it is looser.
-    fn joined(
-        &self,
-        parts: &[Antecedent],
-        word: &str,
-        own: Level,
-        around: Level,
-    ) -> Result<String, String> {
+    /// A join within another stands in brackets: tools disagree about the rank of *and* and *or*.
+    fn joined(&self, parts: &[Antecedent], word: &str, around: Level) -> Result<String, String> {
         if let [only] = parts {
             return self.condition(only, around);
         }
         if parts.is_empty() {
             return self.always();
         }
-        let inner = if own == Level::Or { Level::And } else { Level::Operand };
         let written: Result<Vec<_>, _> =
-            parts.iter().map(|part| self.condition(part, inner)).collect();
+            parts.iter().map(|part| self.condition(part, Level::Operand)).collect();
         let text = written?.join(&format!(" {} ", self.keyword(word)));
-        Ok(if around > own { format!("({text})") } else { text })
+        Ok(if around == Level::Operand { format!("({text})") } else { text })
     }
 
     /// A condition that always holds: `any` of an input.

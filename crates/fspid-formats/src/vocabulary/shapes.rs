@@ -9,8 +9,8 @@ enum Order {
     Same,
     /// The tool's parameter number i is ours with this position.
     Permuted(&'static [usize]),
-    /// The second parameter is half of ours.
-    HalfWidth,
+    /// Half of our second parameter, then our first.
+    HalfWidthFirst,
     /// The second parameter is `inf` for our 1 and `-inf` for our -1.
     Direction,
 }
@@ -56,6 +56,9 @@ pub(crate) const FUZZYLITE: &[ToolShape] = &[
 ];
 
 /// Words of jFuzzyLogic.
+///
+/// # Source
+/// Documentation of jFuzzyLogic; the cosine asked of jFuzzyLogic 3.3 itself: `COSINE 3 4` is 1 at 4, 0.5 at 5.5, 0 at 7.
 pub(crate) const JFUZZYLOGIC: &[ToolShape] = &[
     row(ShapeKind::Triangle, "TRIAN", Order::Same),
     row(ShapeKind::Trapezoid, "TRAPE", Order::Same),
@@ -66,7 +69,7 @@ pub(crate) const JFUZZYLOGIC: &[ToolShape] = &[
     // Slope before centre, as in MATLAB.
     row(ShapeKind::Sigmoid, "SIGM", Order::Permuted(&[1, 0])),
     row(ShapeKind::SigmoidDifference, "DSIGM", Order::Permuted(&[1, 0, 3, 2])),
-    row(ShapeKind::Cosine, "COSINE", Order::HalfWidth),
+    row(ShapeKind::Cosine, "COSINE", Order::HalfWidthFirst),
 ];
 
 /// A list of points, in every dialect of FCL.
@@ -93,7 +96,10 @@ impl ToolShape {
                 }
                 ours
             }
-            Order::HalfWidth => second(theirs, |half| 2.0 * half),
+            Order::HalfWidthFirst => match theirs[..] {
+                [half, centre] => vec![centre, 2.0 * half],
+                _ => theirs,
+            },
             Order::Direction => second(theirs, direction),
             Order::Same | Order::Permuted(_) => theirs,
         }
@@ -106,7 +112,10 @@ impl ToolShape {
             Order::Permuted(places) => {
                 places.iter().filter_map(|&place| ours.get(place).copied()).collect()
             }
-            Order::HalfWidth => second(ours.to_vec(), |width| 0.5 * width),
+            Order::HalfWidthFirst => match *ours {
+                [centre, width] => vec![0.5 * width, centre],
+                _ => ours.to_vec(),
+            },
             Order::Direction => second(ours.to_vec(), |sign| sign * f64::INFINITY),
         }
     }
@@ -120,6 +129,18 @@ fn second(mut params: Vec<f64>, change: impl Fn(f64) -> f64) -> Vec<f64> {
 /// Anything but an infinity stays, for the check to find.
 fn direction(found: f64) -> f64 {
     if found.is_infinite() { found.signum() } else { found }
+}
+
+/// True if the first of the two steps of a sigmoid difference is nowhere below the second: jFuzzyLogic cuts its `DSIGM`
+/// at 0, where ours has the magnitude.
+pub(crate) fn needs_no_cut(kind: ShapeKind, params: &[f64]) -> bool {
+    match *params {
+        [left, left_slope, right, right_slope] if kind == ShapeKind::SigmoidDifference => {
+            let alike = left_slope.total_cmp(&right_slope).is_eq();
+            alike && if left_slope > 0.0 { left <= right } else { left >= right }
+        }
+        _ => true,
+    }
 }
 
 /// The same membership function by another name that fuzzylite has, if it has none for `kind` itself.
@@ -162,7 +183,9 @@ mod tests {
         assert_eq!(theirs(FUZZYLITE, "binary"), [1.0, f64::INFINITY]);
         assert_eq!(theirs(JFUZZYLOGIC, "gbell"), [2.0, 3.0, 1.0], "width, slope, centre");
         assert_eq!(theirs(JFUZZYLOGIC, "sigm"), [2.0, 1.0], "slope, centre");
-        assert_eq!(theirs(JFUZZYLOGIC, "cosine"), [1.0, 1.0], "half the width");
+        assert_eq!(theirs(JFUZZYLOGIC, "cosine"), [1.0, 1.0], "half the width, centre");
+        let cosine = of_word(JFUZZYLOGIC, "COSINE").unwrap();
+        assert_eq!(cosine.ours(vec![3.0, 4.0]), [4.0, 6.0], "centre, width");
     }
 
     #[test]

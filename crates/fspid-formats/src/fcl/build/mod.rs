@@ -1,5 +1,6 @@
 //! From what a text says to the system that it means.
 
+mod joined;
 mod output;
 mod partial;
 mod rules;
@@ -25,14 +26,13 @@ pub(super) fn reading(draft: Draft, dialect: Option<Dialect>) -> Result<Reading,
     let Draft { name, mut variables, blocks, mut evidence, mut report, .. } = draft;
     let without = partial::without_a_section(&mut variables, &blocks, &mut report);
     let names = rule_names(&variables, &mut report);
-    let mut missing_sign = None;
-    let read = |block| rules::block(block, &names, &mut missing_sign, &mut report);
-    let (mut rules, places): (Vec<RuleBlock>, Vec<_>) = blocks.iter().map(read).unzip();
-    if let Some(place) = missing_sign {
+    if let Some(place) = rules::missing_sign(&blocks) {
         evidence.fuzzylite(place, "a rule without `;`");
     }
     let (found, how) = evidence.judge();
     let dialect = dialect.unwrap_or(found);
+    let read = |block| rules::block(block, dialect, &names, &mut report);
+    let (mut rules, places): (Vec<RuleBlock>, Vec<_>) = blocks.iter().map(read).unzip();
     if dialect == Dialect::Fuzzylite {
         let enabled: Vec<bool> =
             variables.iter().filter(|v| v.is_output()).map(|v| v.enabled).collect();
@@ -45,7 +45,8 @@ pub(super) fn reading(draft: Draft, dialect: Option<Dialect>) -> Result<Reading,
     let (names, inputs) = formula_names(&variables);
     let mut builder = Builder { dialect, formula_names: names, inputs, report, accus };
     builder.tell(dialect == found, &how);
-    let parts = builder.parts(name, &variables, rules);
+    let mut parts = builder.parts(name, &variables, rules);
+    builder.join(&mut parts, &variables);
     if parts.outputs.is_empty() && !parts.inputs.is_empty() {
         builder.report.note_whole("without an output nothing can be concluded; the sets are read");
     }
@@ -112,6 +113,9 @@ fn wrong(report: &mut Report, token: Token, message: &str, expected: impl Into<S
     report.problem(token.place(), token.text, message, expected);
 }
 
+/// How equal conclusions can be read as they stand.
+const ADDED: &str = "`ACCU : SUM`, which adds them up, or a term of its own for each of them";
+
 /// Makes the system's parts.
 struct Builder<'a> {
     dialect: Dialect,
@@ -139,6 +143,36 @@ impl<'a> Builder<'a> {
         let inputs = of(false).map(|variable| self.input(variable)).collect();
         let outputs = of(true).enumerate().map(|(i, variable)| self.output(i, variable)).collect();
         Parts { name, description: String::new(), inputs, outputs, blocks }
+    }
+
+    /// Joins equal conclusions about outputs that weigh their terms, where an `ACCU` says how and its tool does so.
+    fn join(&mut self, parts: &mut Parts, variables: &[Variable<'a>]) {
+        let outputs = variables.iter().filter(|variable| variable.is_output());
+        for (output, variable) in outputs.enumerate() {
+            let given = self.accus.get(output).is_some_and(|own| !own.is_empty());
+            let weighs =
+                parts.outputs.get(output).is_some_and(|own| own.defuzzifier.sampling().is_none());
+            if self.dialect == Dialect::Fuzzylite || variable.adds || !given || !weighs {
+                continue;
+            }
+            let (name, place) = (variable.name.text, variable.name.place());
+            match joined::join(parts, output) {
+                Ok(None) => {}
+                Ok(Some([before, after])) => {
+                    let message = format!(
+                        "rules that conclude the same about `{name}` are read as one, for ACCU joins their strengths before \
+                         they are weighed: {before} rules became {after}"
+                    );
+                    self.report.note(place, message);
+                }
+                Err(why) => {
+                    let message = format!(
+                        "is weighed, and ACCU joins the rules that conclude the same about it; that is not one rule here, for {why}"
+                    );
+                    self.report.problem(place, name, message, ADDED);
+                }
+            }
+        }
     }
 
     fn input(&mut self, variable: &Variable<'a>) -> Input {

@@ -140,10 +140,11 @@ impl<'a> Builder<'a> {
         let of_blocks = self.accus.get(index).into_iter().flatten().copied();
         let named: Vec<_> = variable.accu.into_iter().chain(of_blocks).collect();
         let Some(&(first, _)) = named.first() else {
-            let place = variable.name.place();
-            let note = format!("no ACCU is given for `{}`; maximum is assumed", variable.name.text);
-            self.report.note(place, note);
-            return SNormKind::Maximum;
+            let assumed = self.dialect.accumulation();
+            let word = row_of(S_NORMS, &assumed).map_or("", |row| row.word());
+            let note = format!("no ACCU is given for `{}`; {word} is assumed", variable.name.text);
+            self.report.note(variable.name.place(), note);
+            return assumed;
         };
         if let Some(&(other, place)) = named.iter().find(|(norm, _)| *norm != first) {
             let word = |norm| row_of(S_NORMS, &norm).map_or("", |row| row.word());

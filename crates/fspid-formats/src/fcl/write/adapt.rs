@@ -12,9 +12,12 @@ use fspid_fuzzy::system::{
 use super::set;
 use crate::adapt::{numbered_fallback, sampled, without_disabled_rules};
 use crate::fcl::Dialect;
+use crate::fcl::connectives::{self, Uses};
+use crate::fcl::option::ADDS;
 use crate::fcl::parser::is_section_word;
 use crate::identifiers::{self, is_plain};
 use crate::loss::Loss;
+use crate::repeated;
 use crate::rule::{RESERVED, arrange};
 
 const NAMES: identifiers::Rule = identifiers::Rule {
@@ -40,11 +43,31 @@ pub(super) fn adapted(parts: &Parts, dialect: Dialect, loss: &mut Loss) -> Parts
     headings(&mut parts, dialect, loss);
     parts.inputs.iter_mut().for_each(|input| self::input(input, dialect, loss));
     parts.outputs.iter_mut().for_each(|output| self::output(output, dialect, loss));
-    parts.blocks.iter_mut().for_each(|block| self::block(block, loss));
-    if dialect == Dialect::Fuzzylite {
-        arrange(&mut parts, loss);
+    for block in &mut parts.blocks {
+        self::block(block, loss);
+        if dialect == Dialect::JFuzzyLogic {
+            pair(block, loss);
+        }
+    }
+    match dialect {
+        Dialect::Fuzzylite => arrange(&mut parts, loss),
+        Dialect::Iec => added(&parts, loss),
+        Dialect::JFuzzyLogic => {}
     }
     parts
+}
+
+/// The standard has no word for adding equal conclusions up.
+fn added(parts: &Parts, loss: &mut Loss) {
+    for (index, output) in parts.outputs.iter().enumerate() {
+        if repeated::adds_up(parts, index) {
+            loss.note(format!(
+                "`{}`: rules that conclude the same are added up, for which the standard has no word: {ADDS} says so to \
+                 fspid, and other tools join them by ACCU",
+                output.name
+            ));
+        }
+    }
 }
 
 /// To the standard, names that differ in case only are the same.
@@ -162,6 +185,27 @@ fn output(output: &mut Output, dialect: Dialect, loss: &mut Loss) {
         limits(output, loss);
         enabled(&output.name, output.enabled, loss);
     }
+}
+
+/// The *and* and *or* of a block, of which jFuzzyLogic knows pairs alone: those that its rules use decide.
+fn pair(block: &mut RuleBlock, loss: &mut Loss) {
+    let uses = Uses::of(&block.rules);
+    let pair_of_or = connectives::pair_of_or(&block.or);
+    let found = match (uses.and, uses.or) {
+        (false, false) => Some(connectives::pair_of_and(&block.and).unwrap_or_default()),
+        (false, true) => pair_of_or,
+        (true, _) => connectives::pair_of_and(&block.and),
+    };
+    let Some(pair) = found else {
+        let message = "jFuzzyLogic has no word for its connectives";
+        loss.cannot(&block.name, message, connectives::words());
+        return;
+    };
+    if uses.and && uses.or && pair_of_or != found {
+        let message = "its rules use an *and* and an *or* that are no pair of jFuzzyLogic";
+        loss.lose(&block.name, message, &format!("AND : {}, which sets both", pair.and_word));
+    }
+    (block.and, block.or) = (pair.and.into(), pair.or.into());
 }
 
 /// A set without a width has no area, and FCL reads it as a number that is averaged.

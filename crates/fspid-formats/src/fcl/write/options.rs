@@ -4,13 +4,16 @@ use fspid_fuzzy::OutOfRange;
 use fspid_fuzzy::system::{FallbackValue, Input, Output, Parts, Sampling};
 
 use super::statement::{range, statement};
-use crate::fcl::option::OUT_OF_RANGE;
+use crate::fcl::option::{ADDS, OUT_OF_RANGE};
 use crate::number::written as number;
+use crate::repeated;
 
 /// What the standard has no words for.
 pub(super) fn written(parts: &Parts) -> String {
     let inputs = parts.inputs.iter().map(input_options);
-    let outputs = parts.outputs.iter().map(output_options);
+    let adds = |output| repeated::adds_up(parts, output);
+    let outputs =
+        parts.outputs.iter().enumerate().map(|(index, output)| output_options(output, adds(index)));
     let lines: String = inputs.chain(outputs).collect();
     if lines.is_empty() { lines } else { format!("\nOPTION\n{lines}END_OPTION\n") }
 }
@@ -32,7 +35,7 @@ fn disabled(name: &str, enabled: bool) -> String {
     if enabled { String::new() } else { statement(&format!("FSPID_ENABLED {name} : "), "FALSE") }
 }
 
-fn output_options(output: &Output) -> String {
+fn output_options(output: &Output, adds: bool) -> String {
     let mut text = String::new();
     let name = &output.name;
     if let Some(sampling) = output.defuzzifier.sampling().filter(|s| *s != Sampling::Exact) {
@@ -41,6 +44,9 @@ fn output_options(output: &Output) -> String {
     }
     if output.clamp {
         text += &statement(&format!("FSPID_LIMIT {name} : "), "RANGE");
+    }
+    if adds {
+        text += &statement(&format!("{ADDS} {name} : "), "ADDED");
     }
     let begin = format!("FSPID_DEFAULT {name} : ");
     match output.fallback.value {

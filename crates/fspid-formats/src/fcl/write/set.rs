@@ -49,6 +49,9 @@ fn by_word(kind: ShapeKind, params: &[f64], height: f64, dialect: Dialect) -> Op
         return None;
     }
     let row = shapes::of_kind(rows(dialect), kind)?;
+    if dialect == Dialect::JFuzzyLogic && !shapes::needs_no_cut(kind, params) {
+        return None;
+    }
     // Half of a width among the smallest numbers loses its last bit: those words name another set.
     if row.ours(row.theirs(params)) != params {
         return None;

@@ -1,16 +1,20 @@
 //! The text of a system that a dialect can say.
 
+use std::collections::BTreeSet;
+
 use fspid_fuzzy::system::{
-    Conclusion, Consequent, FallbackValue, Input, Membership, Output, Parts, RuleBlock, Sampling,
+    Conclusion, FallbackValue, Input, Membership, Output, Parts, RuleBlock, SNorm, Sampling,
 };
 use fspid_fuzzy::{OutOfRange, SNormKind};
 
+use super::norm::s_norm_word;
 use super::statement::{range, statement};
 use super::{options, set};
 use crate::adapt::{check_formula, formula_names, is_asked};
-use crate::fcl::Dialect;
+use crate::fcl::{Dialect, connectives};
 use crate::loss::Loss;
 use crate::number::{written as number, written_all};
+use crate::repeated;
 use crate::rule::{self, Style};
 use crate::vocabulary::methods;
 use crate::vocabulary::norms::{STANDARD_ACCU, STANDARD_ACT, STANDARD_AND, STANDARD_OR};
@@ -22,7 +26,7 @@ pub(super) struct Writer<'w> {
     pub(super) loss: &'w mut Loss,
 }
 
-impl Writer<'_> {
+impl<'w> Writer<'w> {
     pub(super) fn text(&mut self) -> String {
         let parts = self.parts;
         let mut text = self.marks();
@@ -152,8 +156,7 @@ impl Writer<'_> {
         if self.extended() && !block.enabled {
             text += &statement("ENABLED : ", "FALSE");
         }
-        text += &statement("AND : ", &self.t_norm(&block.name, &block.and, &STANDARD_AND));
-        text += &statement("OR : ", &self.s_norm(&block.name, &block.or, &STANDARD_OR));
+        text += &self.connectives(block);
         text += &statement("ACT : ", &self.t_norm(&block.name, &block.implication, &STANDARD_ACT));
         if !self.extended() {
             text += &self.block_accu(block);
@@ -173,34 +176,59 @@ impl Writer<'_> {
         text + "END_RULEBLOCK\n"
     }
 
+    /// `AND` and `OR`; to jFuzzyLogic, where either sets both, by the pair that the block has been given.
+    fn connectives(&mut self, block: &RuleBlock) -> String {
+        if self.dialect == Dialect::JFuzzyLogic {
+            let pair = connectives::pair_of_and(&block.and).unwrap_or_default();
+            return statement("AND : ", pair.and_word) + &statement("OR : ", pair.or_word);
+        }
+        let and = self.t_norm(&block.name, &block.and, &STANDARD_AND);
+        let or = self.s_norm(&block.name, &block.or, &STANDARD_OR);
+        statement("AND : ", &and) + &statement("OR : ", &or)
+    }
+
     fn style(&self) -> Style {
         let own = self.dialect == Dialect::Fuzzylite;
         let between = if own { " and " } else { ", " };
         Style { upper: !own, negation: !own, hedges: own, carries: own, between }
     }
 
-    /// The accumulation of the outputs that a block concludes: one for all that are joined, or asked.
+    /// The accumulation of the outputs that a block concludes: one for all of them to which it makes a difference.
     fn block_accu(&mut self, block: &RuleBlock) -> String {
-        let concluded = block.rules.iter().flat_map(|rule| &rule.consequents);
-        let outputs = || {
-            let with_index = |c: &Consequent| Some((c.output, self.parts.outputs.get(c.output)?));
-            concluded.clone().filter_map(with_index)
+        let concluded: BTreeSet<usize> =
+            block.rules.iter().flat_map(|rule| &rule.consequents).map(|own| own.output).collect();
+        let needed = concluded.iter().flat_map(|&output| self.accumulations(output));
+        let needed: Vec<(&Output, SNorm)> = needed.collect();
+        let Some((first, norm)) = needed.first().cloned() else {
+            let own = concluded.iter().find_map(|&output| self.parts.outputs.get(output));
+            let said = own.map(|own| self.accumulation_word(&own.aggregation).unwrap_or("MAX"));
+            return said.map(|word| statement("ACCU : ", word)).unwrap_or_default();
         };
-        let counts = |&(index, output): &(usize, &Output)| {
-            output.defuzzifier.sampling().is_some() || is_asked(self.parts, index)
-        };
-        let Some((_, first)) = outputs().find(counts).or_else(|| outputs().next()) else {
-            return String::new();
-        };
-        let other = outputs().filter(counts).map(|(_, output)| output);
-        let other = other.into_iter().find(|output| output.aggregation != first.aggregation);
-        if let Some(other) = other {
+        if let Some((other, _)) = needed.iter().find(|(_, other)| *other != norm) {
             let message =
                 format!("is joined in another way than `{}` in the same rules", first.name);
-            let (name, expected) = (other.name.clone(), "fuzzylite's dialect");
-            self.loss.cannot(&name, message, expected);
+            self.loss.cannot(&other.name, message, "fuzzylite's dialect");
         }
-        statement("ACCU : ", &self.s_norm(&block.name, &first.aggregation.clone(), &STANDARD_ACCU))
+        let word = self.accumulation_word(&norm);
+        statement("ACCU : ", &self.word(&block.name, word))
+    }
+
+    fn accumulation_word(&self, norm: &SNorm) -> Option<&'static str> {
+        if self.dialect == Dialect::JFuzzyLogic {
+            return connectives::accumulation_word(norm);
+        }
+        s_norm_word(norm).filter(|_| STANDARD_ACCU.iter().any(|&kind| norm.is(kind)))
+    }
+
+    /// The accumulations by which the answer of an output, or of rules that ask it, comes about.
+    fn accumulations(&self, output: usize) -> Vec<(&'w Output, SNorm)> {
+        let parts = self.parts;
+        let Some(own) = parts.outputs.get(output) else { return Vec::new() };
+        let joins = own.defuzzifier.sampling().is_some() || is_asked(self.parts, output);
+        let adds = self.dialect == Dialect::JFuzzyLogic && repeated::adds_up(self.parts, output);
+        let joined = joins.then(|| own.aggregation.clone());
+        let added = adds.then(|| SNormKind::UnboundedSum.into());
+        joined.into_iter().chain(added).map(|norm| (own, norm)).collect()
     }
 }
 
