@@ -123,6 +123,46 @@ fn equal_conclusions_that_are_not_one_rule_are_refused() {
 }
 
 #[test]
+fn equal_weights_and_deep_conditions_are_joined_as_far_as_that_is_the_same() {
+    let half = "IF x IS a THEN z IS h WITH 0.5; IF y IS a THEN z IS h WITH 0.5";
+    assert!(fcl::read(&with("ACCU : MAX;", half)).is_ok());
+    assert!(problems(fcl::read(&with("ACCU : BSUM;", half))).contains("they have weights"));
+    // Without an OR of the rules, the block takes that of the accumulation.
+    let equal = "IF x IS a AND y IS a THEN z IS h; IF y IS b THEN z IS h";
+    assert!(read(&with("AND : HAMACHER; ACCU : MAX;", equal)).blocks[0].or.is(SNormKind::Maximum));
+    let nested = |nots: usize| {
+        let deep = format!("{} x IS a", "NOT ".repeat(nots));
+        fcl::read(&with("ACCU : MAX;", &format!("IF {deep} THEN z IS h; IF y IS a THEN z IS h")))
+    };
+    assert!(nested(63).is_ok());
+    assert!(problems(nested(64)).contains("nested too deeply"));
+}
+
+#[test]
+fn an_or_that_accu_has_too_stays_as_it_is() {
+    let rules = "IF x IS a OR y IS b THEN z IS h; IF y IS a THEN z IS h";
+    let rule = read(&with("AND : MIN; ACCU : MAX;", rules)).blocks[0].rules[0].antecedent.clone();
+    assert!(matches!(&rule, Antecedent::Any(parts) if matches!(parts[0], Antecedent::Any(_))));
+    let rule = read(&with("AND : PROD; ACCU : MAX;", rules)).blocks[0].rules[0].antecedent.clone();
+    assert!(matches!(&rule, Antecedent::Any(parts) if matches!(parts[0], Antecedent::Not(_))));
+}
+
+/// A join of one part joins nothing: no norm is asked for it.
+#[test]
+fn connectives_that_join_one_part_alone_need_no_word() {
+    let mut parts = read(&with("AND : MIN; ACCU : SUM;", WEIGHED));
+    parts.inputs[0].terms.truncate(2);
+    let block = &mut parts.blocks[0];
+    block.and = TNormKind::EinsteinProduct.into();
+    block.or = SNormKind::HamacherSum.into();
+    let alone = block.rules[0].antecedent.clone();
+    for joined in [Antecedent::All(vec![alone.clone()]), Antecedent::Any(vec![alone])] {
+        parts.blocks[0].rules[0].antecedent = joined;
+        assert!(fcl::write(&parts, Dialect::JFuzzyLogic, EXACT).is_ok());
+    }
+}
+
+#[test]
 fn joined_rules_are_told_and_keep_what_else_they_conclude() {
     let rules = "IF x IS a THEN z IS h, v IS h; IF y IS a THEN z IS h; IF x IS b THEN z IS l";
     let reading = fcl::read(&with("AND : MIN; ACCU : MAX;", rules)).expect("a system");
