@@ -256,15 +256,22 @@ fn long_rows_of_mixed_connectives_are_refused() {
 }
 
 #[test]
-fn without_accu_jfuzzylogic_adds_up_and_says_so() {
+fn without_accu_conclusions_are_joined_as_the_dialect_has_it_and_that_is_told() {
     let rules = "IF x IS a THEN v IS h; IF y IS a THEN v IS h";
     let reading = fcl::read(&with("AND : MIN;", rules)).expect("a system");
     assert!(reading.parts.outputs[1].aggregation.is(SNormKind::UnboundedSum));
     let told = notes(&reading);
     assert!(
-        told.iter().any(|note| note.contains("no ACCU is given for `v`; USUM is assumed")),
+        told.iter().any(|note| note.contains("no ACCU is given for `v`; SUM is assumed")),
         "{told:?}"
     );
+    let text =
+        with("AND : MIN;", "IF x IS a THEN z IS h; IF y IS a THEN z IS h; IF x IS a THEN v IS h");
+    let options = ReadOptions { dialect: Some(Dialect::Iec), ..ReadOptions::default() };
+    let told = notes(&fcl::read_with(&text, options).expect("a system"));
+    for note in ["for `z`; rules that conclude the same are added up", "for `v`; MAX is assumed"] {
+        assert!(told.iter().any(|told| told.contains(note)), "{told:?}");
+    }
 }
 
 #[test]

@@ -7,6 +7,7 @@ use fspid_fuzzy::system::{
 };
 
 use super::{Builder, wrong};
+use crate::fcl::connectives::accumulation_word;
 use crate::fcl::draft::{Role, Set, Variable};
 use crate::lexer::Token;
 use crate::term;
@@ -37,7 +38,7 @@ impl<'a> Builder<'a> {
             universe,
             clamp: variable.clamp,
             terms,
-            aggregation: self.aggregation(index, variable).into(),
+            aggregation: self.aggregation(index, variable, !integrates).into(),
             defuzzifier,
             fallback: fallback(variable),
         }
@@ -136,13 +137,17 @@ impl<'a> Builder<'a> {
     }
 
     /// `ACCU` of the output, or of the blocks that conclude it.
-    fn aggregation(&mut self, index: usize, variable: &Variable<'a>) -> SNormKind {
+    fn aggregation(&mut self, index: usize, variable: &Variable<'a>, weighs: bool) -> SNormKind {
         let of_blocks = self.accus.get(index).into_iter().flatten().copied();
         let named: Vec<_> = variable.accu.into_iter().chain(of_blocks).collect();
         let Some(&(first, _)) = named.first() else {
             let assumed = self.dialect.accumulation();
-            let word = row_of(S_NORMS, &assumed).map_or("", |row| row.word());
-            let note = format!("no ACCU is given for `{}`; {word} is assumed", variable.name.text);
+            let word = accumulation_word(&assumed.into()).unwrap_or_default();
+            let what = match weighs {
+                true => "rules that conclude the same are added up".into(),
+                false => format!("{word} is assumed"),
+            };
+            let note = format!("no ACCU is given for `{}`; {what}", variable.name.text);
             self.report.note(variable.name.place(), note);
             return assumed;
         };
