@@ -135,7 +135,7 @@ fn equal_weights_and_deep_conditions_are_joined_as_far_as_that_is_the_same() {
         fcl::read(&with("ACCU : MAX;", &format!("IF {deep} THEN z IS h; IF y IS a THEN z IS h")))
     };
     assert!(nested(63).is_ok());
-    assert!(problems(nested(64)).contains("nested too deeply"));
+    assert!(problems(nested(64)).contains("their conditions are nested too deeply"));
 }
 
 #[test]
@@ -284,6 +284,10 @@ fn the_last_of_and_and_or_sets_both_and_that_is_told() {
         told.iter().any(|note| note.contains("from the last of AND and OR: PROD and ASUM")),
         "{told:?}"
     );
+    for alike in ["AND : PROD;", "AND : PROD; OR : ASUM;", "OR : ASUM;"] {
+        let told = notes(&fcl::read(&with(alike, WEIGHED)).expect("a system"));
+        assert!(!told.iter().any(|note| note.contains("the last of AND and OR")), "{told:?}");
+    }
 }
 
 #[test]
