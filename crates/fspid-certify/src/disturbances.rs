@@ -46,8 +46,8 @@ fn named(way: &Way, at_servo: bool) -> &'static str {
     match way {
         Way::Elevator if at_servo => "a disturbance at the servo or the elevator",
         Way::Elevator => "a disturbance at the elevator",
-        Way::Air { part: AirPart::Forward, .. } => "a gust along the flight path",
-        Way::Air { part: AirPart::Vertical, .. } => "a vertical gust",
+        Way::Air { part: AirPart::Forward, .. } => "a gust along the body axis",
+        Way::Air { part: AirPart::Vertical, .. } => "a gust across the body axis",
         Way::Air { part: AirPart::Turning, .. } => "air that turns in pitch",
     }
 }
@@ -101,8 +101,18 @@ pub(super) fn sentences(scope: &Scope, moving: &str) -> Vec<String> {
         let words = "disturbances together do no more than the sum of what each does";
         told.push(words.to_owned());
     }
+    let is_straight =
+        |it: &Disturbed| matches!(&it.way, Way::Air { part, .. } if *part != AirPart::Turning);
+    if scope.disturbed.iter().any(is_straight) {
+        told.push(AXES.to_owned());
+    }
     told
 }
+
+/// What gusts along other axes are. Before E-198 those along the body were told as gusts along the path, and those across it as
+/// vertical ones, which do up to some percent more.
+const AXES: &str = "the body axis is the one that the aircraft's angle of attack is measured from: in level flight a vertical gust is one \
+                    across it times the cosine of that angle and one along it times the sine, a gust along the flight path the other way round";
 
 fn sentence(scope: &Scope, group: &[Disturbed], moving: &str) -> String {
     let Some(first) = group.first() else { return String::new() };
@@ -188,8 +198,8 @@ pub(super) fn left_out(one: LeftOut, scope: Option<&Scope>) -> String {
 
 const fn words_of(part: AirPart) -> &'static str {
     match part {
-        AirPart::Forward => "gusts along the flight path",
-        AirPart::Vertical => "vertical gusts through the angle of attack",
+        AirPart::Forward => "gusts along the body axis",
+        AirPart::Vertical => "gusts across it through the angle of attack",
         AirPart::Turning => "turning in pitch",
     }
 }

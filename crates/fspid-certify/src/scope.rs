@@ -3,7 +3,7 @@
 
 use fspid_diagnostics::digits::to_six_decimals;
 use fspid_proof::{
-    Certificate, Claim, Commands, Ended, LeftOut, Range, Rechecked, Scope, Shares, Stepped,
+    Certificate, Claim, Commands, Ended, LeftOut, Range, Rechecked, Scope, Shares, Stepped, Way,
 };
 use serde_json::{Value, json};
 
@@ -17,6 +17,10 @@ use fspid_study::json::merged;
 /// What the first of the sentences is about that say what a claim does not speak of; the others have nothing there.
 pub(super) const NOT_IN_CLAIM: &str = "not in this claim";
 
+/// What is proved of air by a certificate that is held against no scenario.
+const AIR_OF_THE_FILE: &str = "proved of gusts is what they do as the file says that the plant feels them; that this plant does is computed by \
+                               --against SCENARIO";
+
 /// The scope of a claim, ready to be told.
 pub(super) struct Told {
     /// None for a claim of growth, which is about no range.
@@ -28,6 +32,8 @@ pub(super) struct Told {
     nonlinear: Option<String>,
     /// What is commanded, where flights are claimed.
     commanded: String,
+    /// How the plant feels the air nobody has computed.
+    air_is_of_the_file: bool,
     /// That gains have a sign that turns the loop around, where they do.
     turned: Option<String>,
 }
@@ -51,7 +57,8 @@ impl Told {
         let commanded =
             commanded.map(|it| commands_in_words(&it.commands, dt_s)).unwrap_or_default();
         let turned = turned_in_words(certificate.description.controller.nominal());
-        Self { stable, left_out, family, moving, nonlinear, commanded, turned }
+        let air_is_of_the_file = false;
+        Self { stable, left_out, family, moving, nonlinear, commanded, air_is_of_the_file, turned }
     }
 
     /// As [`of`](Self::of) of a certificate that was read and held against no scenario: what its words make of its plants
@@ -62,6 +69,11 @@ impl Told {
             let words = "proved are the plants in the file; that they are those of the numbers named is computed by --against SCENARIO";
             told.family.push(words.to_owned());
         }
+        told.air_is_of_the_file = told
+            .stable
+            .iter()
+            .flat_map(|scope| &scope.disturbed)
+            .any(|it| matches!(it.way, Way::Air { .. }));
         if let Some(sentence) = &mut told.nonlinear {
             sentence.push_str(
                 "; everything was enclosed anew from the aircraft in the file; that it is the scenario's is asked by --against SCENARIO",
@@ -86,7 +98,9 @@ impl Told {
                 scope.ended.map(|ended| ("flights", flights(&ended, scope.range, &self.commanded))),
             );
             let disturbed = disturbances::sentences(scope, self.moving);
-            sentences.extend(disturbed.into_iter().map(|it| ("disturbances", it)));
+            let of_the_file = self.air_is_of_the_file.then(|| AIR_OF_THE_FILE.to_owned());
+            let disturbed = disturbed.into_iter().chain(of_the_file);
+            sentences.extend(disturbed.map(|it| ("disturbances", it)));
         }
         sentences.extend(self.family.iter().map(|sentence| ("family", sentence.clone())));
         sentences.extend(self.nonlinear.iter().map(|it| ("nonlinear", it.clone())));

@@ -224,5 +224,5 @@ fn what_disturbances_do_is_bounded_in_every_case_and_told_of_all_together() {
     }
     let check = ["certify", "--check", "proofs/up/pid.certificate.json"];
     let told = text(&fspid(&check, folder.path()).stdout);
-    assert!(told.contains("from rest, the L2 gain of a vertical gust"), "{told}");
+    assert!(told.contains("from rest, the L2 gain of a gust across the body axis"), "{told}");
 }

@@ -69,7 +69,7 @@ fn bounds_of_gusts_are_told_written_checked_and_compared_with_the_air_that_flies
     let told = text(&output.stdout);
     assert_eq!(code(&output), 0, "{told}");
     for words in [
-        "from rest, a vertical gust of at most 1 m/s, however it changes, moves the pitch angle by at most",
+        "from rest, a gust across the body axis of at most 1 m/s, however it changes, moves the pitch angle by at most",
         "a disturbance at the servo or the elevator of at most 1 deg",
         "; no limit acts up to",
         "Moving air counts by the bounds above",

@@ -41,10 +41,11 @@ pub enum Way {
     },
 }
 
-/// Motion of the air as a linear plant feels it, in its stability axes.
+/// Motion of the air as a linear plant feels it, in the axes from which its angle of attack is measured; away from the condition of
+/// its coefficients these are not along and across the path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AirPart {
-    /// Along the flight path, m/s.
+    /// Along the body, m/s.
     Forward,
     /// Across it, up or down, m/s, through the angle of attack.
     Vertical,
