@@ -13,7 +13,7 @@ use crate::plant::{LinearPlant, Plant, PlantChange};
 use crate::propagation::Propagation;
 use crate::propagator::Propagator;
 use crate::sensor::Sensor;
-use crate::signal::{Disturbance, Edge, Entry, Profile};
+use crate::signal::{Disturbance, Edge, Entry, Leaves, Profile};
 use crate::surroundings::Surroundings;
 use crate::timing::Timing;
 
@@ -136,7 +136,7 @@ impl Scenario {
     }
 
     /// What is flown, for however long: scenarios of which this is the same fly the same as far as both go, but for a wait at the trim
-    /// before the set-point moves, where nothing else moves anything.
+    /// before set-point or disturbances move it. Disturbances of no size are left out.
     #[must_use]
     pub fn whenever(&self) -> Self {
         let mut flown = Self { timing: self.timing.shortest(), ..self.clone() };
@@ -145,13 +145,48 @@ impl Scenario {
             Plant::Aircraft(plant) => *plant.changing() == Changing::default(),
             Plant::External(_) => false,
         };
-        let nothing_acts = self.disturbances.is_empty()
-            && self.autopilot.is_none()
-            && self.surroundings == Surroundings::default();
-        if stands_by_itself && nothing_acts {
-            flown.setpoint = self.setpoint.at_once();
+        flown.disturbances.retain(|it| it.part().0 != 0.0);
+        let is_calm = self.autopilot.is_none() && self.surroundings == Surroundings::default();
+        if stands_by_itself && is_calm {
+            flown.begin_at_once();
         }
         flown
+    }
+
+    /// What acts within the flight: without the set-point, and the disturbances, that would begin at its end or after.
+    #[must_use]
+    pub fn within_its_time(&self) -> Self {
+        let end_s = self.timing.end_s();
+        let mut flown = self.clone();
+        flown.disturbances.retain(|it| it.starts_s() < end_s);
+        if matches!(self.setpoint.leaves_s(), Leaves::At(at_s) if at_s >= end_s) {
+            flown.setpoint = Profile::still();
+        }
+        flown
+    }
+
+    /// Brings set-point and disturbances forward together, to where the first of them begins; what has times of its own stays.
+    fn begin_at_once(&mut self) {
+        let setpoint_s = match self.setpoint.leaves_s() {
+            Leaves::At(at_s) => Some(at_s),
+            Leaves::Never => {
+                self.setpoint = Profile::still();
+                None
+            }
+            Leaves::ByTimes => return,
+        };
+        if self.disturbances.iter().any(Disturbance::is_noise) {
+            return;
+        }
+        let starts_s = self.disturbances.iter().map(Disturbance::starts_s).chain(setpoint_s);
+        let Some(first_s) = starts_s.reduce(f64::min) else { return };
+        self.setpoint = match setpoint_s {
+            Some(_) => self.setpoint.earlier(first_s),
+            None => Profile::still(),
+        };
+        for disturbance in &mut self.disturbances {
+            *disturbance = disturbance.earlier(first_s);
+        }
     }
 
     /// Everybody who answers, in the order of the flights.

@@ -60,6 +60,11 @@ impl Disturbance {
         self.shape.starts_s()
     }
 
+    /// The same so much earlier.
+    pub(crate) fn earlier(&self, by_s: f64) -> Self {
+        Self { shape: self.shape.clone().earlier(by_s), ..self.clone() }
+    }
+
     /// True for noise, which never stands still.
     #[must_use]
     pub fn is_noise(&self) -> bool {

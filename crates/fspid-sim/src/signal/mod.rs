@@ -8,6 +8,7 @@ mod shape;
 
 pub use disturbance::{Disturbance, Entry};
 pub use mixed_noise::{NoMixture, Noise};
+pub(crate) use profile::Leaves;
 pub use profile::{Edge, Interpolation, Profile};
 pub use shape::Shape;
 pub(crate) use shape::extremes_from;

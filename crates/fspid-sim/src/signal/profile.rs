@@ -34,6 +34,16 @@ pub struct Edge {
     pub to_rad: f64,
 }
 
+/// When a set-point leaves the trim.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Leaves {
+    Never,
+    /// From then on, s, the same whenever that is.
+    At(f64),
+    /// By a table, or noise, whose times are its own.
+    ByTimes,
+}
+
 impl Profile {
     /// `amplitude_rad` times a shape.
     ///
@@ -75,14 +85,28 @@ impl Profile {
         Ok(Self(Kind::Table { time_s, setpoint_rad, interpolation }))
     }
 
-    /// The same shape from the start on; a table as it is.
-    pub(crate) fn at_once(&self) -> Self {
+    /// The same shape so much earlier; a table as it is.
+    pub(crate) fn earlier(&self, by_s: f64) -> Self {
         match &self.0 {
             Kind::Shape { amplitude_rad, shape } => {
-                let (amplitude_rad, shape) = (*amplitude_rad, shape.clone().at_once());
+                let (amplitude_rad, shape) = (*amplitude_rad, shape.clone().earlier(by_s));
                 Self(Kind::Shape { amplitude_rad, shape })
             }
             Kind::Table { .. } => self.clone(),
+        }
+    }
+
+    /// A set-point that stays at the trim.
+    pub(crate) const fn still() -> Self {
+        Self(Kind::Shape { amplitude_rad: 0.0, shape: Shape::Step { at_s: 0.0 } })
+    }
+
+    /// When it leaves the trim, s; never, if it has no size. A table has times of its own.
+    pub(crate) fn leaves_s(&self) -> Leaves {
+        match &self.0 {
+            Kind::Shape { amplitude_rad, .. } if *amplitude_rad == 0.0 => Leaves::Never,
+            Kind::Shape { shape: Shape::Noise { .. }, .. } | Kind::Table { .. } => Leaves::ByTimes,
+            Kind::Shape { shape, .. } => Leaves::At(shape.starts_s()),
         }
     }
 

@@ -103,15 +103,15 @@ impl Shape {
         }
     }
 
-    /// The same from the start on; noise, whose numbers go with the samples, as it is.
-    pub(super) fn at_once(mut self) -> Self {
+    /// The same so much earlier, to the nanosecond; noise, whose numbers go with the samples, as it is.
+    pub(super) fn earlier(mut self, by_s: f64) -> Self {
         match &mut self {
             Self::Step { at_s }
             | Self::Pulse { at_s, .. }
             | Self::Doublet { at_s, .. }
             | Self::Square { at_s, .. }
             | Self::Ramp { at_s, .. }
-            | Self::Sine { at_s, .. } => *at_s = 0.0,
+            | Self::Sine { at_s, .. } => *at_s = libm::round((*at_s - by_s) * 1e9) / 1e9,
             Self::Noise { .. } => {}
         }
         self

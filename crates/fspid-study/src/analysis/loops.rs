@@ -386,7 +386,7 @@ pub(crate) fn held_at_rest(
 }
 
 /// Whether a rest holds.
-fn verdict_of(
+pub(super) fn verdict_of(
     scenario: &Scenario,
     plant: &LinearPlant,
     rest: &Rest,

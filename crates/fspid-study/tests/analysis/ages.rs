@@ -1,7 +1,7 @@
 //! Margins of loops whose sensors have clocks of their own: what they allow the loop has to bear over all ages as they come.
 
 use fspid_scenario::file::{Study, parse};
-use fspid_study::analysis::{AnalysedLoop, Analysis, Margins, Question, Stability};
+use fspid_study::analysis::{AnalysedLoop, Analysis, Frozen, Margins, Question, Stability};
 use fspid_study::metrics::Absent;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -74,4 +74,38 @@ fn no_margin_is_told_that_the_ages_as_they_come_do_not_bear() {
         }
     }
     assert!(told > 5 && refused > 3, "{told}, {refused}");
+}
+
+/// A self-tuner around a mode at 50 Hz, behind a sensor that is read every 0.03 s: twelve of its 81 frozen gains are unstable over the ages
+/// as they come, and all of them held with the largest. `frozen_stable` was a PASS, and a flight with those gains diverged.
+const TUNED: &str = "schema = 1\nname = \"x\"\n[plant]\n\
+    numerator = [-1.7864381099092428, 17.864381099092427, 26.84467714000462]\n\
+    denominator = [0.0025, 0.017672501692979087, 1.0410050637434138, 3.1102609050776255, 4.126022788599066, 0.0]\n\
+    elevator_sign = \"nose-up-positive\"\n[actuator]\ntime_constant_s = 0\ndelay_samples = 1\n\
+    [loop]\nsample_period_s = 0.02\nduration_s = 20\n[sensor]\npreset = \"ideal\"\npitch = { period_s = 0.03 }\n\
+    [setpoint]\nkind = \"step\"\namplitude_deg = 1.0\n[[controller]]\nname = \"c\"\n";
+
+#[test]
+fn frozen_gains_that_the_ages_as_they_come_do_not_bear_do_not_hold() {
+    let tuner = "kind = \"fspid\"\nnominal = { kp = 0.348173, ki = 0.282375, kd = 0.261224 }\nderivative_on = \"measurement\"\n\
+        supervisor = { table = \"mirrored\", range = 5.0, error_scale = 1.0, change_scale = 0.2, output_scale = { kp = 0.02, ki = 0.004, kd = 0.01 } }\n";
+    let of = |controller: &str| {
+        let text = format!("{TUNED}{controller}");
+        let study =
+            parse(&text, "tuned", None, &[]).unwrap_or_else(|problems| panic!("{problems}"));
+        Analysis::of(&study, Question::default()).expect("analysed").loops.remove(0)
+    };
+    let tuned = of(tuner);
+    let Some(Frozen::OfInputs(map)) = tuned.plants[0].frozen.as_ref() else { panic!("a map") };
+    let unstable = map.unstable();
+    assert!((6..=24).contains(&unstable), "{unstable}");
+    assert_eq!(map.stability(), Stability::Unstable);
+    // Each verdict is that of a controller that has these gains for good.
+    for point in map.all().step_by(7).chain([&map.worst]) {
+        let [kp, ki, kd] = [point.gains.kp, point.gains.ki, point.gains.kd];
+        let fixed = of(&format!(
+            "kind = \"pid\"\nkp = {kp:?}\nki = {ki:?}\nkd = {kd:?}\nderivative_on = \"measurement\"\n"
+        ));
+        assert_eq!(fixed.stability(), point.stability(), "{kp} {ki} {kd}");
+    }
 }

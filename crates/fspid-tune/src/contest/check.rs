@@ -40,7 +40,7 @@ pub(super) fn checked(source: &Source, options: &Options) -> Result<Contest, Tun
     }
     let is_right = |name: &&str| wrong_cases.iter().all(|it| it.case != **name);
     let right = rules.cases.iter().map(|case| case.name.as_str()).filter(is_right);
-    problems.extend(twins::problems(source, study, right.zip(&cases))?);
+    problems.extend(twins::problems(source, study, rules.runs, right.zip(&cases))?);
     let unfree = template.check_free(&study.tunable_parameters, TunedIn::Contest).err();
     let mut entrants = Vec::new();
     for name in &names {

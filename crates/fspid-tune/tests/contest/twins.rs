@@ -36,6 +36,44 @@ fn a_flight_cut_or_begun_at_other_times_is_the_same_case() {
     }
 }
 
+/// A load that is moved, alone or with the step; a step moved beside a load of no size, or one after the end; a dispersion of which
+/// nothing is drawn: twelve of each made either of two designs the winner, with p = 0.0005.
+#[test]
+fn a_flight_is_the_same_whenever_its_loads_set_in_and_whatever_nobody_draws() {
+    let load = |size_deg: f64, at_s: f64| {
+        format!(
+            "\n[[disturbance]]\nkind = \"step\"\nenters_at = \"servo\"\namplitude_deg = {size_deg:?}\nat_s = {at_s:?}\n"
+        )
+    };
+    let judged = |name: &str, set: &[&str]| {
+        let set: Vec<String> = set.iter().map(|it| format!("\"{it}\"")).collect();
+        let common = "\"setpoint.amplitude_deg=2.5\"";
+        format!("\n[[contest.case]]\nname = \"{name}\"\nset = [{common}, {}]\n", set.join(", "))
+    };
+    let refused = |beside: &str, second: &[&str]| {
+        let first = judged("first", &["loop.duration_s=31.0"]);
+        // The third is refused in any case.
+        let third = judged("third", &["loop.duration_s=35.0"]);
+        let text = marked() + &first + &judged("second", second) + &third + beside;
+        place(&text).refused(&Options::default())
+    };
+    let at = "case \"second\" flies what case \"first\" flies, at and for another time, and would count twice";
+    let of_duration =
+        "case \"second\" flies what case \"first\" flies, for another time, and would count twice";
+    let later = ["setpoint.at_s=3.5", "disturbance[0].at_s=7.5"];
+    let told = refused(&load(1.0, 5.0), &later);
+    assert!(told.contains(at), "both are moved: {told}");
+    let told = refused(&load(0.0, 5.0), &later[..1]);
+    assert!(told.contains(at), "of no size: {told}");
+    let told = refused(&load(1.0, 100.0), &later[..1]);
+    assert!(told.contains(at), "after the end: {told}");
+    let told = refused(&load(1.0, 5.0), &later[..1]);
+    assert!(!told.contains("case \"second\" flies what"), "the step alone is moved: {told}");
+    let drawn = "\n[[dispersion]]\npath = \"actuator.time_constant_s\"\ndistribution = \"uniform\"\nlower = 0.04\nupper = 0.06\n";
+    let told = refused(drawn, &["loop.duration_s=33.0"]);
+    assert!(told.contains(of_duration), "nothing is drawn: {told}");
+}
+
 /// A limit that never acts, moved, is another scenario and the same flight; so is what is written with a delay that a
 /// controller was tuned on. Twelve of them made a winner with p = 0.0005.
 #[test]

@@ -6,15 +6,17 @@
 mod map;
 mod reach;
 
-use fspid_core::{Fspid, Gains, Law};
+use fspid_core::{Fspid, Gains, Law, Pid};
 use fspid_lti::LoopFamily;
 use fspid_sim::loop_model::{LoopModel, Memory};
-use fspid_sim::{Controller, LinearPlant, Scenario, SimError};
+use fspid_sim::{Controller, LinearPlant, Rest, Scenario, SimError};
 
-use super::Question;
+use super::ages::Asked;
 use super::answer::Margins;
+use super::loops::verdict_of;
 use super::rank::{judged, rank};
 use super::stability::Stability;
+use super::{BreakPoint, Question};
 use crate::metrics::Absent;
 pub use map::{FrozenMap, FrozenPoint};
 pub use reach::{FrozenGains, FrozenReach};
@@ -89,9 +91,49 @@ impl<'a> FrozenLoops<'a> {
 
     /// Margins of gains, the quick way where that is allowed and sure.
     fn margins(&self, gains: Gains<f64>) -> Result<Result<Margins, Absent>, SimError> {
-        match self.quick_margins(gains) {
-            Some(margins) => Ok(Ok(margins)),
-            None => self.margins_in_full(gains),
+        let found = match self.quick_margins(gains) {
+            Some(margins) => Ok(margins),
+            None => self.by_eigenvalues(gains)?,
+        };
+        self.as_ages_come(gains, found, |_, margins| Ok(Ok(margins)))
+    }
+
+    /// Margins that are told, by eigenvalues; behind a sensor whose values change their age those that are borne as they do.
+    fn margins_in_full(&self, gains: Gains<f64>) -> Result<Result<Margins, Absent>, SimError> {
+        let found = self.by_eigenvalues(gains)?;
+        let is_asked = self.question.point == BreakPoint::Command;
+        self.as_ages_come(gains, found, |asked, margins| match is_asked {
+            true => asked.borne(margins),
+            false => Ok(Ok(margins)),
+        })
+    }
+
+    /// Margins are of the largest age of a sensor's values, which does not stay: whether gains hold the plant is said by the
+    /// ages as they come, of a controller that has these gains for good.
+    fn as_ages_come(
+        &self,
+        gains: Gains<f64>,
+        found: Result<Margins, Absent>,
+        borne: impl FnOnce(&Asked<'_>, Margins) -> Result<Result<Margins, Absent>, SimError>,
+    ) -> Result<Result<Margins, Absent>, SimError> {
+        if !self.model.has_changing_ages() {
+            return Ok(found);
+        }
+        let Ok(pid) = Pid::new(gains, self.fspid.config_at(gains)) else { return Ok(found) };
+        let (rest, controller) = (Rest::still(gains), Controller::Fixed(pid));
+        let Self { scenario, plant, .. } = *self;
+        if let Err(reason) = verdict_of(scenario, plant, &rest, &controller)? {
+            return Ok(Err(reason));
+        }
+        match found {
+            Err(Absent::Unstable { spectral_radius }) => {
+                Ok(Err(Absent::OldestAge { spectral_radius }))
+            }
+            Ok(margins) => {
+                let asked = Asked { scenario, plant, rest: &rest, controller: &controller };
+                borne(&asked, margins)
+            }
+            other => Ok(other),
         }
     }
 
@@ -115,8 +157,8 @@ impl<'a> FrozenLoops<'a> {
         self.fspid.config_at(gains) == self.model.settings().config
     }
 
-    /// Margins of one loop by eigenvalues.
-    fn margins_in_full(&self, gains: Gains<f64>) -> Result<Result<Margins, Absent>, SimError> {
+    /// Margins of one loop by eigenvalues, with the largest age of what a sensor shows.
+    fn by_eigenvalues(&self, gains: Gains<f64>) -> Result<Result<Margins, Absent>, SimError> {
         let config = self.fspid.config_at(gains);
         let memory = Memory::of_gains(gains, &config);
         let open = if self.has_the_config_at(gains) && memory == self.model.settings().memory {
