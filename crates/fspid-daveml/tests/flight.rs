@@ -102,6 +102,30 @@ fn what_counts_the_other_way_in_its_file_is_turned() {
     assert!((yaw + turned).abs() < 1e-9 * yaw.abs() && yaw.abs() > 0.0, "{yaw} {turned}");
 }
 
+/// Words that were not known were taken as ours, without a word.
+#[test]
+fn signs_that_are_not_known_are_refused_where_they_count() {
+    let made = |name: &str, sign: &str| {
+        let plain = format!("name=\"{name}\"");
+        let text = AERO.replacen(&plain, &format!("{plain} sign=\"{sign}\""), 1);
+        let setting = Setting {
+            centre_of_mass_m: body(30.0).centre_of_mass_m,
+            gearing: Gearing::Proportional,
+            travel: Travel::UNLIMITED,
+        };
+        TableForces::new(model(&text), Some(model(ENGINE)), setting)
+    };
+    let told = made("elevatorDeflection", "towards the tail").unwrap_err().to_string();
+    let expected = "`elevatorDeflection` counts by the sign `towards the tail`, which is not known for it: ted, trailing edge down (as here), \
+                    or teu, trailing edge up (turned); or leave it out";
+    assert_eq!(told, expected);
+    for sign in ["", "+ANU", "Aircraft nose up", "AND"] {
+        assert!(made("angleOfAttack", sign).is_ok(), "{sign}");
+    }
+    // Ailerons are told by many words, of one side or of both.
+    assert!(made("aileronDeflection", "inside out").is_ok());
+}
+
 #[test]
 fn a_trim_of_straight_lines_is_that_of_the_closed_form() {
     let environment = Environment::uniform(9.8, 1.0, 330.0);

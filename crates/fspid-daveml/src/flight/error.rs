@@ -72,6 +72,20 @@ pub enum FlightError {
         /// Units that are known for it, with commas.
         known: String,
     },
+    /// Words that do not tell which way a variable counts.
+    #[error(
+        "`{name}` counts by the sign `{found}`, which is not known for it: {ours} (as here), or {turned} (turned); or leave it out"
+    )]
+    Sign {
+        /// Name of the variable.
+        name: String,
+        /// Its words.
+        found: String,
+        /// Words for the way in which it counts here, with commas.
+        ours: String,
+        /// Words for the other way, with commas.
+        turned: String,
+    },
     /// A coefficient that is no straight line over the rate of the angle of attack.
     #[error(
         "`{name}` is not linear in `angleOfAttackRate`: at {rate_rad_s} rad/s it is {found:.6}, where the straight line through rest and 1 rad/s has {expected:.6}; only a linear part can be flown"

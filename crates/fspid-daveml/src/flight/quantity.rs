@@ -94,7 +94,7 @@ impl Quantity {
     /// SI units in one unit of a variable, negative of one that counts the other way.
     pub(super) fn factor(self, port: &Port) -> Result<f64, FlightError> {
         let row = QUANTITIES.iter().find(|(_, quantity, _)| *quantity == self);
-        Ok(sign(port) * factor(port, row.map_or(PART, |&(.., units)| units))?)
+        Ok(sign(port)? * factor(port, row.map_or(PART, |&(.., units)| units))?)
     }
 
     /// What a model's box calls it.
@@ -113,7 +113,7 @@ impl Quantity {
 /// SI units in one unit of an output, negative of one that counts the other way.
 pub(super) fn output_factor(port: &Port) -> Result<f64, FlightError> {
     let row = OUTPUTS.iter().find(|(beginning, _)| port.name.starts_with(beginning));
-    Ok(sign(port) * factor(port, row.map_or(PART, |&(_, units)| units))?)
+    Ok(sign(port)? * factor(port, row.map_or(PART, |&(_, units)| units))?)
 }
 
 pub(super) fn factor(port: &Port, units: Units) -> Result<f64, FlightError> {
